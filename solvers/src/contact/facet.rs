@@ -37,12 +37,3 @@ pub fn dilatancy(facets: &[Facet]) -> f64 {
         .map(|f| -f.flow[0] / f.flow[1].abs())
         .fold(0.0, f64::max)
 }
-
-/// Shares of the laws' own flow on the way from associated flow (0) to it (1).
-pub const FLOW_SHARES: [f64; 6] = [0.0, 0.3, 0.55, 0.75, 0.9, 1.0];
-
-/// Facets whose flow is turned from their normal (0) to their own flow (1).
-pub fn with_flow_between(facets: &[Facet], share: f64) -> Vec<Facet> {
-    let flow = |f: &Facet| [0, 1].map(|i| (1.0 - share) * f.normal[i] + share * f.flow[i]);
-    facets.iter().map(|f| Facet { flow: flow(f), ..*f }).collect()
-}

@@ -9,7 +9,7 @@
 
 use super::facet::{dot, multipliers, norm, slack};
 use super::mode::ContactMode;
-use super::normal_fan::{Cell, NormalFan};
+use super::normal_fan::NormalFan;
 use voussoir_core::law::{Facet, FacetMode};
 
 /// Facets of a law and the corners at which two of them meet, for one unit of area.
@@ -98,15 +98,6 @@ impl YieldPolygon {
         let pair = |p: &[usize; 2]| p.contains(&i) && p.contains(&j);
         let own = self.corners.iter().find(|(_, pairs)| pairs.iter().any(pair));
         own.or_else(|| self.corners.iter().find(|c| c.0 == [0.0; 2])).map(|corner| self.mode_at(corner))
-    }
-
-    /// The mode of a cell.
-    pub fn mode_of(&self, cell: usize) -> ContactMode {
-        match self.fan.cells[cell].0 {
-            Cell::Inside => ContactMode::Stick,
-            Cell::Facet(i) => ContactMode::Facet(i as u8),
-            Cell::Pair(k, _) => self.mode_at(&self.corners[k]),
-        }
     }
 
     /// The cell of z = r − ρ Δg and its return r.

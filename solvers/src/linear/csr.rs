@@ -51,17 +51,6 @@ impl CsrMatrix {
         CsrMatrix { start: vec![0; rows + 1], entries: Vec::new() }
     }
 
-    /// CsrMatrix with those of others added.
-    pub fn with(&self, others: &CsrMatrix) -> Self {
-        let mut both = CsrMatrix::with_capacity(self.entries.len() + others.entries.len());
-        for i in 0..self.len() {
-            both.entries.extend_from_slice(self.row(i));
-            both.entries.extend_from_slice(others.row(i));
-            both.end_row();
-        }
-        both
-    }
-
     /// Entries of the row that [`CsrMatrix::end_row`] ends, after those of the rows before.
     pub fn open_row(&mut self) -> &mut Vec<(usize, f64)> {
         &mut self.entries

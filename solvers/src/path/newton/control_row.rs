@@ -6,7 +6,7 @@ use super::inelastic::add_plastic_work;
 use super::measure::increment_between;
 use super::monitors::by_motion;
 use super::response::dissipation_gradient;
-use super::state::{State, Tangent};
+use super::state::State;
 use super::system::StepSystem;
 use crate::path::energy::{load_size, settlement_size};
 use voussoir_core::path::{Constraint, Increment};
@@ -195,9 +195,4 @@ fn load_work(system: &StepSystem, force: impl Fn(usize, usize) -> f64, motion: i
 /// ∂Π/∂λ between two states, in units.
 fn work_between(system: &StepSystem, start: &State, state: &State) -> f64 {
     load_work(system, |c, k| state.force[c][k] - start.force[c][k], |b, k| state.motion[b][k] - start.motion[b][k])
-}
-
-/// ∂Π/∂λ along a rate, in units.
-pub(super) fn work_along(system: &StepSystem, rate: &Tangent) -> f64 {
-    load_work(system, |c, k| rate.force[c][k], |b, k| rate.motion[b][k])
 }

@@ -3,7 +3,7 @@
 use super::branch_switching::{branch_beyond_fold, yielding_blocks_branch};
 use super::creeping::CREEPS;
 use super::following::{Branch, Following};
-use super::limit_point::{above_all, falling_branch, not_followed, rising_branch};
+use super::limit_point::rising_branch;
 use super::peak::{PLACED, note_peak};
 use super::state::Tangent;
 use super::system::StepFailure;
@@ -20,9 +20,6 @@ pub(super) const CORNER: f64 = 1e-7;
 
 /// Length, relative to the first step, below which there is no step.
 pub(super) const SHORTEST: f64 = 1e-10;
-
-/// Steps after which the rates are searched again where steps are not followed.
-const AGAIN: u64 = 20;
 
 /// What follows.
 pub(super) enum AfterFailure {
@@ -140,59 +137,28 @@ fn corner(
     if falls && grew && following.orientation.is_some() && snaps(tracer, following.load_step) {
         return Some(AfterFailure::Snap(tangent));
     }
-    if falls
-        && grew
-        && let Some(falling) = falling_branch(tracer, &state, direction)
-    {
-        (tangent, modes) = falling;
-    }
     if falls && following.comes_stable() && (grew || (!tracer.system.finite() && tracer.limit.peak.is_none())) {
         note_peak(tracer, &tangent, direction);
     }
     Some(AfterFailure::Corner(Branch { tangent, modes: Some(modes) }))
 }
 
-/// A shorter step; where it is too short, or no step follows modes that were guessed at a corner, a rate with
-/// growing λ by a search, or the end.
+/// A shorter step. If it is too short, a rate with growing λ by a search, or the end.
 fn shortened(tracer: &mut Tracer, following: &mut Following, length: f64, failure: &StepFailure) -> AfterFailure {
     if following.comes_to_smooth_peak(tracer) && following.takes_arc_lengths(tracer) {
         return AfterFailure::CutBack(following.length);
     }
-    let steps = tracer.system.counters.get("steps").copied();
-    let (first, linear) = (following.limits.first, following.limits.linear);
-    let no_peak = above_all(tracer, following.direction);
-    let doubtful = following.branch.modes.is_some() || failure.why == CREEPS;
-    let guessed = linear && doubtful && no_peak && length < UNFOLLOWED * first;
-    let unsearched = guessed && following.tried.search.is_none_or(|last| steps.is_some_and(|now| now >= last + AGAIN));
-    if length >= SHORTEST * first && !unsearched {
+    if length >= SHORTEST * following.limits.first {
         return AfterFailure::CutBack(length);
     }
-    following.tried.search = steps;
     let state = tracer.state.clone();
-    if no_peak && let Some((tangent, modes)) = rising_branch(tracer, &state, following.direction) {
-        return AfterFailure::Corner(Branch { tangent, modes: Some(modes) });
-    }
-    if unsearched && tracer.limit.unproven.take().is_some() {
-        // Not decided: shorter steps may still find the way.
-        return AfterFailure::CutBack(length);
-    }
-    if no_peak
-        && following.slope > 0.0
-        && let Some((tangent, modes)) = falling_branch(tracer, &state, following.direction)
+    if tracer.limit.peak.is_none()
+        && let Some((tangent, modes)) = rising_branch(tracer, &state, following.direction)
     {
-        note_peak(tracer, &tangent, following.direction);
         return AfterFailure::Corner(Branch { tangent, modes: Some(modes) });
     }
     if following.takes_arc_lengths(tracer) {
         return AfterFailure::CutBack(following.length);
     }
-    AfterFailure::Ended(if linear && tracer.limit.unproven.is_none() {
-        let why = not_followed(tracer, &failure.why);
-        if no_peak && tracer.limit.peak.is_some() {
-            note_peak(tracer, &following.branch.tangent, following.direction);
-        }
-        end_path(tracer, Status::Stalled, why)
-    } else {
-        no_step(tracer, failure, &following.branch.tangent, following.direction)
-    })
+    AfterFailure::Ended(no_step(tracer, failure, &following.branch.tangent, following.direction))
 }

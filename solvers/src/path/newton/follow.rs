@@ -4,7 +4,7 @@
 use super::control::Control;
 use super::failed_step::{AfterFailure, CORNER, SHORTEST, after_failure, searched_here};
 use super::following::{Branch, Following, per_tangent};
-use super::limit_point::{above_all, falling_branch, not_followed, rising_branch};
+use super::limit_point::rising_branch;
 use super::measure::{increment_between, motion_size};
 use super::orientation::Orientation;
 use super::passed_over::passes_over;
@@ -89,7 +89,7 @@ pub(super) fn follow(tracer: &mut Tracer, load_step: &LoadStep, target: f64) -> 
     for _ in 0..MOST_STEPS {
         let now = work(tracer);
         if tracer.system.finite() && (0..2).all(|k| now[k] - before[k] > MOST_WORK[k]) {
-            return out_of_work(tracer, &following, &format!("{} iterations", now[0] - before[0]));
+            return out_of_work(tracer, &format!("{} iterations", now[0] - before[0]));
         }
         let end = next_step(tracer, &mut following);
         if let Some(outcome) = go_on(tracer, &mut following, end) {
@@ -100,7 +100,7 @@ pub(super) fn follow(tracer: &mut Tracer, load_step: &LoadStep, target: f64) -> 
             return end_path(tracer, Status::LimitPoint, String::new());
         }
     }
-    out_of_work(tracer, &following, &format!("{MOST_STEPS} steps"))
+    out_of_work(tracer, &format!("{MOST_STEPS} steps"))
 }
 
 /// Goes on from the end of a step; how the load step ends with it, if so.
@@ -194,7 +194,6 @@ fn examine(tracer: &mut Tracer, following: &mut Following, plan: &StepPlan, tria
     let by_strategy = matches!(trial.control, Control::Strategy { .. });
     let jumps = by_strategy && finite && off > JUMP * next.factor.abs().max(unit);
     let tangent = match trial.control {
-        Control::Mixed { length, .. } => tangent.scaled(length.signum()),
         Control::Factor(_) => tangent.scaled(direction),
         _ => dissipating_sense(tracer, next, tangent),
     };
@@ -225,7 +224,7 @@ fn examine(tracer: &mut Tracer, following: &mut Following, plan: &StepPlan, tria
     let orientation = Orientation::along(&mut tracer.system, &trial.next, &tangent, direction);
     let first = tracer.limit.peak.is_none();
     let grew = following.slope > 0.0 && following.orientation.as_ref().is_none_or(|before| !before.still);
-    let peak = falls && !softens && !trial.reaches && (first || ((finite || tracer.system.may_dip()) && grew));
+    let peak = falls && !softens && !trial.reaches && (first || (finite && grew));
     let step = Step { trial, tangent, accuracy, falls, folded, orientation, plan: *plan };
     if let Some(other) = off_the_branch(tracer, following, plan, &step) {
         return other;
@@ -399,16 +398,6 @@ fn pass_peak(tracer: &mut Tracer, following: &mut Following, step: Step) -> Opti
         }
         return snap(tracer, following, orientation, &beyond);
     }
-    if let Some((tangent, modes)) = falling_branch(tracer, &state, following.direction) {
-        let peak = peak_at(tracer, state.clone(), &tangent);
-        note_proven_peak(tracer, peak, following.direction);
-        if !commit(tracer, state) {
-            return Some(LoadStepEnding::Ended);
-        }
-        let here = tracer.state.clone();
-        following.switch_to(&mut tracer.system, &here, Branch { tangent, modes: Some(modes) });
-        return None;
-    }
     if stable {
         let peak = peak_at(tracer, state.clone(), &beyond);
         note_proven_peak(tracer, peak, following.direction);
@@ -499,11 +488,7 @@ fn accept(tracer: &mut Tracer, following: &mut Following, step: Step) -> Option<
 }
 
 /// The end of a path that takes too many steps, or too many iterations.
-fn out_of_work(tracer: &mut Tracer, following: &Following, work: &str) -> LoadStepEnding {
-    if following.limits.linear && !above_all(tracer, following.direction) && tracer.limit.unproven.is_none() {
-        let why = not_followed(tracer, &format!("{work} were not enough"));
-        return end_path(tracer, Status::Stalled, why);
-    }
+fn out_of_work(tracer: &mut Tracer, work: &str) -> LoadStepEnding {
     // After a peak too a greater one may lie before the stop, unless the load has fallen to half, where paths end.
     let factor = tracer.state.factor;
     let status = if tracer.system.finite() { after_peak(tracer) } else { Status::Stalled };

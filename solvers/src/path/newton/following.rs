@@ -1,7 +1,6 @@
 //! A load step that is followed by its strategy: predictor, length of the next step, and what has been tried.
 
 use super::control::Control;
-use super::control_row::work_along;
 use super::limit_point::test_limit_point;
 use super::measure::{cosine, increment_along, motion_size, tangent_size};
 use super::orientation::Orientation;
@@ -41,10 +40,6 @@ pub(super) struct StepLimits {
     pub by_arc: f64,
     /// Greatest motion of a step.
     pub largest: f64,
-    /// Weight of the factor in a mixed control.
-    pub mixed_weight: f64,
-    /// Whether the path is piecewise linear.
-    pub linear: bool,
     /// Whether the path, with finite displacements, ends at its first limit point: by a strategy that passes none.
     pub ends_at_peak: bool,
 }
@@ -60,8 +55,6 @@ pub(super) struct Branch {
 pub(super) struct Tried {
     /// Number of the step at which another branch was looked for last.
     pub branch: Option<u64>,
-    /// The same of a search for a rate with growing λ.
-    pub search: Option<u64>,
     /// Modes and rate of the last step on which no point changed its mode, while the path has hardly moved since: the way
     /// on which it came here, over however many changes of mode at one place.
     pub arrived: Option<(Vec<ContactMode>, Tangent)>,
@@ -145,7 +138,6 @@ impl<'d> Following<'d> {
             let why = format!("at factor {factor} there is no rate of equilibrium under the growing load");
             return Err(end_path(tracer, Status::Stalled, why));
         };
-        let mixed_weight = mixed_weight(tracer);
         let nothing = |one: f64, tracer: &Tracer| one.is_nan() || one <= 1e-14 * tangent_size(&tracer.system, &tangent);
         if nothing(per_tangent(tracer, &tangent, None), tracer)
             && load_size(tracer.system.problem, tracer.system.loads.growing) == 0.0
@@ -175,8 +167,6 @@ impl<'d> Following<'d> {
             by_arc: arc.first_step()
                 * arc.constraint(&increment_along(&tracer.system, &tracer.state, &tangent), None).value,
             largest: largest * units.length / units.displacement,
-            mixed_weight,
-            linear: !tracer.system.finite() && tracer.system.piecewise_linear(),
             ends_at_peak: tracer.system.finite()
                 && tracer.system.laws.responses.is_empty()
                 && !tracer.strategy.passes_limit_points(),
@@ -280,16 +270,4 @@ fn first_tangent(tracer: &mut Tracer, target: f64, direction: f64) -> Option<Tan
 /// What the strategy measures along a tangent.
 pub(super) fn per_tangent(tracer: &Tracer, tangent: &Tangent, previous: Option<&Increment>) -> f64 {
     tracer.strategy.constraint(&increment_along(&tracer.system, &tracer.state, tangent), previous).value
-}
-
-/// Weight of the factor in a mixed control: with it every step of associated flow is a
-/// monotone problem. Between weight × λ + ∂Π/∂λ and λ there must be a growing relation even with
-/// all points stuck, where ∂Π/∂λ may fall (a settlement pulls at its reaction).
-pub(super) fn mixed_weight(tracer: &mut Tracer) -> f64 {
-    let mut stuck = tracer.state.clone();
-    stuck.mode.fill(ContactMode::Stick);
-    let factor = stuck.factor;
-    let rate = tangent_at(&mut tracer.system, &tracer.state, &stuck, &Control::Factor(factor));
-    let work = rate.map_or(0.0, |rate| work_along(&tracer.system, &rate) * tracer.system.units().factor / rate.factor);
-    (-2.0 * work).max(work).max(1e-3)
 }

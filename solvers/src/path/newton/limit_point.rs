@@ -1,18 +1,15 @@
 //! Whether a limit point is one: no rate with a growing factor leaves it.
 
 use super::control::Control;
-use super::limit_point_test::{LimitPointTest, falling_rate, limit_point_test};
+use super::limit_point_test::{LimitPointTest, limit_point_test};
 use super::measure::{increment_along, increment_between, motion_size};
 use super::state::{State, Tangent};
 use super::step::solve_step;
-use super::tracer::{Peak, Tracer, moved};
+use super::tracer::{Tracer, moved};
 use crate::contact::mode::ContactMode;
 
 /// Branches with growing λ that are taken at one factor.
 const MOST_BRANCHES: u32 = 3;
-
-/// Share of a factor by which one above it differs from it.
-const SAME: f64 = 1e-9;
 
 /// Motions, in units, of the steps that are tried along a rate.
 const SHARES: [f64; 3] = [1e-1, 1e-3, 1e-5];
@@ -68,27 +65,6 @@ pub(super) fn rising_branch(tracer: &mut Tracer, state: &State, direction: f64) 
     Some(other)
 }
 
-/// The branch with falling λ from a limit point at which none rises, where friction is not associated: Newton's method
-/// may find elastic unloading, which is always a solution and never the way on. `None` where none was found, or it is not
-/// proven that none rises.
-pub(super) fn falling_branch(
-    tracer: &mut Tracer,
-    state: &State,
-    direction: f64,
-) -> Option<(Tangent, Vec<ContactMode>)> {
-    let proven = tracer.limit.unproven.is_none() && tracer.limit.proven == Some(state.factor);
-    if !tracer.system.may_dip() || !proven || !tracer.strategy.passes_limit_points() {
-        return None;
-    }
-    falling_rate(&mut tracer.system, state, direction)
-}
-
-/// Whether the load is above all limit points of the path so far, or there is none.
-pub(super) fn above_all(tracer: &Tracer, direction: f64) -> bool {
-    let above = |peak: &Peak| (tracer.state.factor - peak.factor) * direction > SAME * peak.factor.abs();
-    tracer.limit.peak.as_ref().is_none_or(|peak| tracer.system.may_dip() && above(peak))
-}
-
 /// Whether some step, however short, follows a rate with growing λ from a state.
 fn goes_on(tracer: &mut Tracer, state: &State, (rate, modes): &(Tangent, Vec<ContactMode>), direction: f64) -> bool {
     let before = tracer.state.clone();
@@ -105,12 +81,4 @@ fn goes_on(tracer: &mut Tracer, state: &State, (rate, modes): &(Tangent, Vec<Con
         let told = increment_along(&tracer.system, &start, rate).motion * share;
         moved.factor * direction > 0.0 && moved.motion <= FOLLOWS * told
     })
-}
-
-/// Why the path ends at a proven limit point, or beyond it.
-pub(super) fn not_followed(tracer: &Tracer, why: &str) -> String {
-    match &tracer.limit.peak {
-        None => format!("the path was not followed beyond it: {why}"),
-        Some(_) => format!("beyond it the path was followed to factor {} only: {why}", tracer.state.factor),
-    }
 }

@@ -16,8 +16,8 @@ use crate::rate::answer::{Budget, Continuation, answer};
 use crate::rate::arrival::{Arrival, ArrivalPoint};
 use crate::rate::branching::{RisingRate, rising_rate};
 use crate::rate::enumerate::enumerate_modes;
-use crate::rate::problem::{Rate, RateOutcome, RateProblem};
-use crate::rate::solve::{RateCounts, solve};
+use crate::rate::problem::{Rate, RateProblem};
+use crate::rate::solve::RateCounts;
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::law::FacetMode;
 use voussoir_core::linear::{Entries, SparseLu};
@@ -100,33 +100,6 @@ pub(super) fn all_rates(system: &mut StepSystem, state: &State) -> Option<Vec<(T
         (tangent_from(system, &x, state, &equations), modes_of(system, &active, rate.modes))
     };
     Some(rates.into_iter().map(tangent).collect())
-}
-
-/// A rate with λ falling from a state at which none grows, with its modes: one on which a point flows that has just
-/// arrived, the others as far as they may; mere unloading is none. `None` where there is none, or it was not found.
-pub(super) fn falling_rate(
-    system: &mut StepSystem,
-    state: &State,
-    direction: f64,
-) -> Option<(Tangent, Vec<ContactMode>)> {
-    let active = active_set(system, state, &[]);
-    system.count("factorisations", 1);
-    let equations = system.equations(state);
-    let responses = responses_of(system, &active, &equations, direction)?;
-    let mut problem = rate_problem(system, &active, &responses);
-    for (point, c) in problem.points.iter_mut().zip(&active.contacts) {
-        let opens = system.law(*c).is_some_and(|law| law.opens(state.mode[*c]));
-        point.hit = state.mode[*c] == ContactMode::Stick || opens;
-        point.guess = state.mode[*c];
-    }
-    let mut counts = RateCounts::default();
-    let outcome = solve(&problem, false, &mut counts);
-    drop(problem);
-    system.count("rate_combinations", counts.trials);
-    let RateOutcome::Falling(rate) = outcome else { return None };
-    let x = unknowns_of(&responses, &rate.gaps, rate.factor, direction);
-    let modes = modes_of(system, &active, rate.modes);
-    Some((tangent_from(system, &x, state, &equations), modes))
 }
 
 /// What continues a path after an event.

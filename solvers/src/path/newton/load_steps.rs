@@ -123,11 +123,8 @@ fn run<'a>(tracer: &mut Tracer<'a, '_>, problem: &'a PathProblem) {
         // Behind a peak a structure with finite displacements comes back to the load as another one:
         // it has snapped through.
         let snaps = tracer.system.finite();
-        if (snaps || tracer.system.may_dip())
-            && tracer.limit.peak.is_some()
-            && matches!(outcome, LoadStepEnding::Reached)
-        {
-            tracer.ending.status = if snaps { Status::Collapse } else { Status::LimitPoint };
+        if snaps && tracer.limit.peak.is_some() && matches!(outcome, LoadStepEnding::Reached) {
+            tracer.ending.status = Status::Collapse;
             outcome = LoadStepEnding::Ended;
         }
         let ends = problem.load_steps.get(index + 1).is_none_or(|next| next.stage != load_step.stage);

@@ -128,7 +128,6 @@ pub(super) fn note_trough(tracer: &mut Tracer, following: &Following) {
 pub(super) fn note_proven_peak(tracer: &mut Tracer, peak: Peak, direction: f64) {
     let (factor, displacement) = (peak.factor, peak.state.displacement);
     let greatest = |known: &Peak| (factor - known.factor) * direction > 0.0;
-    tracer.system.rules.oriented |= tracer.system.may_dip();
     if tracer.system.rules.oriented {
         let load_step = tracer.load_step;
         let near = |a: f64, b: f64, by: f64| (a - b).abs() <= by * b.abs();

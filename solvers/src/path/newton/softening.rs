@@ -76,7 +76,7 @@ pub(super) fn dissipating_sense(tracer: &mut Tracer, next: &State, rate: Tangent
 pub(super) fn forget_lower_peak(tracer: &mut Tracer, direction: f64) {
     let factor = tracer.state.factor;
     let lower = |peak: &Peak| (factor - peak.factor) * direction > 0.0;
-    if (tracer.system.may_dip() || !tracer.system.laws.responses.is_empty())
+    if !tracer.system.laws.responses.is_empty()
         && let Some(peak) = tracer.limit.peak.take_if(|peak| lower(peak))
     {
         tracer

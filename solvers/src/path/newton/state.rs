@@ -67,13 +67,3 @@ impl Tangent {
         }
     }
 }
-
-/// A state reached from nothing, all of it times a share.
-pub(super) fn in_proportion(state: &State, share: f64) -> State {
-    let mut state = state.clone();
-    state.force.iter_mut().flatten().for_each(|r| *r *= share);
-    state.motion.iter_mut().flatten().for_each(|q| *q *= share);
-    state.gap.iter_mut().flatten().for_each(|g| *g *= share);
-    state.factor *= share;
-    state
-}

@@ -1,18 +1,15 @@
-//! A step: Newton's method, then a line search, then the homotopy.
+//! A step: Newton's method, then a line search, then one change of mode at a time.
 
 use super::control::Control;
-use super::homotopy::by_homotopy;
 use super::iteration::iterate;
 use super::line_search::NOTHING;
 use super::state::State;
 use super::system::{StepFailure, StepSystem};
 use crate::optimise::line_search::LineSearch;
 
-/// Newton's method from a guess. Modes change all at once as long as their number falls, else
-/// one by one (block principal pivoting with its fallback: Júdice & Pires 1994, Computers & Ops.
-/// Res. 21), so that modes that flip for ever are seen. Where that fails, by a line search, then
-/// with one change at a time from the beginning; with small displacements and a given factor by
-/// pivoting, with associated flow by the caller's (a line search finds nothing there that it does not).
+/// Newton's method from a guess. Modes change all at once as long as their number falls, else one by one (block principal
+/// pivoting with its fallback: Júdice & Pires 1994, Computers & Ops. Res. 21), so that modes that flip without end are seen. If
+/// that fails, by a line search, then with one change at a time from the beginning.
 pub(super) fn solve_step(
     system: &mut StepSystem,
     start: &State,
@@ -23,22 +20,12 @@ pub(super) fn solve_step(
     if found.is_ok() || (!system.laws.responses.is_empty() && system.laws.polygons.is_empty()) {
         return found;
     }
-    if system.finite() || !system.piecewise_linear() {
-        if system.rules.line_search
-            && let Ok(found) = line_searched(system, start, guess.clone(), control)
-        {
-            return Ok(found);
-        }
-        return iterate(system, start, guess, control, 0, None);
+    if system.rules.line_search
+        && let Ok(found) = line_searched(system, start, guess.clone(), control)
+    {
+        return Ok(found);
     }
-    // Where flow is not associated pivoting may step over a limit point: from nothing only.
-    match control {
-        Control::Factor(factor) if system.monotone() || start.force.iter().flatten().all(|r| *r == 0.0) => {
-            by_homotopy(system, start, &State { factor: *factor, ..guess }, control)
-        }
-        _ if system.rules.line_search && !system.monotone() => line_searched(system, start, guess, control).or(found),
-        _ => found,
-    }
+    iterate(system, start, guess, control, 0, None)
 }
 
 /// Newton's method with all modes changed at once and a line search.

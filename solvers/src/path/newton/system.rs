@@ -181,11 +181,6 @@ impl<'a> StepSystem<'a> {
         self.laws.polygons.iter().all(|law| !law.is_non_associated())
     }
 
-    /// Whether the load may have several limit points with small displacements: friction that is not associated.
-    pub fn may_dip(&self) -> bool {
-        !self.finite() && self.piecewise_linear() && !self.joints_flow_associated()
-    }
-
     /// Whether with small displacements every law is one of facets.
     pub fn piecewise_linear(&self) -> bool {
         self.laws.responses.is_empty() && self.blocks.iter().all(Option::is_none)

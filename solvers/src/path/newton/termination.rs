@@ -2,9 +2,8 @@
 
 use super::control::Control;
 use super::cycle_detector::distance;
-use super::limit_point::{above_all, test_limit_point};
+use super::limit_point::test_limit_point;
 use super::measure::{increment_along, motion_size};
-use super::mechanism::find_mechanism;
 use super::peak::scaled_motion;
 use super::plastic_plateau::stands_still;
 use super::softening::{forget_lower_peak, softens_down};
@@ -114,13 +113,7 @@ pub(super) fn ends_in_ray(tracer: &mut Tracer, rate: &Tangent, direction: f64, t
         let r = rate.force[c].map(|r| r / force_unit);
         law.ray_violation(tracer.state.mode[c], r, gap) <= 1e-8
     });
-    // The modes may leave other motions than this one.
-    let other = if still && !goes_on { find_mechanism(&mut tracer.system, &tracer.state) } else { None };
-    if !goes_on && other.is_none() {
-        return false;
-    }
-    let rate = other.as_ref().unwrap_or(rate);
-    if !tractions_persist(&tracer.system, &tracer.state, rate) {
+    if !goes_on || !tractions_persist(&tracer.system, &tracer.state, rate) {
         return false;
     }
     forget_lower_peak(tracer, direction);
@@ -221,33 +214,21 @@ pub(super) fn stops(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -
     }
 }
 
-/// With small displacements: after the first limit point; where the load may dip, by default only where it has fallen to
-/// half, and not while it is above all limit points.
+/// The end of a path with small displacements beyond its limit point.
 fn stops_small(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -> bool {
     let (factor, displacement) = (tracer.state.factor, tracer.record.state.displacement);
     let Some(peak) = &tracer.limit.peak else { return false };
-    let (dips, above) = (tracer.system.may_dip(), above_all(tracer, direction));
-    let last = tracer.limit.proven_peaks.last().filter(|_| dips);
-    let beyond = (displacement - last.map_or(peak.state.displacement, |last| last.displacement)).abs();
-    let [stop_displacement, stop_factor] = tracer.settings.stop(load_step.stage);
-    let done = match (stop_displacement, stop_factor) {
-        (None, None) => {
+    let beyond = (displacement - peak.state.displacement).abs();
+    let done = match tracer.settings.stop(load_step.stage) {
+        [None, None] => {
             let (fallen, grown) = ((peak.factor - factor) * direction, (peak.factor - load_step.start).abs());
-            match dips {
-                true => fallen >= 0.5 * grown || (!above && beyond >= FURTHEST * tracer.system.problem.span),
-                false => fallen >= 0.1 * grown || beyond >= peak.state.displacement.abs(),
-            }
+            fallen >= 0.1 * grown || beyond >= peak.state.displacement.abs()
         }
-        (most, least) => {
+        [most, least] => {
             most.is_some_and(|most| beyond >= most) || least.is_some_and(|least| (factor - least) * direction <= 0.0)
         }
     };
-    if done && above {
-        let why = format!(
-            "still rising: {beyond} m after the last limit point the load is above all of them, at factor {factor}"
-        );
-        end_path(tracer, Status::Stalled, why);
-    } else if done {
+    if done {
         end_path(tracer, Status::LimitPoint, String::new());
     }
     done

@@ -2,10 +2,8 @@
 //! what has converged lies along the path.
 
 use super::control::Control;
-use super::control_row::work_along;
 use super::creeping::refuse_creeping;
 use super::following::{Following, per_tangent};
-use super::homotopy::by_homotopy;
 use super::inelastic::plastic_work;
 use super::measure::{increment_along, tangent_size};
 use super::softening::softening_step;
@@ -83,32 +81,22 @@ pub(super) fn plan(tracer: &mut Tracer, following: &mut Following) -> Option<Ste
     Some(StepPlan { per_tangent, share, step, reaches })
 }
 
-/// Tries a step: by its control, by the homotopy, by the factor, by gaps that soften.
+/// Tries a step: by its control, by the factor, by gaps that soften.
 pub(super) fn attempt(tracer: &mut Tracer, following: &Following, plan: &StepPlan) -> Result<Trial, StepFailure> {
     let (tangent, modes, reaches) = (&following.branch.tangent, &following.branch.modes, plan.reaches);
     let mut guess = moved_along(tracer, tangent, plan.step);
     if let Some(modes) = modes {
         guess.mode = modes.clone();
     }
-    let mut control = if reaches {
+    let control = if reaches {
         Control::Factor(following.target)
     } else {
         let strategy = tracer.strategy.clone();
         Control::Strategy { strategy, previous: following.previous, length: following.length }
     };
-    let (small, passes) = (!tracer.system.finite(), tracer.strategy.passes_limit_points());
+    let small = !tracer.system.finite();
     tracer.system.rules.line_search = small || following.length >= SEARCHED * following.limits.first;
-    let mut found = solve_step(&mut tracer.system, &tracer.state, guess.clone(), &control);
-    // Where flow is not associated the homotopy may step over a limit point: the last resort.
-    let last = passes && following.length < LAST * following.limits.first;
-    if found.is_err() && small && !reaches && (tracer.system.monotone() || last) {
-        if passes {
-            let weight = following.limits.mixed_weight;
-            let along = weight * tangent.factor / tracer.system.units().factor + work_along(&tracer.system, tangent);
-            control = Control::Mixed { weight, length: plan.step * along };
-        }
-        found = by_homotopy(&mut tracer.system, &tracer.state, &guess, &control);
-    }
+    let found = solve_step(&mut tracer.system, &tracer.state, guess.clone(), &control);
     let found = found.and_then(|(next, iterations)| {
         let back = following.tried.leads_back(&tracer.state, &next);
         if back || (modes.is_some() && next.mode == tracer.state.mode) {
@@ -122,6 +110,7 @@ pub(super) fn attempt(tracer: &mut Tracer, following: &Following, plan: &StepPla
         Err(failure) => failure,
     };
     // A step by arc length may go back; one by λ cannot.
+    let last = tracer.strategy.passes_limit_points() && following.length < LAST * following.limits.first;
     if small && !reaches && tangent.factor * following.direction > 0.0 && (modes.is_some() || last) {
         let control = Control::Factor(guess.factor);
         if let Ok((next, iterations)) = solve_step(&mut tracer.system, &tracer.state, guess, &control)
