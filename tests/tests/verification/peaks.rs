@@ -101,8 +101,9 @@ fn blocks(scene: &str, strategy: &str, stop: &str) -> f64 {
     let result = answered(&format!(
         "{scene}\n[solver]\n{solver}\n{stop}\ncontinuation = {{ strategy = \"{strategy}\", first_step = 0.05 }}\n"
     ));
-    assert_eq!(result.status, Status::Collapse, "{:?}", result.notes);
-    assert!(result.certificate.passed, "{:?}", result.certificate);
+    // A stage that asks for a factor ends at its first limit point.
+    let ended = matches!(result.status, Status::Collapse | Status::LimitPoint);
+    assert!(ended && result.certificate.passed, "{:?}: {:?}", result.status, result.notes);
     result.load_factor.expect("a load")
 }
 

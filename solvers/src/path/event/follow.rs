@@ -197,9 +197,7 @@ fn begin(follower: &mut Follower, load_step: usize) -> Run {
         LoadStepEnd::Factor(f) if f < present.start => -1.0,
         _ => 1.0,
     };
-    let mut load = Load::new(&trace.system, trace.problem, &present.loading);
-    load.wrench.iter_mut().flatten().for_each(|v| *v *= sense);
-    load.gap.iter_mut().flatten().for_each(|v| *v *= sense);
+    let load = Load::new(&trace.system, trace.problem, &present.loading).reversed_if(sense < 0.0);
     if let Some(factors) = &mut trace.factors.present {
         factors.forget_load();
     }

@@ -10,6 +10,7 @@ mod elastic_chain;
 mod energy;
 mod event_run;
 mod factorisation;
+mod first_modes;
 mod follow;
 mod force_method;
 mod joint_tree;
@@ -21,6 +22,7 @@ mod stability;
 mod trace;
 mod unique;
 
+pub(super) use self::first_modes::first_modes;
 pub(super) use self::follow::follow;
 use serde::{Deserialize, Serialize};
 use voussoir_core::path::{PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver};

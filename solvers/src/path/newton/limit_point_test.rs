@@ -8,10 +8,12 @@ use super::equations::Equations;
 use super::state::{State, Tangent};
 use super::system::StepSystem;
 use super::tangent::tangent_from;
+use super::twins::favoured;
 use crate::contact::active_point::ActivePoint;
 use crate::contact::facet::slack;
 use crate::contact::mode::ContactMode;
 use crate::linear::inner;
+use crate::path::energy::load_size;
 use crate::rate::answer::{Budget, Continuation, answer};
 use crate::rate::arrival::{Arrival, ArrivalPoint};
 use crate::rate::branching::{RisingRate, rising_rate};
@@ -22,8 +24,8 @@ use nalgebra::{DMatrix, DVector};
 use voussoir_core::law::FacetMode;
 use voussoir_core::linear::{Entries, SparseLu};
 
-/// Slack, relative to the greatest force, up to which a facet may yield in a rate.
-const ACTIVE: f64 = 3e-8;
+/// Slack, relative to the greatest force, up to which a facet may yield in a rate: that up to which a monitor is active.
+const ACTIVE: f64 = 1e-8;
 /// Multiplier of opening, relative to the unit of displacement, above which a point is open.
 const OPEN: f64 = 1e-9;
 /// Residual of a response, relative to what it is made of.
@@ -119,16 +121,26 @@ pub(super) enum AfterEvent {
     Unknown(String, bool),
 }
 
-/// What continues a path after an event at the points `hits`, of which some are `stopping`: the event is the end of their
-/// slip. `direction`: the sense in which the factor is to grow; `sense`: 1
-/// if it has grown up to the event, 0 if it stood still, −1 if it fell.
+/// The contact points of an event.
+#[derive(Debug, Default)]
+pub(super) struct EventPoints {
+    /// All of them.
+    pub all: Vec<usize>,
+    /// Those whose slip ends.
+    pub stopping: Vec<usize>,
+    /// Those that close.
+    pub closing: Vec<usize>,
+}
+
+/// What continues a path after an event. `direction`: the sense in which the factor is to grow; `sense`: 1 if it has grown
+/// up to the event, 0 if it stood still, −1 if it fell.
 pub(super) fn rate_after_event(
     system: &mut StepSystem,
     state: &State,
-    [hits, stopping]: [&[usize]; 2],
+    event: &EventPoints,
     (direction, sense): (f64, f64),
 ) -> AfterEvent {
-    let active = active_set(system, state, hits);
+    let active = active_set(system, state, &event.closing);
     system.count("factorisations", 1);
     let equations = system.equations(state);
     let Some(responses) = responses_of(system, &active, &equations, direction) else {
@@ -137,11 +149,12 @@ pub(super) fn rate_after_event(
     let mut problem = rate_problem(system, &active, &responses);
     let load = responses[2 * active.contacts.len()].iter().zip(&equations.factor);
     problem.load_flexibility = load.map(|(x, p)| x * p * direction).sum();
+    problem.settles = load_size(system.problem, system.loads.growing) == 0.0;
     problem.metric = Some(metric(system, &responses));
     let point = |c: &usize| ArrivalPoint {
         mode: state.mode[*c],
-        hit: hits.contains(c),
-        stops: stopping.contains(c),
+        hit: event.all.contains(c),
+        stops: event.stopping.contains(c),
         force: state.force[*c],
     };
     let arrival = Arrival { factor: sense, points: active.contacts.iter().map(point).collect() };
@@ -152,14 +165,18 @@ pub(super) fn rate_after_event(
     let none_rises = found.none_rises.is_some();
     match found.continuation {
         Continuation::Goes { rate, twins } => {
-            let x = unknowns_of(&responses, &rate.gaps, rate.factor, direction);
-            let modes = modes_of(system, &active, rate.modes);
-            AfterEvent::Goes {
-                rate: tangent_from(system, &x, state, &equations),
-                modes,
-                twins: twins.len(),
-                none_rises,
-            }
+            let others = twins.len();
+            let tangent = |rate: &Rate| {
+                let x = unknowns_of(&responses, &rate.gaps, rate.factor, direction);
+                tangent_from(system, &x, state, &equations)
+            };
+            let mut rates: Vec<Rate> = std::iter::once(rate).chain(twins).collect();
+            let mut tangents: Vec<Tangent> = rates.iter().map(tangent).collect();
+            let motions: Vec<&[[f64; 3]]> = tangents.iter().map(|tangent| &tangent.motion[..]).collect();
+            let chosen = favoured(system.problem, system.loads.earlier.len(), &motions);
+            let (rate, modes) = (tangents.swap_remove(chosen), rates.swap_remove(chosen).modes);
+            let modes = modes_of(system, &active, modes);
+            AfterEvent::Goes { rate, modes, twins: others, none_rises }
         }
         Continuation::NoneContinues(_) => AfterEvent::Nothing,
         Continuation::Open(why) => AfterEvent::Unknown(why, none_rises),
@@ -198,29 +215,43 @@ fn modes_of(system: &StepSystem, active: &ActiveSet, modes: Vec<ContactMode>) ->
     all
 }
 
-/// Points that may change their modes: those with a facet without slack or at the tip of opening, and `hits`.
-fn active_set(system: &StepSystem, state: &State, hits: &[usize]) -> ActiveSet {
-    let largest = state.force.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max);
+/// Points that may change their modes: those with a facet without slack or at the tip of opening, and those that close.
+fn active_set(system: &StepSystem, state: &State, closing: &[usize]) -> ActiveSet {
     let mut active = ActiveSet { contacts: Vec::new(), facets: Vec::new(), modes: state.mode.clone() };
+    let largest = largest_force(state);
     for c in 0..active.modes.len() {
-        let (Some(law), area, r) = (system.law(c), system.problem.contacts[c].area, state.force[c]) else { continue };
-        let (_, opening) = law.irreversible(state.mode[c], system.step_gap(state, state, c));
-        let is_open = law.opens(state.mode[c]) && opening > OPEN * system.units().displacement;
-        let opens = |i: &usize| law.facets[*i].mode == FacetMode::Opening;
-        let strength = (0..law.facets.len()).find(|i| opens(i) && law.facets[*i].bound > 0.0);
-        if is_open && strength.is_none() && !hits.contains(&c) {
-            continue;
-        }
+        let Some((facets, open)) = active_facets(system, state, c, (largest, closing.contains(&c))) else { continue };
         active.modes[c] = ContactMode::Stick;
-        let open = strength.filter(|_| is_open && !hits.contains(&c));
-        let tight = |i: &usize| slack(&law.facets[*i], r, area) <= ACTIVE * largest;
-        let facets: Vec<usize> = (0..law.facets.len()).filter(tight).collect();
         if !facets.is_empty() || open.is_some() {
             active.contacts.push(c);
             active.facets.push((facets, open));
         }
     }
     active
+}
+
+pub(super) fn largest_force(state: &State) -> f64 {
+    state.force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()))
+}
+
+/// The facets of a contact point without slack, and its opening facet if it is open and may carry a force. `None` if it
+/// stays open without one, or has no facets.
+pub(super) fn active_facets(
+    system: &StepSystem,
+    state: &State,
+    contact: usize,
+    (largest, closes): (f64, bool),
+) -> Option<(Vec<usize>, Option<usize>)> {
+    let law = system.law(contact)?;
+    let (area, r) = (system.problem.contacts[contact].area, state.force[contact]);
+    let (_, opening) = law.irreversible(state.mode[contact], system.step_gap(state, state, contact));
+    let is_open = !closes && law.opens(state.mode[contact]) && opening > OPEN * system.units().displacement;
+    if is_open && state.mode[contact] == ContactMode::Open {
+        return None;
+    }
+    let open = (0..law.facets.len()).find(|i| is_open && law.facets[*i].mode == FacetMode::Opening);
+    let tight = |i: &usize| slack(&law.facets[*i], r, area) <= ACTIVE * largest;
+    Some(((0..law.facets.len()).filter(tight).collect(), open))
 }
 
 /// Rates of all unknowns but λ by a unit gap rate in each of the two directions of every point of the active set

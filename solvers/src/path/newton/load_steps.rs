@@ -17,49 +17,11 @@ use std::sync::Arc;
 use voussoir_core::certificate::flow_residual;
 use voussoir_core::limit::Status;
 use voussoir_core::path::{
-    LoadStep, LoadStepEnd, PathAnswer, PathObserver, PathProblem, PathSettings, PathState, StageStability,
+    LoadStep, LoadStepEnd, PathAnswer, PathObserver, PathProblem, PathSettings, StageStability,
 };
 
-/// Follows all load steps: piece by piece if the path has pieces, and by steps if it has none or is lost on one of them.
+/// Follows all load steps.
 pub(super) fn trace(problem: &PathProblem, settings: &PathSettings, observer: &mut dyn PathObserver) -> PathAnswer {
-    if let Some(answer) = by_pieces(problem, settings, observer) {
-        return answer;
-    }
-    traced(problem, settings, observer, false)
-}
-
-/// The states of a path that is not yet known to be followed to its end.
-#[derive(Default)]
-struct Kept(Vec<PathState>);
-
-impl PathObserver for Kept {
-    fn state(&mut self, _problem: &PathProblem, state: &PathState) -> bool {
-        self.0.push(state.clone());
-        true
-    }
-}
-
-/// The answer of a path that is followed piece by piece to its end. `None` if it has no pieces, or is lost.
-fn by_pieces(problem: &PathProblem, settings: &PathSettings, observer: &mut dyn PathObserver) -> Option<PathAnswer> {
-    let system = StepSystem::new(problem, settings.finite).ok()?;
-    if !system.follows_pieces() {
-        return None;
-    }
-    let mut kept = Kept::default();
-    let answer = traced(problem, settings, &mut kept, true);
-    if answer.status == Status::Stalled {
-        return None;
-    }
-    let goes_on = kept.0.iter().all(|state| observer.state(problem, state));
-    Some(if goes_on { answer } else { stalled(problem, "stopped by the observer".into()) })
-}
-
-fn traced(
-    problem: &PathProblem,
-    settings: &PathSettings,
-    observer: &mut dyn PathObserver,
-    by_pieces: bool,
-) -> PathAnswer {
     let system = match StepSystem::new(problem, settings.finite) {
         Ok(system) => system,
         Err(why) => return stalled(problem, why),
@@ -69,11 +31,11 @@ fn traced(
     let energy = EnergyBalance::default();
     let seen = recorded(&energy, &system, 0, &state, &gradient);
     let work = work_state(&system, &state, &gradient);
+    let in_pieces = system.follows_pieces();
     let mut tracer = Tracer {
         system,
         settings,
-        by_pieces,
-        in_pieces: by_pieces,
+        in_pieces,
         strategy: Arc::new(ArcLength::default()),
         observer,
         load_step: 0,
@@ -101,8 +63,6 @@ fn run<'a>(tracer: &mut Tracer<'a, '_>, problem: &'a PathProblem) {
     let mut earlier = Vec::new();
     for (index, load_step) in problem.load_steps.iter().enumerate() {
         tracer.load_step = index;
-        // Settled structures leave symmetric states, which the stepping of their supports finds.
-        tracer.in_pieces = tracer.by_pieces && load_size(problem, &load_step.loading) > 0.0;
         tracer.state.factor = load_step.start;
         tracer.strategy =
             tracer.settings.strategy(load_step.stage).cloned().unwrap_or_else(|| Arc::new(ArcLength::default()));

@@ -50,6 +50,7 @@ mod termination;
 mod tracer;
 mod tractions;
 mod trial;
+mod twins;
 
 use self::monitors::resolve;
 use super::event::{self, is_piecewise_linear};

@@ -7,9 +7,10 @@ use super::recorded::{energy_after, recorded, work_state};
 use super::relaxation::{Relaxation, relaxations};
 use super::state::State;
 use super::tracer::{Tracer, commit};
-use crate::path::energy::{EnergyBalance, load_displacement};
+use super::twins::favoured;
+use crate::path::energy::EnergyBalance;
 use crate::path::stability::SecondOrderWork;
-use voussoir_core::path::{Branching, Loading};
+use voussoir_core::path::Branching;
 
 /// Difference of two falls of energy, relative to them, with which branches are twins.
 const TWINS: f64 = 1e-3;
@@ -78,19 +79,7 @@ fn choose(tracer: &Tracer, mut found: Vec<(f64, Relaxation)>) -> Option<(f64, Re
     if one.side * other.side > 0.0 {
         return Some((a, one, false));
     }
-    let pairs = one.next.motion.iter().flatten().zip(other.next.motion.iter().flatten());
-    let apart = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    let (fall, problem) = (a, tracer.system.problem);
-    let works = |loading: &Loading, r: &Relaxation| {
-        let rigid = |body, point| tracer.system.geometry.rigid(body, point, &r.next.motion);
-        load_displacement(problem, (loading, 0.0), &r.next.motion, rigid)
-    };
-    for later in &problem.load_steps[tracer.load_step..] {
-        let [a, b] = [works(&later.loading, &one), works(&later.loading, &other)];
-        if (a - b).abs() > 1e-3 * apart {
-            return Some(if a > b { (fall, one, true) } else { (fall, other, true) });
-        }
-    }
-    let right = |r: &Relaxation| -> f64 { problem.bodies.iter().zip(&r.next.motion).map(|(b, q)| b.mass * q[0]).sum() };
-    Some((fall, if right(&one) >= right(&other) { one } else { other }, true))
+    let motions = [&one.next.motion[..], &other.next.motion[..]];
+    let chosen = favoured(tracer.system.problem, tracer.load_step, &motions);
+    Some((a, if chosen == 0 { one } else { other }, true))
 }

@@ -96,9 +96,7 @@ pub(super) struct PostPeak {
 pub(super) struct Tracer<'a, 'o> {
     pub system: StepSystem<'a>,
     pub settings: &'a PathSettings,
-    /// Whether pieces are followed from event to event.
-    pub by_pieces: bool,
-    /// Whether the present load step is followed so.
+    /// True if pieces are followed from event to event.
     pub in_pieces: bool,
     pub strategy: Arc<dyn Continuation>,
     pub observer: &'o mut dyn PathObserver,

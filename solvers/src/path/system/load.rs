@@ -37,4 +37,13 @@ impl Load {
         let settles = loading.settlements.iter().any(|(_, motion)| *motion != [0.0; 3]);
         Load { wrench, gap, opens, settles, size }
     }
+
+    /// The same loading, or the opposite one.
+    pub fn reversed_if(mut self, reversed: bool) -> Self {
+        if reversed {
+            self.wrench.iter_mut().flatten().for_each(|v| *v = -*v);
+            self.gap.iter_mut().flatten().for_each(|v| *v = -*v);
+        }
+        self
+    }
 }

@@ -24,6 +24,8 @@ const SAMPLES: usize = 16;
 const MOST_TRIALS: usize = 48;
 /// Width of a bracket, relative to the step, at which an event is located whatever its monitor reads.
 const NARROW: f64 = 1e-13;
+/// Change of the factor in a step, relative to it, below which it is not looked at.
+const FLAT: f64 = 1e-7;
 /// Rate of the factor, relative to that at the start, at which it turns.
 const TURNS: f64 = 1e-8;
 
@@ -35,6 +37,9 @@ pub(super) struct StepEnd {
     pub length: f64,
     /// Distance from the predictor, relative to the length.
     pub error: f64,
+    /// Part of the change of the factor that its rates at both ends do not explain, relative to what they would give.
+    /// Without it a factor that falls, rises and falls again within the step would not be noticed.
+    pub unexplained: f64,
 }
 
 /// How a step ends.
@@ -122,12 +127,21 @@ impl Step<'_, '_> {
         let moved = scaled_row(self.system, &step);
         let away: f64 = moved.iter().zip(self.piece.row.iter()).map(|(x, t)| (x - length * t).powi(2)).sum();
         let error = away.sqrt() / length.abs().max(1e-300);
+        let unexplained = self.unexplained(&state, &rate, length);
         let readings = self.readings(&state, &rate);
-        Some(Trial { end: StepEnd { state, rate, length, error }, readings })
+        Some(Trial { end: StepEnd { state, rate, length, error, unexplained }, readings })
     }
 }
 
 impl Step<'_, '_> {
+    /// Error of the trapezoidal rule for the factor.
+    fn unexplained(&self, end: &State, rate: &Tangent, length: f64) -> f64 {
+        let [before, after] = [self.piece.tangent.factor, rate.factor].map(|slope| slope * length);
+        let gained = end.factor - self.start.factor;
+        let size = before.abs().max(after.abs()).max(FLAT * end.factor.abs().max(self.system.units().factor));
+        (gained - 0.5 * (before + after)).abs() / size
+    }
+
     /// The state at the target, if a step of a length reaches it by its rate and all modes hold there.
     fn reaching_target(&mut self, low: &StepEnd, length: f64) -> Option<StepEnd> {
         let (target, _) = self.watched.target?;
@@ -149,7 +163,7 @@ fn differences(after: &[[f64; 3]], before: &[[f64; 3]]) -> Vec<[f64; 3]> {
 
 /// The state at a length along a piece from one of its states, whatever its monitors read.
 pub(super) fn state_at(system: &mut StepSystem, start: &State, piece: &Piece, length: f64) -> Option<StepEnd> {
-    let low = StepEnd { state: start.clone(), rate: piece.tangent.clone(), length: 0.0, error: 0.0 };
+    let low = StepEnd { state: start.clone(), rate: piece.tangent.clone(), length: 0.0, error: 0.0, unexplained: 0.0 };
     let mut step = Step { system, start, piece, watched: Watched { sense: None, target: None } };
     step.trial(&low, length).map(|trial| trial.end)
 }
@@ -158,7 +172,7 @@ pub(super) fn state_at(system: &mut StepSystem, start: &State, piece: &Piece, le
 pub(super) fn advance(system: &mut StepSystem, start: &State, piece: &Piece, length: f64, watched: Watched) -> Advance {
     let mut step = Step { system, start, piece, watched };
     let readings = step.readings(start, &piece.tangent);
-    let end = StepEnd { state: start.clone(), rate: piece.tangent.clone(), length: 0.0, error: 0.0 };
+    let end = StepEnd { state: start.clone(), rate: piece.tangent.clone(), length: 0.0, error: 0.0, unexplained: 0.0 };
     let low = Trial { end, readings };
     let length = length.min(BEYOND * first_crossing(&low.readings));
     if let Some(end) = step.reaching_target(&low.end, length) {

@@ -2,25 +2,23 @@
 
 use super::super::control::Control;
 use super::super::limit_point_test::{LimitPointTest, limit_point_test};
+use super::super::state::State;
 use super::super::step::solve_step;
 use super::super::tangent::tangent_at;
 use super::super::tracer::{LoadStepEnding, Tracer, commit, end_path};
 use super::piece::Piece;
 use super::switch::{Start, is_admissible};
+use crate::contact::mode::ContactMode;
+use crate::path::event::first_modes;
 use voussoir_core::limit::Status;
 
-/// Load of the first state of all, relative to the unit of the factor. From nothing a load has no scale: what slides or opens
-/// first does so under any load.
-const FROM_NOTHING: f64 = 0.05;
+/// Load, relative to the unit of the factor, whose state has the modes with which the path begins from nothing.
+const SMALL: f64 = 0.05;
 /// Shares of the load step at which a state is looked for if no rate has been found.
 const AHEAD: [f64; 3] = [1e-6, 1e-4, 1e-2];
 
 /// The first piece, or how the load step ends at its start.
 pub(super) fn begin(tracer: &mut Tracer, target: f64, direction: f64) -> Result<Piece, LoadStepEnding> {
-    if tracer.state.force.iter().flatten().all(|r| *r == 0.0) && !from_nothing(tracer, target, direction) {
-        let why = format!("no state was found under the first load; the factor is {}", tracer.state.factor);
-        return Err(end_path(tracer, Status::Stalled, why));
-    }
     match first_rate(tracer, target, direction) {
         Ok((rate, modes)) => {
             let piece = Piece::new(&tracer.system, &modes, &rate);
@@ -31,30 +29,43 @@ pub(super) fn begin(tracer: &mut Tracer, target: f64, direction: f64) -> Result<
     }
 }
 
-/// Takes a state under a small load. Whether there is one.
-fn from_nothing(tracer: &mut Tracer, target: f64, direction: f64) -> bool {
-    let unit = tracer.system.units().factor;
-    let most = (target - tracer.state.factor).abs() / 16.0;
-    for k in 0..6 {
-        let length = (FROM_NOTHING * unit * 10f64.powi(-k)).min(most);
-        let control = Control::Factor(tracer.state.factor + direction * length);
-        let start = tracer.state.clone();
-        if let Ok((state, _)) = solve_step(&mut tracer.system, &start, start.clone(), &control) {
-            return commit(tracer, state);
-        }
+/// The rate from a state without forces. Its modes are those of a state under a small load: Newton's method keeps the
+/// symmetry of a scene, without which friction that is not associated may have other solutions. If that finds none, the rate
+/// problem of the first piece is solved. If joints are open at first no such rate exists: the path begins at the small load.
+fn rate_from_nothing(tracer: &mut Tracer, target: f64, direction: f64) -> Result<Start, String> {
+    let start = tracer.state.clone();
+    let length = SMALL * tracer.system.units().factor.min((target - start.factor).abs());
+    let control = Control::Factor(start.factor + direction * length);
+    let near = solve_step(&mut tracer.system, &start, start.clone(), &control).ok().map(|(state, _)| state);
+    if start.gap.iter().any(|gap| gap[0] > 0.0) {
+        let closed = near.is_some_and(|state| commit(tracer, state));
+        let modes = tracer.state.mode.clone();
+        let found = closed.then(|| rate_in(tracer, modes, target, direction)).flatten();
+        return found.ok_or_else(|| "joints are open, and no state in which they carry it was found".into());
     }
-    false
+    if let Some(found) = near.and_then(|state| rate_in(tracer, state.mode, target, direction)) {
+        return Ok(found);
+    }
+    let modes = first_modes(tracer.system.problem, tracer.settings, tracer.load_step, direction)?;
+    rate_in(tracer, modes, target, direction).ok_or_else(|| "the modes that were found have no rate".into())
+}
+
+/// The rate at the present state in some modes, if they admit it.
+fn rate_in(tracer: &mut Tracer, modes: Vec<ContactMode>, target: f64, direction: f64) -> Option<Start> {
+    let state = State { mode: modes, ..tracer.state.clone() };
+    let rate = tangent_at(&mut tracer.system, &state, &state, &Control::Factor(target))?.scaled(direction);
+    is_admissible(&tracer.system, &state, &state.mode, &rate).then_some((rate, state.mode))
 }
 
 fn first_rate(tracer: &mut Tracer, target: f64, direction: f64) -> Result<Start, (Status, String)> {
+    if tracer.state.force.iter().flatten().all(|r| *r == 0.0) {
+        let found = rate_from_nothing(tracer, target, direction);
+        return found.map_err(|why| (Status::Stalled, format!("no rate was found under the first load: {why}")));
+    }
     let state = tracer.state.clone();
     let factor = state.factor;
-    let control = Control::Factor(target);
-    if let Some(rate) = tangent_at(&mut tracer.system, &state, &state, &control) {
-        let rate = rate.scaled(direction);
-        if is_admissible(&tracer.system, &state, &state.mode, &rate) {
-            return Ok((rate, state.mode));
-        }
+    if let Some(found) = rate_in(tracer, state.mode.clone(), target, direction) {
+        return Ok(found);
     }
     tracer.system.count("rate_problems", 1);
     let unknown = match limit_point_test(&mut tracer.system, &state, direction) {
@@ -69,12 +80,8 @@ fn first_rate(tracer: &mut Tracer, target: f64, direction: f64) -> Result<Start,
         let ahead =
             Control::Factor(factor + share * direction * (target - factor).abs().min(tracer.system.units().factor));
         let Ok((next, _)) = solve_step(&mut tracer.system, &state, state.clone(), &ahead) else { continue };
-        let mut turned = state.clone();
-        turned.mode.clone_from(&next.mode);
-        let Some(rate) = tangent_at(&mut tracer.system, &state, &turned, &control) else { continue };
-        let rate = rate.scaled(direction);
-        if is_admissible(&tracer.system, &state, &next.mode, &rate) {
-            return Ok((rate, next.mode));
+        if let Some(found) = rate_in(tracer, next.mode, target, direction) {
+            return Ok(found);
         }
     }
     Err((

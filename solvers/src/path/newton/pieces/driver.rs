@@ -30,6 +30,8 @@ const MOST_ITERATIONS: u64 = 20_000;
 const WANTED_ERROR: f64 = 0.02;
 /// The same above which the step is repeated.
 const MOST_ERROR: f64 = 0.1;
+/// Share of the change of the factor in a step that its rates may leave unexplained.
+const MOST_UNEXPLAINED: f64 = 0.1;
 /// Length of a step, relative to that wanted, from which on its error tells how long the next one may be.
 const TELLING: f64 = 0.1;
 /// Length, relative to the first step, below which there is no step.
@@ -37,7 +39,7 @@ const SHORTEST: f64 = 1e-10;
 /// Pieces of next to no length one after the other at which the path is lost.
 const MOST_SHORT_PIECES: u32 = 50;
 /// Rate of the factor, in units, relative to that of motions, at which it stands still.
-const STILL: f64 = 1e-10;
+const STILL: f64 = 1e-13;
 /// Width, relative to a step, of the bracket of the first unstable state.
 const PLACED: f64 = 1e-9;
 /// Share of a settlement by which it goes on beyond a limit point from which it snaps.
@@ -148,6 +150,7 @@ impl<'d> Run<'d> {
         let u = tracer.system.units();
         let most = match tracer.strategy.largest_step() {
             step if step.is_finite() => step,
+            // Friction's flow turns with the blocks: its error over a path is not that of a single step.
             _ => LARGEST_FINITE_STEP,
         };
         most * u.length / u.displacement
@@ -193,6 +196,9 @@ impl<'d> Run<'d> {
         if end.error > MOST_ERROR && end.length > 1e-6 * self.first {
             return Err(self.shorten(tracer, end.length * (WANTED_ERROR / end.error).clamp(0.1, 0.5)));
         }
+        if end.unexplained > MOST_UNEXPLAINED && end.length > 1e-6 * self.first {
+            return Err(self.shorten(tracer, 0.5 * end.length));
+        }
         let energy = step_energy(tracer, &end.state);
         if !energy.holds && end.length > 1e-3 * self.first {
             return Err(self.shorten(tracer, end.length * energy.growth.clamp(0.25, 0.7)));
@@ -201,7 +207,9 @@ impl<'d> Run<'d> {
         if end.length >= TELLING * self.length {
             let by_error = (WANTED_ERROR / end.error.max(1e-300)).max(0.3) * end.length;
             let by_energy = energy.growth.max(0.25) * end.length;
-            self.length = by_error.min(by_energy).min(2.0 * self.length.max(end.length));
+            // The error is of the second order in the length.
+            let by_factor = (0.5 * MOST_UNEXPLAINED / end.unexplained.max(1e-300)).sqrt().max(0.5) * end.length;
+            self.length = by_error.min(by_energy).min(by_factor).min(2.0 * self.length.max(end.length));
         }
         let Some(piece) = self.piece.turned(&tracer.system, &end.rate) else {
             return Err(self.shorten(tracer, 0.3 * end.length));
@@ -301,6 +309,11 @@ impl<'d> Run<'d> {
             return self.snap(tracer);
         }
         note_peak(tracer, &self.piece.tangent, self.direction);
+        if matches!(self.load_step.end, LoadStepEnd::Factor(_)) {
+            tracer.ending.limit_point_end = Some(LimitPointEnd::Target);
+            let why = format!("the load factor {} is a limit point below what its stage asks for", tracer.state.factor);
+            return Some(end_path(tracer, Status::LimitPoint, why));
+        }
         if !tracer.strategy.passes_limit_points() || tracer.settings.ends_at_first_limit_point(self.load_step.stage) {
             return Some(end_path(tracer, Status::LimitPoint, String::new()));
         }

@@ -1,7 +1,7 @@
 //! Which modes follow at an event: the rate problem of the points whose modes end.
 
 use super::super::control_row::add_weighted_gaps;
-use super::super::limit_point_test::{AfterEvent, rate_after_event};
+use super::super::limit_point_test::{AfterEvent, EventPoints, active_facets, largest_force, rate_after_event};
 use super::super::nearby::Accuracy;
 use super::super::state::{State, Tangent};
 use super::super::system::StepSystem;
@@ -9,14 +9,8 @@ use super::super::tangent::tangent_of_modes;
 use super::monitors::{Monitor, Monitors, What};
 use super::piece::Piece;
 use crate::contact::active_point::ActivePoint;
-use crate::contact::facet::slack;
 use crate::contact::mode::ContactMode;
 use voussoir_core::law::FacetMode;
-
-/// Slack, relative to the greatest force, with which a facet takes part in an event.
-const ACTIVE: f64 = 3e-8;
-/// Combinations of the modes of the points of an event that are tried one by one.
-const MOST_COMBINATIONS: usize = 100;
 
 /// A rate with its modes.
 pub(super) type Start = (Tangent, Vec<ContactMode>);
@@ -36,23 +30,15 @@ pub(super) enum Following {
     Nothing { why: String, none_rises: bool, proved: bool },
 }
 
-/// The modes that a point may take.
-fn candidates(system: &StepSystem, state: &State, contact: usize) -> Vec<ContactMode> {
+/// The modes that a point of an event may take.
+fn candidates(system: &StepSystem, state: &State, contact: usize, closes: bool) -> Vec<ContactMode> {
     let Some(law) = system.law(contact) else { return Vec::new() };
-    let largest = state.force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
-    let area = system.problem.contacts[contact].area;
-    let tight = |f: &usize| slack(&law.facets[*f], state.force[contact], area) <= ACTIVE * largest;
-    let active: Vec<usize> = (0..law.facets.len()).filter(tight).collect();
-    let apex = ActivePoint::is_apex(&law.facets, &active);
-    let point = ActivePoint {
-        facets: &law.facets,
-        active,
-        open: None,
-        apex,
-        guess: ContactMode::Stick,
-        hit: true,
-        stiffness: 1.0,
+    let Some((active, open)) = active_facets(system, state, contact, (largest_force(state), closes)) else {
+        return Vec::new();
     };
+    let apex = open.is_none() && ActivePoint::is_apex(&law.facets, &active);
+    let point =
+        ActivePoint { facets: &law.facets, active, open, apex, guess: ContactMode::Stick, hit: true, stiffness: 1.0 };
     point.candidates()
 }
 
@@ -124,24 +110,15 @@ pub(super) fn is_admissible(system: &StepSystem, state: &State, modes: &[Contact
     !monitors.read(system, &turned, rate).iter().any(|reading| reading.leaves())
 }
 
-/// The rates that enter new modes at the points of an event, all others as they are.
+/// The rates with which the one point of an event enters a new mode, all others as they are.
 fn crossings(system: &mut StepSystem, state: &State, piece: &Piece, hits: &[Monitor]) -> Vec<Start> {
-    let mut contacts: Vec<usize> = hits.iter().map(|m| m.contact).collect();
-    contacts.sort_unstable();
-    contacts.dedup();
-    let options: Vec<Vec<ContactMode>> = contacts.iter().map(|c| candidates(system, state, *c)).collect();
-    let count = options.iter().fold(1usize, |n, o| n.saturating_mul(o.len()));
+    let contact = hits[0].contact;
+    let closes = hits.iter().any(|hit| hit.what == What::Opening);
     let mut found: Vec<Start> = Vec::new();
-    if count == 0 || count > MOST_COMBINATIONS {
-        return found;
-    }
-    for mut number in 0..count {
+    for mode in candidates(system, state, contact, closes) {
         let mut modes = state.mode.clone();
-        for (c, own) in contacts.iter().zip(&options) {
-            modes[*c] = normalised(system, *c, own[number % own.len()]);
-            number /= own.len();
-        }
-        if modes == state.mode {
+        modes[contact] = normalised(system, contact, mode);
+        if modes[contact] == state.mode[contact] {
             continue;
         }
         if let Some(rate) = entering_rate(system, state, piece, hits, &modes)
@@ -151,6 +128,21 @@ fn crossings(system: &mut StepSystem, state: &State, piece: &Piece, hits: &[Moni
         }
     }
     found
+}
+
+/// The contact points of monitors.
+fn event_points(hits: &[Monitor]) -> EventPoints {
+    let of = |belongs: &dyn Fn(What) -> bool| {
+        let mut contacts: Vec<usize> = hits.iter().filter(|hit| belongs(hit.what)).map(|hit| hit.contact).collect();
+        contacts.sort_unstable();
+        contacts.dedup();
+        contacts
+    };
+    EventPoints {
+        all: of(&|_| true),
+        stopping: of(&|what| matches!(what, What::Flow(_))),
+        closing: of(&|what| what == What::Opening),
+    }
 }
 
 /// A corner has one mode, whichever two of its facets flow.
@@ -183,13 +175,8 @@ pub(super) fn after_event(
         return leading(system, crossing.remove(0), 0, None);
     }
     system.count("rate_problems", 1);
-    let mut contacts: Vec<usize> = hits.iter().map(|m| m.contact).collect();
-    contacts.sort_unstable();
-    contacts.dedup();
-    let flows = hits.iter().filter(|m| matches!(m.what, What::Flow(_)));
-    let stopping: Vec<usize> = flows.map(|m| m.contact).collect();
     let sense = if rises { 1.0 } else { -1.0 };
-    match rate_after_event(system, state, [&contacts, &stopping], (direction, sense)) {
+    match rate_after_event(system, state, &event_points(hits), (direction, sense)) {
         AfterEvent::Goes { rate, modes, twins, none_rises } => {
             let open = (!none_rises).then(|| "it is not decided whether a rate has a growing factor".to_string());
             leading(system, (rate, modes), twins, open)

@@ -1,0 +1,40 @@
+//! The modes with which a structure begins to move from nothing.
+//!
+//! Without forces nothing has turned yet, so that the rates with small and with finite displacements are the same: the rate
+//! problem of the first piece, with all contact points in its active set.
+
+use super::direction::{Next, next_direction};
+use super::trace::Trace;
+use crate::contact::mode::ContactMode;
+use crate::path::system::Load;
+use voussoir_core::path::{PathObserver, PathProblem, PathSettings, PathState};
+
+struct Nobody;
+
+impl PathObserver for Nobody {
+    fn state(&mut self, _problem: &PathProblem, _state: &PathState) -> bool {
+        true
+    }
+}
+
+/// Modes of all contact points just after a load step has begun at a state without forces, with its factor going in the
+/// sense `sense` (1 or −1).
+///
+/// # Errors
+/// The reason why no such modes are found.
+pub fn first_modes(
+    problem: &PathProblem,
+    settings: &PathSettings,
+    load_step: usize,
+    sense: f64,
+) -> Result<Vec<ContactMode>, String> {
+    let mut nobody = Nobody;
+    let mut trace = Trace::new(problem, settings, &mut nobody);
+    trace.state.load_step = load_step;
+    let load = Load::new(&trace.system, problem, &problem.load_steps[load_step].loading).reversed_if(sense < 0.0);
+    match next_direction(&mut trace, &load) {
+        Next::Go(_) => Ok(trace.state.points.into_iter().map(|point| point.mode).collect()),
+        Next::Falling(_) | Next::Nothing | Next::NoneRises => Err("no rate of equilibrium leads on".into()),
+        Next::Lost(why) => Err(why),
+    }
+}

@@ -1,0 +1,28 @@
+//! Which of several twins is followed: continuations that neither energy nor dissipation tells apart.
+//!
+//! Numbers of blocks and rounding must not decide. The loads of the present and of later stages do more work on one twin
+//! than on another, or the blocks lean to the right on it.
+
+use voussoir_core::path::PathProblem;
+
+/// Difference of works, relative to the sum of what they are made of, up to which they are the same.
+const SAME: f64 = 1e-6;
+
+/// The number of the motion that is followed. `load_step`: the present one.
+pub(super) fn favoured(problem: &PathProblem, load_step: usize, motions: &[&[[f64; 3]]]) -> usize {
+    let mut left: Vec<usize> = (0..motions.len()).collect();
+    let loads = problem.load_steps[load_step..].iter().map(|later| problem.wrenches(&later.loading));
+    let to_the_right = problem.bodies.iter().map(|body| [body.mass, 0.0, 0.0]).collect();
+    for load in loads.chain(std::iter::once(to_the_right)) {
+        let terms = |k: usize| load.iter().flatten().zip(motions[k].iter().flatten()).map(|(w, q)| w * q);
+        let works: Vec<f64> = left.iter().map(|k| terms(*k).sum()).collect();
+        let size = left.iter().map(|k| terms(*k).map(f64::abs).sum()).fold(0.0, f64::max);
+        let most = works.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let mut works = works.into_iter();
+        left.retain(|_| works.next().is_some_and(|work| most - work <= SAME * size));
+        if left.len() == 1 {
+            break;
+        }
+    }
+    left[0]
+}
