@@ -1,22 +1,20 @@
 //! What follows a step that did not converge: another branch, a shorter step, or the end of the path.
 
-use super::branch_switching::{branch_beyond_fold, yielding_blocks_branch};
-use super::creeping::CREEPS;
+use super::branch_switching::{yielding_blocks_branch, yielding_branch};
 use super::following::{Branch, Following};
 use super::limit_point::rising_branch;
-use super::peak::{PLACED, note_peak};
+use super::peak::note_peak;
 use super::state::Tangent;
 use super::system::StepFailure;
-use super::termination::{no_step, snaps};
-use super::tracer::{LoadStepEnding, Tracer, after_fold, after_peak, end_path};
+use super::termination::no_step;
+use super::tracer::{LoadStepEnding, Tracer};
 use super::trial::{StepPlan, first_slip};
-use voussoir_core::limit::Status;
-
-/// Length, relative to the first step, down to which modes guessed at a corner are tried before rates are searched.
-const UNFOLLOWED: f64 = 1e-4;
 
 /// Length, relative to the first step, at which a corner of the path is looked for.
 pub(super) const CORNER: f64 = 1e-7;
+
+/// Share of the load within which a corner is placed, as far as steps can be that short.
+const PLACED: f64 = 1e-8;
 
 /// Length, relative to the first step, below which there is no step.
 pub(super) const SHORTEST: f64 = 1e-10;
@@ -27,8 +25,6 @@ pub(super) enum AfterFailure {
     CutBack(f64),
     /// A corner of the path: another branch.
     Corner(Branch),
-    /// A snap: a settlement goes no further by itself, on this rate it goes back.
-    Snap(Tangent),
     /// Nothing.
     Ended(LoadStepEnding),
 }
@@ -58,11 +54,7 @@ pub(super) fn after_failure(
         following.tried.branch = steps;
         return blocks_yield(tracer, following, failure, other);
     }
-    // With finite displacements points that open together turn the path as sharply as slip does. Where a point creeps
-    // its modes are those of no solution, and shorter steps creep as well.
-    let creeps = failure.why == CREEPS && following.length < UNFOLLOWED * first;
-    let at_corner = tracer.system.rules.oriented && (short || creeps);
-    if (slip <= 1e-9 * plan.share.max(first / plan.per_tangent) || at_corner) && fresh {
+    if slip <= 1e-9 * plan.share.max(first / plan.per_tangent) && fresh {
         following.tried.branch = steps;
         if let Some(after) = corner(tracer, following, plan, failure) {
             return after;
@@ -93,30 +85,12 @@ fn corner(
     failure: &StepFailure,
 ) -> Option<AfterFailure> {
     let direction = following.direction;
-    let found = match branch_beyond_fold(tracer, following, following.limits.first / plan.per_tangent) {
-        Ok(found) => found,
-        Err(why) => {
-            if following.slope > 0.0 && following.comes_stable() {
-                note_peak(tracer, &following.branch.tangent, direction);
-            }
-            let status = match (tracer.system.finite(), following.branch.tangent.factor * direction > 0.0) {
-                (true, true) if following.limits.ends_at_peak => Status::LimitPoint,
-                (true, true) => after_fold(tracer),
-                (true, false) => after_peak(tracer),
-                (false, _) => Status::LimitPoint,
-            };
-            return Some(AfterFailure::Ended(end_path(tracer, status, why)));
-        }
-    };
-    let (mut tangent, mut modes) = found?;
+    let share = following.limits.first / plan.per_tangent;
+    let (mut tangent, mut modes) = yielding_branch(tracer, &following.branch.tangent, share)?;
     let mut falls = tangent.factor * direction <= 0.0;
-    let arrives = !tracer.system.finite() || following.slope > 0.0;
     let state = tracer.state.clone();
     // In the present modes no step has led on, however short.
-    if falls
-        && arrives
-        && let Some(rising) = rising_branch(tracer, &state, direction).filter(|rising| rising.1 != state.mode)
-    {
+    if falls && let Some(rising) = rising_branch(tracer, &state, direction).filter(|rising| rising.1 != state.mode) {
         (tangent, modes) = rising;
         falls = false;
     }
@@ -128,16 +102,9 @@ fn corner(
         return Some(AfterFailure::CutBack(shorter));
     }
     if falls && !tracer.strategy.passes_limit_points() {
-        return Some(match following.takes_arc_lengths(tracer) {
-            true => AfterFailure::CutBack(following.length),
-            false => AfterFailure::Ended(no_step(tracer, failure, &tangent, direction)),
-        });
+        return Some(AfterFailure::Ended(no_step(tracer, failure, &tangent, direction)));
     }
-    let grew = following.slope > 0.0;
-    if falls && grew && following.orientation.is_some() && snaps(tracer, following.load_step) {
-        return Some(AfterFailure::Snap(tangent));
-    }
-    if falls && following.comes_stable() && (grew || (!tracer.system.finite() && tracer.limit.peak.is_none())) {
+    if falls && tracer.limit.peak.is_none() {
         note_peak(tracer, &tangent, direction);
     }
     Some(AfterFailure::Corner(Branch { tangent, modes: Some(modes) }))
@@ -145,9 +112,6 @@ fn corner(
 
 /// A shorter step. If it is too short, a rate with growing λ by a search, or the end.
 fn shortened(tracer: &mut Tracer, following: &mut Following, length: f64, failure: &StepFailure) -> AfterFailure {
-    if following.comes_to_smooth_peak(tracer) && following.takes_arc_lengths(tracer) {
-        return AfterFailure::CutBack(following.length);
-    }
     if length >= SHORTEST * following.limits.first {
         return AfterFailure::CutBack(length);
     }
@@ -156,9 +120,6 @@ fn shortened(tracer: &mut Tracer, following: &mut Following, length: f64, failur
         && let Some((tangent, modes)) = rising_branch(tracer, &state, following.direction)
     {
         return AfterFailure::Corner(Branch { tangent, modes: Some(modes) });
-    }
-    if following.takes_arc_lengths(tracer) {
-        return AfterFailure::CutBack(following.length);
     }
     AfterFailure::Ended(no_step(tracer, failure, &following.branch.tangent, following.direction))
 }

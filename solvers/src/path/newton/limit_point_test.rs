@@ -17,7 +17,6 @@ use crate::path::energy::load_size;
 use crate::rate::answer::{Budget, Continuation, answer};
 use crate::rate::arrival::{Arrival, ArrivalPoint};
 use crate::rate::branching::{RisingRate, rising_rate};
-use crate::rate::enumerate::enumerate_modes;
 use crate::rate::problem::{Rate, RateProblem};
 use crate::rate::solve::RateCounts;
 use nalgebra::{DMatrix, DVector};
@@ -34,8 +33,6 @@ const RESIDUAL: f64 = 1e-9;
 const REGULARISATION: f64 = 1e-11;
 /// Linear programs of a search.
 const MOST: u64 = 20_000;
-/// Combinations of modes that are gone through.
-const MOST_COMBINATIONS: usize = 140_000;
 
 /// The active set of a state.
 struct ActiveSet {
@@ -80,28 +77,6 @@ pub(super) fn limit_point_test(system: &mut StepSystem, state: &State, direction
             LimitPointTest::Tangent(tangent_from(system, &x, state, &equations), modes)
         }
     }
-}
-
-/// All rates that start at a converged state, with their modes: the factor rises, stands still or falls on them. `None`
-/// where there are too many combinations of modes, or their stiffness was not found.
-pub(super) fn all_rates(system: &mut StepSystem, state: &State) -> Option<Vec<(Tangent, Vec<ContactMode>)>> {
-    let active = active_set(system, state, &[]);
-    system.count("factorisations", 1);
-    let equations = system.equations(state);
-    let responses = responses_of(system, &active, &equations, 1.0)?;
-    let problem = rate_problem(system, &active, &responses);
-    if problem.points.is_empty() || problem.combinations() > MOST_COMBINATIONS {
-        return None;
-    }
-    let mut trials = 0;
-    let rates = enumerate_modes(&problem, &mut trials);
-    drop(problem);
-    system.count("rate_combinations", trials);
-    let tangent = |rate: Rate| {
-        let x = unknowns_of(&responses, &rate.gaps, rate.factor, 1.0);
-        (tangent_from(system, &x, state, &equations), modes_of(system, &active, rate.modes))
-    };
-    Some(rates.into_iter().map(tangent).collect())
 }
 
 /// What continues a path after an event.

@@ -16,9 +16,7 @@ use crate::path::outcome::{Outcome, PathRecord, stalled};
 use std::sync::Arc;
 use voussoir_core::certificate::flow_residual;
 use voussoir_core::limit::Status;
-use voussoir_core::path::{
-    LoadStep, LoadStepEnd, PathAnswer, PathObserver, PathProblem, PathSettings, StageStability,
-};
+use voussoir_core::path::{LoadStep, LoadStepEnd, PathAnswer, PathObserver, PathProblem, PathSettings, StageStability};
 
 /// Follows all load steps.
 pub(super) fn trace(problem: &PathProblem, settings: &PathSettings, observer: &mut dyn PathObserver) -> PathAnswer {
@@ -31,11 +29,9 @@ pub(super) fn trace(problem: &PathProblem, settings: &PathSettings, observer: &m
     let energy = EnergyBalance::default();
     let seen = recorded(&energy, &system, 0, &state, &gradient);
     let work = work_state(&system, &state, &gradient);
-    let in_pieces = system.follows_pieces();
     let mut tracer = Tracer {
         system,
         settings,
-        in_pieces,
         strategy: Arc::new(ArcLength::default()),
         observer,
         load_step: 0,
@@ -76,7 +72,7 @@ fn run<'a>(tracer: &mut Tracer<'a, '_>, problem: &'a PathProblem) {
         let gradient = tracer.system.gradient(&tracer.state);
         tracer.record.work = work_state(&tracer.system, &tracer.state, &gradient);
         let mut outcome = match load_step.end {
-            LoadStepEnd::Collapse(most) if tracer.in_pieces => pieces::driver::follow(tracer, load_step, most),
+            LoadStepEnd::Collapse(most) if tracer.system.finite() => pieces::driver::follow(tracer, load_step, most),
             LoadStepEnd::Factor(factor) => load_to_factor(tracer, load_step, factor),
             LoadStepEnd::Collapse(most) => follow(tracer, load_step, most),
         };

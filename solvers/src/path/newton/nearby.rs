@@ -65,7 +65,7 @@ pub(super) fn solve(
     (control, right): (&[f64], &[f64]),
     accuracy: Accuracy,
 ) -> Option<(Vec<f64>, bool)> {
-    if accuracy == Accuracy::Rounding && system.rules.oriented {
+    if accuracy == Accuracy::Rounding && system.finite() {
         factorised(system, state, equations, control)?;
     }
     let left = if accuracy == Accuracy::Rough { ROUGH } else { ROUNDING };

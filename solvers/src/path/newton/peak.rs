@@ -1,10 +1,8 @@
 //! Peaks and troughs of the load within a step, by bisection.
 
 use super::control::Control;
-use super::cycle_detector::{Excursion, distance};
 use super::following::{Following, per_tangent};
-use super::measure::{cosine, increment_along, increment_between, motion_size};
-use super::orientation::{Orientation, STILL};
+use super::measure::{increment_along, motion_size};
 use super::recorded::recorded;
 use super::state::{State, Tangent};
 use super::step::solve_step;
@@ -13,68 +11,14 @@ use super::tracer::{Peak, PostPeak, Tracer, foreseen, moved_along};
 use crate::path::energy::load_size;
 use voussoir_core::path::ProvenPeak;
 
-/// Share of a step up to which the states on both sides of a peak are apart where one branch leads through it.
-const CONTINUOUS: f64 = 1e-3;
-/// Share of the load within which a peak, smooth or a corner, is placed, as far as steps can be that short.
-pub(super) const PLACED: f64 = 1e-8;
 /// Relative differences of the loads and displacements of two limit points that are one.
 const SAME: f64 = 1e-8;
 /// Fall of the load between two of them, relative to it, from which on the path has been elsewhere.
 const FALLEN: f64 = 1e-6;
 
-/// A peak that two states of one branch bracket.
-pub(super) struct Bracketed {
-    pub state: State,
-    /// The rate just beyond it.
-    pub beyond: Tangent,
-    /// Whether contact modes change there.
-    pub kinked: bool,
-}
-
-/// Bisects the step from the present state for the peak of λ in the sense `direction`. With finite displacements the
-/// states on both sides must be close to each other and of one branch by their second-order work; `None` where they are
-/// not, or were not found.
-pub(super) fn locate_peak(tracer: &mut Tracer, following: &Following, direction: f64) -> Option<Bracketed> {
-    let Bisected { low, high, share, gain } = bisect(tracer, following, direction);
-    if !tracer.system.finite() {
-        let beyond = high.map_or_else(|| following.branch.tangent.clone(), |(_, rate)| rate);
-        return Some(Bracketed { state: low, beyond, kinked: true });
-    }
-    let (high, beyond) = high.filter(|_| gain <= PLACED)?;
-    let apart = increment_between(&tracer.system, &low, &high).motion;
-    let step = increment_between(&tracer.system, &tracer.state, &high).motion;
-    let oriented = [
-        Orientation::of(&mut tracer.system, &low, true),
-        Orientation::along(&mut tracer.system, &high, &beyond, direction)
-            .map(|high| Orientation { rises: false, ..high }),
-    ];
-    let kinked = low.mode != high.mode;
-    let one_branch = match &oriented {
-        // Where the eigenvalue passes through nothing its sign is rounding.
-        [Some(low), Some(high)] => {
-            let leads = if kinked { low.leads_over_kink_to(high) } else { low.leads_to(high) };
-            leads || [low, high].iter().any(|side| side.is_singular())
-        }
-        _ => following.orientation.is_none(),
-    };
-    let continuous = apart <= (CONTINUOUS + 2.0 * share) * step;
-    (one_branch && continuous).then_some(Bracketed { state: low, beyond, kinked })
-}
-
-/// What a bisection comes to.
-struct Bisected {
-    /// The last state on which λ grows.
-    low: State,
-    /// The first one beyond it, with its rate.
-    high: Option<(State, Tangent)>,
-    /// How far apart they are, as a share of the step.
-    share: f64,
-    /// What λ may gain between, as a share of itself.
-    gain: f64,
-}
-
-/// Bisects the step from the present state for the point where λ stops growing in the sense `direction`.
-fn bisect(tracer: &mut Tracer, following: &Following, direction: f64) -> Bisected {
+/// Bisects the step from the present state for the peak of λ in the sense `direction`: the last state on which it grows, and
+/// the rate just beyond it.
+pub(super) fn locate_peak(tracer: &mut Tracer, following: &Following, direction: f64) -> (State, Tangent) {
     let (rate, previous, length) = (&following.branch.tangent, following.previous, following.length);
     let strategy = tracer.strategy.clone();
     let (unit, per_rate) = (tracer.system.units().factor, per_tangent(tracer, rate, previous.as_ref()));
@@ -88,38 +32,18 @@ fn bisect(tracer: &mut Tracer, following: &Following, direction: f64) -> Bisecte
         let guess = moved_along(tracer, rate, middle / per_rate);
         let Ok((state, _)) = solve_step(&mut tracer.system, &tracer.state, guess, &control) else { break };
         let Some(here) = tangent_at(&mut tracer.system, &tracer.state, &state, &control) else { break };
-        // A load that stands still is one that does not grow, as for the step itself.
-        let still = if tracer.system.finite() {
-            STILL * tracer.system.units().factor * motion_size(&tracer.system, &here)
-        } else {
-            0.0
-        };
-        if here.factor * direction > still {
+        if here.factor * direction > 0.0 {
             low = middle;
             best = (state, here);
         } else {
             high = middle;
-            beyond = Some((state, here));
+            beyond = Some(here);
         }
         if low > 0.0 && gain(&best, high - low) <= 1e-11 {
             break;
         }
     }
-    let gain = gain(&best, high - low);
-    Bisected { low: best.0, high: beyond, share: (high - low) / length, gain }
-}
-
-/// Where the load rises again after a peak with finite displacements: the least load between, if it is
-/// lower than any before and the path has not risen by much since.
-pub(super) fn note_trough(tracer: &mut Tracer, following: &Following) {
-    let direction = following.direction;
-    let lower =
-        |factor: f64| tracer.post_peak.trough.as_ref().is_none_or(|lowest| (lowest.factor - factor) * direction > 0.0);
-    if !tracer.post_peak.risen && lower(tracer.state.factor) {
-        let Bisected { low, high, .. } = bisect(tracer, following, -direction);
-        let beyond = high.map_or_else(|| following.branch.tangent.clone(), |(_, rate)| rate);
-        tracer.post_peak.trough = Some(peak_at(tracer, low, &beyond));
-    }
+    (best.0, beyond.unwrap_or_else(|| rate.clone()))
 }
 
 /// Keeps a proven peak; the greatest is what the path's answer speaks of (with small displacements the first).
@@ -128,7 +52,7 @@ pub(super) fn note_trough(tracer: &mut Tracer, following: &Following) {
 pub(super) fn note_proven_peak(tracer: &mut Tracer, peak: Peak, direction: f64) {
     let (factor, displacement) = (peak.factor, peak.state.displacement);
     let greatest = |known: &Peak| (factor - known.factor) * direction > 0.0;
-    if tracer.system.rules.oriented {
+    if tracer.system.finite() {
         let load_step = tracer.load_step;
         let near = |a: f64, b: f64, by: f64| (a - b).abs() <= by * b.abs();
         let same = |known: &&ProvenPeak| {
@@ -140,27 +64,13 @@ pub(super) fn note_proven_peak(tracer: &mut Tracer, peak: Peak, direction: f64) 
         if tracer.limit.proven_peaks.iter().any(|known| same(&known)) {
             return;
         }
-        if returns(tracer, &peak, direction) {
-            tracer.post_peak.returned = true;
-            return;
-        }
         tracer.limit.proven_peaks.push(ProvenPeak { load_step, factor, displacement, lowest: factor });
         tracer.post_peak = PostPeak { far: tracer.post_peak.far, ..PostPeak::default() };
     }
     if tracer.limit.peak.as_ref().is_none_or(greatest) {
         tracer.limit.peak = Some(peak);
-        tracer.limit.excursion = Excursion::default();
         tracer.post_peak.far = false;
     }
-}
-
-/// Whether a peak is the greatest one again, passed in the same sense.
-fn returns(tracer: &Tracer, peak: &Peak, direction: f64) -> bool {
-    let known = tracer.limit.peak.as_ref().filter(|known| known.state.load_step == tracer.load_step);
-    let Some(known) = known.filter(|_| tracer.system.finite()) else { return false };
-    let (Some(motion), Some(before)) = (&peak.motion, &known.motion) else { return false };
-    let place = [distance(&peak.state.motion, &known.state.motion), (known.factor - peak.factor) * direction];
-    tracer.limit.excursion.returns(place) && cosine(motion, before) > 0.0
 }
 
 /// A peak at a state between the last one and the next, with the rate just beyond it.
@@ -176,7 +86,7 @@ pub(super) fn peak_at(tracer: &mut Tracer, mut state: State, beyond: &Tangent) -
 
 /// Keeps the present state as a peak, with the rate just beyond it: with small displacements only the first.
 pub(super) fn note_peak(tracer: &mut Tracer, beyond: &Tangent, direction: f64) {
-    if tracer.system.rules.oriented || tracer.limit.peak.is_none() {
+    if tracer.system.finite() || tracer.limit.peak.is_none() {
         let motion = scaled_motion(tracer, &tracer.state, beyond);
         let peak = Peak { factor: tracer.state.factor, state: tracer.record.state.clone(), motion };
         note_proven_peak(tracer, peak, direction);

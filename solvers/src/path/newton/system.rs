@@ -71,9 +71,6 @@ pub(super) struct StepSystem<'a> {
 pub(super) struct Rules {
     /// Whether Newton's method may resort to a line search.
     pub line_search: bool,
-    /// Whether the branch on which a state lies is told by its second-order work: with finite displacements, and where
-    /// friction is not associated beyond a limit point.
-    pub oriented: bool,
 }
 
 /// Viscous wrenches on the free bodies: rate × the motion since, both in units.
@@ -133,7 +130,7 @@ impl<'a> StepSystem<'a> {
             counters: Counters::new(),
             loads: StagedLoads { earlier: Vec::new(), growing: &problem.load_steps[0].loading, start: 0.0 },
             residuals: Vec::new(),
-            rules: Rules { line_search: true, oriented: finite },
+            rules: Rules { line_search: true },
             damping: None,
             blocks: undeformed(problem)?,
             cache,
@@ -171,24 +168,9 @@ impl<'a> StepSystem<'a> {
         self.geometry.finite
     }
 
-    /// Whether flow is associated everywhere: then every step is a monotone problem.
-    pub fn monotone(&self) -> bool {
-        self.piecewise_linear() && self.joints_flow_associated()
-    }
-
-    /// Whether the flow of all facets of joints is associated.
-    pub fn joints_flow_associated(&self) -> bool {
-        self.laws.polygons.iter().all(|law| !law.is_non_associated())
-    }
-
     /// Whether with small displacements every law is one of facets.
     pub fn piecewise_linear(&self) -> bool {
         self.laws.responses.is_empty() && self.blocks.iter().all(Option::is_none)
-    }
-
-    /// Whether the path is followed piece by piece: finite displacements, laws of facets, blocks that do not yield.
-    pub fn follows_pieces(&self) -> bool {
-        self.finite() && self.piecewise_linear()
     }
 
     /// Whether factors may serve equations that are near theirs: those of a chain of elastic blocks with laws of facets.

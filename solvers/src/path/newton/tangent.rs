@@ -94,8 +94,7 @@ pub(super) fn modes_ahead(system: &mut StepSystem, state: &State, ahead: &State)
 
 /// Tangent of a converged state with its modes held, per unit of the control's gradient.
 pub(super) fn tangent_at(system: &mut StepSystem, start: &State, state: &State, control: &Control) -> Option<Tangent> {
-    let RateEquations { equations, control } = RateEquations::new(system, start, (state, state), control);
-    tangent_of_modes(system, state, &equations, &control, Accuracy::Rounding)
+    tangent(system, start, state, control, Accuracy::Rounding)
 }
 
 /// The same by whatever factors are near.
@@ -105,49 +104,20 @@ pub(super) fn tangent_nearby(
     state: &State,
     control: &Control,
 ) -> Option<Tangent> {
-    let RateEquations { equations, control } = RateEquations::new(system, start, (state, state), control);
-    tangent_of_modes(system, state, &equations, &control, Accuracy::Fine)
+    tangent(system, start, state, control, Accuracy::Fine)
 }
 
-/// The same roughly, by factors that are near if there are any, with the equations of a place near the state's.
-pub(super) fn rough_tangent(
+fn tangent(
     system: &mut StepSystem,
     start: &State,
-    (place, state): (&State, &State),
+    state: &State,
     control: &Control,
+    accuracy: Accuracy,
 ) -> Option<Tangent> {
-    let rates = RateEquations::new(system, start, (place, state), control);
-    let x = rates.solve(system, state)?;
-    Some(tangent_from(system, &x, state, &rates.equations))
-}
-
-/// What rates solve near a place, whatever the modes are: under a control that does not depend on them.
-pub(super) struct RateEquations {
-    equations: Rc<Equations>,
-    control: Vec<f64>,
-}
-
-impl RateEquations {
-    /// With the equations of a place and the control at a state near it.
-    pub fn new(system: &mut StepSystem, start: &State, (place, state): (&State, &State), control: &Control) -> Self {
-        let equations = system.equations(place);
-        let (_, constraint) = control_value(system, start, state, control);
-        let control = control_row(system, start, state, control, &constraint, &equations);
-        RateEquations { equations, control }
-    }
-
-    /// A rate in the modes of a state, roughly, in units.
-    fn solve(&self, system: &mut StepSystem, state: &State) -> Option<Vec<f64>> {
-        let right = per_row(system);
-        let found = solve(system, state, &self.equations, (&self.control, &right), Accuracy::Rough);
-        found.filter(|(_, solved)| *solved).map(|(x, _)| x)
-    }
-
-    /// That of the factor.
-    pub fn slope(&self, system: &mut StepSystem, state: &State) -> Option<f64> {
-        let x = self.solve(system, state)?;
-        Some(x[x.len() - 1] * system.units().factor)
-    }
+    let equations = system.equations(state);
+    let (_, constraint) = control_value(system, start, state, control);
+    let row = control_row(system, start, state, control, &constraint, &equations);
+    tangent_of_modes(system, state, &equations, &row, accuracy)
 }
 
 /// Tangent with other modes than the state's, per unit of the sum of the multipliers of the points

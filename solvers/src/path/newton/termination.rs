@@ -1,7 +1,6 @@
 //! What ends a path: limit points and peaks, mechanisms, rays, and how far it was asked to go.
 
 use super::control::Control;
-use super::cycle_detector::distance;
 use super::limit_point::test_limit_point;
 use super::measure::{increment_along, motion_size};
 use super::peak::scaled_motion;
@@ -11,23 +10,12 @@ use super::state::{State, Tangent};
 use super::step::solve_step;
 use super::system::{StepFailure, StepSystem};
 use super::tangent::tangent_at;
-use super::tracer::{
-    LoadStepEnding, MOVED_ON, Peak, Tracer, after_peak, beyond_last_peak, end_path, is_above, moved_along,
-};
+use super::tracer::{LoadStepEnding, Tracer, end_path, moved_along};
 use crate::path::continuation::arc_length::ArcLength;
 use crate::path::energy::load_size;
 use std::sync::Arc;
 use voussoir_core::limit::Status;
-use voussoir_core::path::{Continuation, LoadStep, LoadStepEnd};
-
-/// Share of its fall by which the load must rise for the least one to be that of a snap-through.
-const RISES: f64 = 0.1;
-
-/// Rates of load and contact forces relative to that of the motion, in units, at which they stand still.
-const STILL: [f64; 2] = [1e-9, 1e-4];
-
-/// Movement of the load point after a peak, as a share of the span, at which a path ends.
-const FURTHEST: f64 = 0.1;
+use voussoir_core::path::{Continuation, LoadStep};
 
 /// No step is small enough: a limit point for strategies that cannot pass one, else a stall.
 pub(super) fn no_step(tracer: &mut Tracer, failure: &StepFailure, rate: &Tangent, direction: f64) -> LoadStepEnding {
@@ -40,15 +28,6 @@ pub(super) fn no_step(tracer: &mut Tracer, failure: &StepFailure, rate: &Tangent
     let who = if points.is_empty() { String::new() } else { format!(" (contact points {})", points.join(", ")) };
     let why = format!("no step from factor {} converges: {}{who}", tracer.state.factor, failure.why);
     let falls = rate.factor * direction <= 0.0;
-    if tracer.system.finite() && tracer.limit.peak.is_some() {
-        if slides_on(tracer, rate) {
-            let why =
-                format!("at its peak the structure moves on under a constant load, and was not followed there: {why}");
-            return end_path(tracer, Status::Collapse, why);
-        }
-        let status = after_peak(tracer);
-        return end_path(tracer, status, format!("the branch after the peak was not followed further: {why}"));
-    }
     if !tracer.strategy.passes_limit_points()
         && (falls || softens_down(tracer, rate, direction) || turns_back(tracer, rate, direction))
     {
@@ -59,17 +38,6 @@ pub(super) fn no_step(tracer: &mut Tracer, failure: &StepFailure, rate: &Tangent
         tracer.record.notes.extend(tracer.limit.unproven.take().map(|why| format!("at its last state {why}")));
         ended
     }
-}
-
-/// Whether the path has ended at its peak on a rate that moves blocks while the load stands still, and contact forces
-/// change by the blocks' displacement only: elastic rates have 1.
-fn slides_on(tracer: &Tracer, rate: &Tangent) -> bool {
-    let (u, motion) = (tracer.system.units(), motion_size(&tracer.system, rate));
-    let force = greatest_force(&tracer.system, rate);
-    let factor = tracer.state.factor;
-    let at_peak = |peak: &Peak| (factor - peak.factor).abs() <= 1e-9 * factor.abs();
-    let still = (rate.factor / u.factor).abs() <= STILL[0] * motion && force <= STILL[1] * motion;
-    still && tracer.limit.peak.as_ref().is_some_and(at_peak)
 }
 
 /// The greatest rate of a contact force in units.
@@ -180,44 +148,13 @@ fn tractions_persist(system: &StepSystem, state: &State, rate: &Tangent) -> bool
     })
 }
 
-/// Whether the path went as far after its peak as was asked for.
+/// Whether the path went as far after its limit point as was asked for.
 pub(super) fn stops(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -> bool {
     let (factor, displacement) = (tracer.state.factor, tracer.record.state.displacement);
-    if let Some(last) = tracer.limit.proven_peaks.last_mut()
-        && (last.lowest - factor) * direction > 0.0
-    {
-        last.lowest = factor;
-    }
-    let Some(peak) = &tracer.limit.peak else {
-        if tracer.system.finite() && displacement.abs() > tracer.system.units().length {
-            end_path(
-                tracer,
-                Status::Stalled,
-                format!("no peak up to a displacement of {displacement} m, factor {factor}"),
-            );
-            return true;
-        }
-        return false;
-    };
-    let away = distance(&tracer.record.state.motion, &peak.state.motion);
-    tracer.limit.excursion.goes_to([away, (peak.factor - factor) * direction]);
+    let Some(peak) = &tracer.limit.peak else { return false };
     if !tracer.system.laws.responses.is_empty() && (factor - peak.factor) * direction > 0.0 {
         return false;
     }
-    if let Some(trough) = &tracer.post_peak.trough {
-        tracer.post_peak.risen |= (factor - trough.factor) * direction > RISES * (peak.factor - trough.factor).abs();
-    }
-    if tracer.system.finite() {
-        stops_finite(tracer, load_step, direction)
-    } else {
-        stops_small(tracer, load_step, direction)
-    }
-}
-
-/// The end of a path with small displacements beyond its limit point.
-fn stops_small(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -> bool {
-    let (factor, displacement) = (tracer.state.factor, tracer.record.state.displacement);
-    let Some(peak) = &tracer.limit.peak else { return false };
     let beyond = (displacement - peak.state.displacement).abs();
     let done = match tracer.settings.stop(load_step.stage) {
         [None, None] => {
@@ -232,66 +169,4 @@ fn stops_small(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -> boo
         end_path(tracer, Status::LimitPoint, String::new());
     }
     done
-}
-
-/// Whether what grows is a settlement.
-fn settles(tracer: &Tracer) -> bool {
-    load_size(tracer.system.problem, tracer.system.loads.growing) == 0.0
-}
-
-/// Whether what grows is a settlement that is to go to a factor: beyond a limit point it goes on by a snap.
-pub(super) fn snaps(tracer: &Tracer, load_step: &LoadStep) -> bool {
-    tracer.system.finite() && settles(tracer) && matches!(load_step.end, LoadStepEnd::Factor(_))
-}
-
-/// With finite displacements: after the last proven peak. By default where the load has fallen to half of it and its
-/// point has moved on, at the latest at [`FURTHEST`].
-fn stops_finite(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -> bool {
-    let (factor, displacement) = (tracer.state.factor, tracer.record.state.displacement);
-    let (length, span) = (tracer.system.units().length, tracer.system.problem.span);
-    let Some((greatest, place)) = tracer.limit.peak.as_ref().map(|peak| (peak.factor, peak.state.displacement)) else {
-        return false;
-    };
-    if tracer.post_peak.returned {
-        let why = format!(
-            "after the peak the path comes back to it in a loop, under a load of the factor {factor}: friction has moved it a little beside itself"
-        );
-        end_path(tracer, Status::Collapse, why);
-        return true;
-    }
-    let settles = settles(tracer);
-    let top = tracer.limit.proven_peaks.last().map_or(greatest, |peak| peak.factor);
-    let beyond = beyond_last_peak(tracer, place);
-    let halved = (factor - 0.5 * top) * direction <= 0.0;
-    let far = (halved && beyond >= MOVED_ON * span) || beyond >= FURTHEST * span;
-    tracer.post_peak.far |= far;
-    let [stop_displacement, stop_factor] = tracer.settings.stop(load_step.stage);
-    let done = match (stop_displacement, stop_factor) {
-        // A support that goes no further by itself: what follows is a fall.
-        (None, None) if settles => true,
-        (None, None) => far,
-        (most, least) => {
-            most.is_some_and(|most| beyond >= most) || least.is_some_and(|least| (factor - least) * direction <= 0.0)
-        }
-    };
-    if done && is_above(direction, greatest, factor) {
-        end_path(
-            tracer,
-            Status::Stalled,
-            format!("still rising: {beyond} m after the last peak the load is above all peaks, at factor {factor}"),
-        );
-        return true;
-    }
-    if !done {
-        let asked = stop_displacement.unwrap_or(if stop_factor.is_some() { length } else { FURTHEST * span });
-        let place = [displacement, factor];
-        let motion = &tracer.record.state.motion;
-        if let Some(why) = tracer.post_peak.cycles.leads_nowhere(place, motion, asked, length) {
-            end_path(tracer, Status::Collapse, why);
-            return true;
-        }
-        return false;
-    }
-    end_path(tracer, Status::Collapse, String::new());
-    true
 }

@@ -1,6 +1,5 @@
 //! The state of a trace: the last converged state, what is recorded of the path, and how it ended.
 
-use super::cycle_detector::{CycleDetector, Excursion};
 use super::derivatives::Gradient;
 use super::events::events;
 use super::recorded::{energy_after, recorded, work_state};
@@ -67,8 +66,6 @@ pub(super) struct Ending {
 #[derive(Default)]
 pub(super) struct LimitPoint {
     pub peak: Option<Peak>,
-    /// How far the path has been from it since.
-    pub excursion: Excursion,
     /// Proven peaks of finite displacements in order.
     pub proven_peaks: Vec<ProvenPeak>,
     /// Why it is not proven to be one.
@@ -82,22 +79,16 @@ pub(super) struct LimitPoint {
 /// The path after its peak.
 #[derive(Default)]
 pub(super) struct PostPeak {
-    /// The least load, before the path rises again by a tenth of what it fell, and whether it has.
+    /// The least load since.
     pub trough: Option<Peak>,
-    pub risen: bool,
-    /// Whether it has been, after the greatest one, where paths end that nothing else was asked of.
+    /// True if the load has fallen to half of the greatest one.
     pub far: bool,
-    /// Whether it has come back to the greatest one.
-    pub returned: bool,
-    pub cycles: CycleDetector,
 }
 
 /// A trace of a path.
 pub(super) struct Tracer<'a, 'o> {
     pub system: StepSystem<'a>,
     pub settings: &'a PathSettings,
-    /// True if pieces are followed from event to event.
-    pub in_pieces: bool,
     pub strategy: Arc<dyn Continuation>,
     pub observer: &'o mut dyn PathObserver,
     pub load_step: usize,
@@ -150,8 +141,7 @@ pub(super) fn commit(tracer: &mut Tracer, mut next: State) -> bool {
     if tracer.system.finite()
         && let Some((apart, why)) = left_its_pairing(tracer)
     {
-        let rises = (tracer.state.factor - start.factor) * direction(tracer) > 0.0;
-        let status = after_slip(tracer, apart, rises);
+        let status = after_slip(tracer, apart);
         end_path(tracer, status, why);
         return false;
     }
@@ -174,49 +164,12 @@ pub(super) fn end_path(tracer: &mut Tracer, status: Status, note: String) -> Loa
     LoadStepEnding::Ended
 }
 
-/// How a path with finite displacements ends whose branch after a proven peak is lost: a collapse where the load has
-/// fallen to half, its point has moved on, and the load is above no peak, or it has been where paths end by themselves.
-/// Before that a greater peak may lie ahead, whether the load falls or rises where the path is lost; above its peaks it does.
-pub(super) fn after_peak(tracer: &Tracer) -> Status {
-    let moved_on =
-        |peak: &Peak| beyond_last_peak(tracer, peak.state.displacement) >= MOVED_ON * tracer.system.problem.span;
-    lost_after(tracer, moved_on)
-}
-
-/// How such a path ends at a fold from which no rate of equilibrium leads on under a growing load. Since that is proven, a
-/// load that has fallen to half is enough.
-pub(super) fn after_fold(tracer: &Tracer) -> Status {
-    lost_after(tracer, |_| true)
-}
-
-/// A collapse where the load of a path that is lost has fallen to half, far enough from the peak, and is above none.
-fn lost_after(tracer: &Tracer, enough: impl Fn(&Peak) -> bool) -> Status {
-    let Some(peak) = &tracer.limit.peak else { return Status::Stalled };
-    let (direction, load) = (direction(tracer), tracer.state.factor);
-    let trough = tracer.post_peak.trough.as_ref().map(|trough| trough.factor);
-    let far = tracer.post_peak.far || (enough(peak) && has_halved(direction, peak.factor, trough, load));
-    if far && !is_above(direction, peak.factor, load) { Status::Collapse } else { Status::Stalled }
-}
-
-/// How a path with finite displacements ends where a joint has slipped as far as its pairing holds: above its peaks, and in a
-/// pairing for little slip also where the load rises, as where it is lost; else a collapse. Blocks that have left their
-/// faces, or share no more than half of them, are no structure any longer.
-fn after_slip(tracer: &Tracer, apart: bool, rises: bool) -> Status {
-    let above =
-        tracer.limit.peak.as_ref().is_none_or(|peak| is_above(direction(tracer), peak.factor, tracer.state.factor));
-    if !above && (apart || !rises) { Status::Collapse } else { after_peak(tracer) }
-}
-
-/// Movement of the point of the load since the last proven peak \[m\], or since the greatest one, at `peak`.
-pub(super) fn beyond_last_peak(tracer: &Tracer, peak: f64) -> f64 {
-    let from = tracer.limit.proven_peaks.last().map_or(peak, |last| last.displacement);
-    (tracer.record.state.displacement - from).abs()
-}
-
-/// Whether the load is, or was in a trough, half that of the peak.
-fn has_halved(direction: f64, peak: f64, trough: Option<f64>, load: f64) -> bool {
-    let lowest = trough.map_or(load, |trough| if (trough - load) * direction < 0.0 { trough } else { load });
-    (lowest - 0.5 * peak) * direction <= 0.0 && peak * direction > 0.0
+/// How a path with finite displacements ends if a joint has slipped as far as its pairing holds: above its peaks more may
+/// come; blocks that have left their faces, or share no more than half of them, are no structure any longer.
+fn after_slip(tracer: &Tracer, apart: bool) -> Status {
+    let peak = tracer.limit.peak.as_ref();
+    let below = peak.is_some_and(|peak| !is_above(direction(tracer), peak.factor, tracer.state.factor));
+    if below && (apart || tracer.post_peak.far) { Status::Collapse } else { Status::Stalled }
 }
 
 /// Whether the load is above the peak, by more than rounding.
@@ -270,34 +223,4 @@ pub(super) fn moved(state: &State, rate: &Tangent, share: f64) -> State {
     }
     guess.factor += share * rate.factor;
     guess
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn paths_end_below_all_peaks_where_the_load_has_fallen_to_half() {
-        let end = |trough: Option<f64>, load: f64| {
-            let of = |sign: f64| {
-                let (peak, trough, load) = (10.0 * sign, trough.map(|t| sign * t), load * sign);
-                has_halved(sign, peak, trough, load) && !is_above(sign, peak, load)
-            };
-            assert_eq!(of(1.0), of(-1.0), "{trough:?} {load}");
-            of(1.0)
-        };
-        for (trough, load, ends) in [
-            (None, 9.0, false),
-            (None, 5.1, false),
-            (None, 4.9, true),
-            (Some(4.9), 8.0, true),
-            (Some(5.1), 8.0, false),
-            // Above the peak there is more to come, or the greatest load itself is not known.
-            (Some(4.9), 10.1, false),
-            // Rounding is not above.
-            (Some(4.9), 10.0 * (1.0 + 1e-10), true),
-        ] {
-            assert_eq!(end(trough, load), ends, "{trough:?} {load}");
-        }
-    }
 }

@@ -2,7 +2,6 @@
 //! what has converged lies along the path.
 
 use super::control::Control;
-use super::creeping::refuse_creeping;
 use super::following::{Following, per_tangent};
 use super::inelastic::plastic_work;
 use super::measure::{increment_along, tangent_size};
@@ -15,10 +14,6 @@ use super::tracer::{Tracer, moved_along};
 use crate::contact::facet::{dot, slack};
 use crate::contact::mode::ContactMode;
 use voussoir_core::path::LoadStepEnd;
-
-/// Length, relative to the first step, from which on a line search helps. What shorter steps do not find is a corner,
-/// where branches are chosen: a line search may find another state close by, on none of them.
-const SEARCHED: f64 = 1e-3;
 
 /// Length, relative to the first step, below which every means is taken.
 const LAST: f64 = 1e-8;
@@ -94,8 +89,6 @@ pub(super) fn attempt(tracer: &mut Tracer, following: &Following, plan: &StepPla
         let strategy = tracer.strategy.clone();
         Control::Strategy { strategy, previous: following.previous, length: following.length }
     };
-    let small = !tracer.system.finite();
-    tracer.system.rules.line_search = small || following.length >= SEARCHED * following.limits.first;
     let found = solve_step(&mut tracer.system, &tracer.state, guess.clone(), &control);
     let found = found.and_then(|(next, iterations)| {
         let back = following.tried.leads_back(&tracer.state, &next);
@@ -103,7 +96,7 @@ pub(super) fn attempt(tracer: &mut Tracer, following: &Following, plan: &StepPla
             return Err(StepFailure::new("the step went back the way it came"));
         }
         judge(tracer, following, plan.step, &next, reaches)?;
-        refuse_creeping(tracer, next, iterations, &control)
+        Ok((next, iterations))
     });
     let failure = match found {
         Ok((next, iterations)) => return Ok(Trial { next, iterations, control, reaches }),
@@ -111,7 +104,7 @@ pub(super) fn attempt(tracer: &mut Tracer, following: &Following, plan: &StepPla
     };
     // A step by arc length may go back; one by λ cannot.
     let last = tracer.strategy.passes_limit_points() && following.length < LAST * following.limits.first;
-    if small && !reaches && tangent.factor * following.direction > 0.0 && (modes.is_some() || last) {
+    if !reaches && tangent.factor * following.direction > 0.0 && (modes.is_some() || last) {
         let control = Control::Factor(guess.factor);
         if let Ok((next, iterations)) = solve_step(&mut tracer.system, &tracer.state, guess, &control)
             && judge(tracer, following, plan.step, &next, false).is_ok()

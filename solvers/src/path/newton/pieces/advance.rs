@@ -21,7 +21,7 @@ const ROUNDING: f64 = 1e-7;
 /// Points between the ends of a step at which a cubic is looked at.
 const SAMPLES: usize = 16;
 /// States that are computed to locate an event.
-const MOST_TRIALS: usize = 48;
+const MOST_TRIALS: usize = 100;
 /// Width of a bracket, relative to the step, at which an event is located whatever its monitor reads.
 const NARROW: f64 = 1e-13;
 /// Change of the factor in a step, relative to it, below which it is not looked at.
@@ -205,14 +205,15 @@ fn first_crossing(readings: &[Reading]) -> f64 {
 /// Locates the first event between a state at which all modes hold and one at which some do not.
 fn locate(step: &mut Step, mut low: Trial, mut high: Trial) -> Advance {
     let whole = high.end.length;
-    for trial in 0..MOST_TRIALS {
+    let mut last = f64::INFINITY;
+    for _ in 0..MOST_TRIALS {
         let width = high.end.length - low.end.length;
         if width <= NARROW * whole {
             break;
         }
-        let share = first_root(&low, &high).clamp(0.0, 1.0);
-        // Where roots of cubics do not close the bracket, halves do.
-        let share = if trial % 6 == 5 { 0.5 } else { share.clamp(1e-6, 1.0 - 1e-6) };
+        // If the root of a cubic has not halved the bracket, a half does: a rate may jump where a material yields.
+        let share = if width > 0.5 * last { 0.5 } else { first_root(&low, &high).clamp(1e-6, 1.0 - 1e-6) };
+        last = width;
         let at = low.end.length + share * width;
         let Some(middle) = step.trial(&low.end, at) else { return Advance::Failed };
         if middle.readings.iter().any(Reading::is_violated) {

@@ -9,6 +9,7 @@ use super::super::state::{State, Tangent};
 use super::super::step_energy::step_energy;
 use super::super::tracer::{LoadStepEnding, Tracer, commit, end_path, is_above, lost_joint};
 use super::advance::{Advance, StepEnd, Watched, advance, state_at};
+use super::ahead::facing_ahead;
 use super::begin::begin;
 use super::end::{end_of_range, end_unfollowed};
 use super::monitors::{Monitor, What};
@@ -30,6 +31,8 @@ const MOST_ITERATIONS: u64 = 20_000;
 const WANTED_ERROR: f64 = 0.02;
 /// The same above which the step is repeated.
 const MOST_ERROR: f64 = 0.1;
+/// Length, relative to the first step, at which tangents of materials just ahead of a state are taken.
+const AHEAD: f64 = 1e-5;
 /// Share of the change of the factor in a step that its rates may leave unexplained.
 const MOST_UNEXPLAINED: f64 = 0.1;
 /// Length of a step, relative to that wanted, from which on its error tells how long the next one may be.
@@ -437,7 +440,8 @@ impl<'d> Run<'d> {
             return Some(end_unfollowed(tracer, self.direction, why));
         }
         let hits = self.all_hits(tracer, hits);
-        let state = tracer.state.clone();
+        let here = tracer.state.clone();
+        let state = facing_ahead(&mut tracer.system, &here, &self.piece.tangent, AHEAD * self.first);
         let was = self.rises;
         let found = after_event(&mut tracer.system, &state, &self.piece, &hits, (self.direction, was));
         let (piece, modes, open) = match found {
