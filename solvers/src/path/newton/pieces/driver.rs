@@ -21,7 +21,7 @@ use crate::path::continuation::LARGEST_FINITE_STEP;
 use crate::path::energy::load_size;
 use crate::path::stability::SecondOrderWork;
 use voussoir_core::limit::Status;
-use voussoir_core::path::{Branching, LimitPointEnd, LoadStep, LoadStepEnd};
+use voussoir_core::path::{Branching, LimitPointEnd, LoadStep, LoadStepEnd, ProvenPeak};
 
 /// Greatest number of pieces and steps of a load step.
 const MOST_STEPS: u64 = 6000;
@@ -37,6 +37,8 @@ const AHEAD: f64 = 1e-5;
 const MOST_UNEXPLAINED: f64 = 0.1;
 /// Length of a step, relative to that wanted, from which on its error tells how long the next one may be.
 const TELLING: f64 = 0.1;
+/// Relative difference of two loads that are the same in a result.
+const SAME_LOAD: f64 = 1e-6;
 /// Length, relative to the first step, below which there is no step.
 const SHORTEST: f64 = 1e-10;
 /// Pieces of next to no length one after the other at which the path is lost.
@@ -549,8 +551,16 @@ impl<'d> Run<'d> {
         rate.factor * self.direction > STILL * tracer.system.units().factor * motion_size(&tracer.system, rate)
     }
 
-    /// The end at a mechanism under a constant load.
+    /// The end at a mechanism under a constant load. Limit points from which the load has stood still up to here are the
+    /// same one: where contact points pass to a corner the load of a block that slides changes a little.
     fn end_at_plateau(&mut self, tracer: &mut Tracer, found: Plateau) -> LoadStepEnding {
+        let (load_step, factor) = (tracer.load_step, tracer.state.factor);
+        let same = |other: f64| (other - factor).abs() <= SAME_LOAD * factor.abs();
+        let own = |peak: &ProvenPeak| peak.load_step == load_step && same(peak.factor) && same(peak.lowest);
+        while tracer.limit.proven_peaks.last().is_some_and(own) {
+            tracer.limit.proven_peaks.pop();
+        }
+        tracer.limit.peak.take_if(|peak| same(peak.factor));
         note_peak(tracer, &self.piece.tangent, self.direction);
         if let Some(why) = found.unproved {
             tracer.limit.unproven = Some(why);
