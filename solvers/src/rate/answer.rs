@@ -110,11 +110,11 @@ impl Inquiry<'_> {
         let most = if self.monotone { 0 } else { self.budget.combinations };
         let (rates, complete) = neighbours(self.problem, self.arrival, most, &mut self.counts.trials);
         self.keep(rates);
-        if (complete || self.monotone) && self.rates.iter().any(|rate| falls || rate.factor > 0.0) {
+        if (complete || self.monotone) && self.leads_on(|rate| falls || rate.factor > 0.0) {
             return self.chosen(Algorithm::Neighbours, None);
         }
         let (none_rises, by) = self.rising();
-        if self.rates.iter().any(|rate| complete || rate.factor >= 0.0) {
+        if self.leads_on(|rate| complete || rate.factor >= 0.0) {
             return self.chosen(by, none_rises);
         }
         let standing = self.searched(0.0);
@@ -130,6 +130,11 @@ impl Inquiry<'_> {
             (.., why) => Continuation::Open(why.unwrap_or_else(|| "a search is not complete".into())),
         };
         RateAnswer { continuation, none_rises }
+    }
+
+    /// True if a rate that its modes determine is of a kind.
+    fn leads_on(&self, kind: impl Fn(&Rate) -> bool) -> bool {
+        self.rates.iter().any(|rate| kind(rate) && self.problem.is_isolated(rate))
     }
 
     /// Adds those rates that continue the path.
@@ -167,7 +172,10 @@ impl Inquiry<'_> {
     /// The rate that the rule chooses. On a path that does not fall, rates with λ rising come first, then those at a
     /// constant load.
     fn chosen(&mut self, by: Algorithm, none_rises: Option<NoRate>) -> RateAnswer {
-        let mut rates = std::mem::take(&mut self.rates);
+        let found = std::mem::take(&mut self.rates);
+        let (isolated, mixed): (Vec<Rate>, Vec<Rate>) =
+            found.into_iter().partition(|rate| self.problem.is_isolated(rate));
+        let mut rates = if isolated.is_empty() { mixed } else { isolated };
         if self.arrival.factor >= 0.0 {
             let most = rates.iter().map(|rate| rate.factor).fold(-1.0, f64::max);
             rates.retain(|rate| rate.factor == most);

@@ -4,7 +4,8 @@
 //! 2. Otherwise the rate with the greatest dissipation per unit step, if any dissipates.
 //! 3. Otherwise the rate with the least second-order energy per unit step.
 //!
-//! Rates within a relative 1e-6 are twins. A unit step has a length of one
+//! Rates that their modes do not determine are left out if others are left: where two parts of a structure may slide
+//! independently, one of them slides first. Rates within a relative 1e-6 are twins. A unit step has a length of one
 //! ([`RateProblem::step`](super::problem::RateProblem::step)).
 //!
 //! *Stable under control*: with the modes m of a rate, flows D and rows A, the matrix AᵀSD has no negative real

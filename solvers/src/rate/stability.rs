@@ -5,6 +5,9 @@ use super::problem::{Rate, RateProblem};
 /// Real eigenvalue of AᵀSD, relative to the greatest entry, above which it is not negative.
 const NEGATIVE: f64 = -1e-9;
 
+/// Singular value of AᵀSD, relative to the greatest, up to which it is zero.
+const SINGULAR: f64 = 1e-9;
+
 /// Second-order energy relative to the greatest stiffness up to which it is rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -45,6 +48,18 @@ impl RateProblem<'_> {
             }
             _ => false,
         }
+    }
+
+    /// True if the modes of a rate determine it up to its size: their equations are regular, or the rate is the only mechanism
+    /// that they admit. Otherwise other rates lie as near to it as one likes, and no piece starts with it.
+    pub fn is_isolated(&self, rate: &Rate) -> bool {
+        let matrix = self.mode_matrix(&rate.modes);
+        if matrix.is_empty() {
+            return true;
+        }
+        let values = matrix.singular_values();
+        let free = values.iter().filter(|v| **v <= SINGULAR * values.max()).count();
+        free <= 1
     }
 
     /// Number of negative real eigenvalues of AᵀSD over the modes of a rate.

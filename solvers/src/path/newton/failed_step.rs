@@ -72,7 +72,7 @@ fn blocks_yield(tracer: &mut Tracer, following: &Following, failure: &StepFailur
         if !tracer.strategy.passes_limit_points() {
             return AfterFailure::Ended(no_step(tracer, failure, &other, following.direction));
         }
-        note_peak(tracer, &other, following.direction);
+        note_peak(tracer, Some(&other), following.direction);
     }
     AfterFailure::Corner(Branch { tangent: other, modes: None })
 }
@@ -105,7 +105,7 @@ fn corner(
         return Some(AfterFailure::Ended(no_step(tracer, failure, &tangent, direction)));
     }
     if falls && tracer.limit.peak.is_none() {
-        note_peak(tracer, &tangent, direction);
+        note_peak(tracer, Some(&tangent), direction);
     }
     Some(AfterFailure::Corner(Branch { tangent, modes: Some(modes) }))
 }

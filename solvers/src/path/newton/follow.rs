@@ -1,6 +1,7 @@
 //! Following a load step by its strategy, as a state machine: a step ends as accepted, cut back, at a corner, over a
 //! peak, or the path ends.
 
+use super::commit::commit;
 use super::control::Control;
 use super::failed_step::{AfterFailure, CORNER, SHORTEST, after_failure};
 use super::following::{Branch, Following, per_tangent};
@@ -15,7 +16,7 @@ use super::step_energy::{MOST_REFINEMENTS, StepEnergy, step_energy};
 use super::system::StepFailure;
 use super::tangent::tangent_at;
 use super::termination::{ends_in_ray, no_step, stops};
-use super::tracer::{LoadStepEnding, Tracer, commit, end_path};
+use super::tracer::{LoadStepEnding, Tracer, end_path};
 use super::trial::{StepPlan, Trial, attempt, plan};
 use voussoir_core::limit::Status;
 use voussoir_core::path::LoadStep;

@@ -1,5 +1,6 @@
 //! Load steps to a factor: in one step where that is exact, else in steps.
 
+use super::commit::commit;
 use super::control::Control;
 use super::follow::follow;
 use super::pieces;
@@ -8,7 +9,7 @@ use super::second_order::second_order_work;
 use super::state::State;
 use super::step::solve_step;
 use super::step_energy::step_energy;
-use super::tracer::{LoadStepEnding, Tracer, commit};
+use super::tracer::{LoadStepEnding, Tracer};
 use voussoir_core::path::LoadStep;
 
 /// To a factor: in one step where nothing irreversible happens in it, else in steps.

@@ -3,6 +3,7 @@
 
 mod blocks;
 mod branch_switching;
+mod commit;
 mod control;
 mod control_row;
 mod deformation;

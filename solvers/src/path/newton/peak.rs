@@ -85,9 +85,9 @@ pub(super) fn peak_at(tracer: &mut Tracer, mut state: State, beyond: &Tangent) -
 }
 
 /// Keeps the present state as a peak, with the rate just beyond it: with small displacements only the first.
-pub(super) fn note_peak(tracer: &mut Tracer, beyond: &Tangent, direction: f64) {
+pub(super) fn note_peak(tracer: &mut Tracer, beyond: Option<&Tangent>, direction: f64) {
     if tracer.system.finite() || tracer.limit.peak.is_none() {
-        let motion = scaled_motion(tracer, &tracer.state, beyond);
+        let motion = beyond.and_then(|rate| scaled_motion(tracer, &tracer.state, rate));
         let peak = Peak { factor: tracer.state.factor, state: tracer.record.state.clone(), motion };
         note_proven_peak(tracer, peak, direction);
     }

@@ -2,11 +2,12 @@
 //! descent leads, of two the one whose energy falls more. Twins, whose energies are the same, are told apart by what
 //! geometry says and numbers do not: the later loads that do more work on one of them.
 
+use super::commit::commit;
 use super::events::events;
 use super::recorded::{energy_after, recorded, work_state};
 use super::relaxation::{Relaxation, relaxations};
 use super::state::State;
-use super::tracer::{Tracer, commit};
+use super::tracer::Tracer;
 use super::twins::favoured;
 use crate::path::energy::EnergyBalance;
 use crate::path::stability::SecondOrderWork;

@@ -1,11 +1,12 @@
 //! The first piece of a load step, or of what follows a jump: a rate on which the factor goes in its sense.
 
+use super::super::commit::commit;
 use super::super::control::Control;
 use super::super::limit_point_test::{LimitPointTest, limit_point_test};
 use super::super::state::State;
 use super::super::step::solve_step;
 use super::super::tangent::tangent_at;
-use super::super::tracer::{LoadStepEnding, Tracer, commit, end_path};
+use super::super::tracer::{LoadStepEnding, Tracer, end_path};
 use super::piece::Piece;
 use super::switch::{Start, is_admissible};
 use crate::contact::mode::ContactMode;

@@ -1,5 +1,6 @@
 //! Pieces one after the other, from the start of a load step to its end.
 
+use super::super::commit::{commit, end_at_lost_joint, lost_joint};
 use super::super::events::events;
 use super::super::measure::{increment_along, motion_size};
 use super::super::orientation::Orientation;
@@ -7,7 +8,7 @@ use super::super::peak::{note_peak, peak_at};
 use super::super::stable_branch::{Departure, leave_unstable};
 use super::super::state::{State, Tangent};
 use super::super::step_energy::step_energy;
-use super::super::tracer::{LoadStepEnding, Tracer, commit, end_path, is_above, lost_joint};
+use super::super::tracer::{LoadStepEnding, Tracer, end_path};
 use super::advance::{Advance, StepEnd, Watched, advance, state_at};
 use super::ahead::facing_ahead;
 use super::begin::begin;
@@ -248,7 +249,7 @@ impl<'d> Run<'d> {
         }
         let found = plateau(tracer, &self.piece.clone(), self.direction)?;
         if found.unproved.is_none() && tracer.settings.stop(self.load_step.stage)[0].is_some() {
-            note_peak(tracer, &self.piece.tangent, self.direction);
+            note_peak(tracer, Some(&self.piece.tangent), self.direction);
             self.on_plateau = true;
             return None;
         }
@@ -313,7 +314,7 @@ impl<'d> Run<'d> {
         if settles && matches!(self.load_step.end, LoadStepEnd::Factor(_)) {
             return self.snap(tracer);
         }
-        note_peak(tracer, &self.piece.tangent, self.direction);
+        note_peak(tracer, Some(&self.piece.tangent), self.direction);
         if matches!(self.load_step.end, LoadStepEnd::Factor(_)) {
             tracer.ending.limit_point_end = Some(LimitPointEnd::Target);
             let why = format!("the load factor {} is a limit point below what its stage asks for", tracer.state.factor);
@@ -338,7 +339,7 @@ impl<'d> Run<'d> {
             Departure::Stopped => Some(LoadStepEnding::Ended),
             Departure::Stable => self.anew(tracer),
             Departure::Falls => {
-                note_peak(tracer, &self.piece.tangent, self.direction);
+                note_peak(tracer, Some(&self.piece.tangent), self.direction);
                 let why = format!(
                     "at factor {} no equilibrium follows as the settlement goes on, and damped descent reaches none",
                     tracer.state.factor
@@ -375,8 +376,11 @@ impl<'d> Run<'d> {
         let (mut low, mut high) = (0.0, end.length);
         let mut found = None;
         while high - low > PLACED * end.length {
-            let middle = 0.5 * (low + high);
-            let state = state_at(&mut tracer.system, start, &self.piece, middle)?;
+            // At the bifurcation itself the equations are singular.
+            let looked = [0.5, 0.4, 0.6].map(|share| low + share * (high - low)).into_iter().find_map(|length| {
+                state_at(&mut tracer.system, start, &self.piece, length).map(|state| (length, state))
+            });
+            let Some((middle, state)) = looked else { break };
             match unstable(tracer, &state.state) {
                 Some(orientation) => {
                     work = orientation.work;
@@ -496,18 +500,7 @@ impl<'d> Run<'d> {
     fn lose_joint(&mut self, tracer: &mut Tracer, contact: usize) -> LoadStepEnding {
         let slip = tracer.state.gap[contact][1];
         let (apart, why) = lost_joint(tracer, &tracer.system.problem.contacts[contact], slip);
-        let factor = tracer.state.factor;
-        let greatest = tracer.limit.peak.as_ref().is_none_or(|peak| is_above(self.direction, peak.factor, factor));
-        let status = match (apart, greatest) {
-            (false, _) => return end_unfollowed(tracer, self.direction, why),
-            (true, false) => Status::Collapse,
-            (true, true) => {
-                note_peak(tracer, &self.piece.tangent, self.direction);
-                tracer.ending.limit_point_end = Some(LimitPointEnd::JointLost);
-                Status::LimitPoint
-            }
-        };
-        end_path(tracer, status, why)
+        end_at_lost_joint(tracer, apart, Some(&self.piece.tangent), why)
     }
 
     /// Names other rates at an event that the rule does not tell from the one that is followed.
@@ -527,7 +520,7 @@ impl<'d> Run<'d> {
         let factor = tracer.state.factor;
         if self.rises && none_rises {
             tracer.limit.proven = Some(factor);
-            note_peak(tracer, &self.piece.tangent, self.direction);
+            note_peak(tracer, Some(&self.piece.tangent), self.direction);
         }
         let proved = proved && tracer.limit.peak.is_some();
         tracer.ending.limit_point_end = proved.then_some(LimitPointEnd::None);
@@ -561,7 +554,7 @@ impl<'d> Run<'d> {
             tracer.limit.proven_peaks.pop();
         }
         tracer.limit.peak.take_if(|peak| same(peak.factor));
-        note_peak(tracer, &self.piece.tangent, self.direction);
+        note_peak(tracer, Some(&self.piece.tangent), self.direction);
         if let Some(why) = found.unproved {
             tracer.limit.unproven = Some(why);
             return end_path(

@@ -19,6 +19,9 @@ const FORCE: f64 = 1e-10;
 /// The same of a rate, relative to the greatest rate of its kind.
 const RATE: f64 = 1e-8;
 
+/// Rate of a gap, relative to the greatest motion, that is rounding.
+const ROUNDING: f64 = 1e-13;
+
 /// Value, relative to the tolerance, up to which a monitor takes part in an event.
 const ACTIVE: f64 = 100.0;
 
@@ -97,20 +100,24 @@ impl Monitors {
             let opens = |f: u8| law.facets[f as usize].mode == FacetMode::Opening;
             let own = |f: u8, k: u8| if opens(f) { What::Opening } else { What::Flow(k) };
             let facets = 0..law.facets.len() as u8;
+            let [low, high] = system.problem.contacts[contact].sliding.slip;
+            let faces = |add: &mut dyn FnMut(What)| {
+                let bounds = [(low, false), (high, true)].into_iter().filter(|(bound, _)| bound.is_finite());
+                bounds.for_each(|(_, forward)| add(What::Face { forward }));
+            };
             match *mode {
                 ContactMode::Stick => facets.for_each(|f| add(What::Slack(f))),
                 ContactMode::Facet(i) => {
                     if !opens(i) {
-                        let [low, high] = system.problem.contacts[contact].sliding.slip;
-                        [(low, false), (high, true)]
-                            .into_iter()
-                            .filter(|(bound, _)| bound.is_finite())
-                            .for_each(|(_, forward)| add(What::Face { forward }));
+                        faces(&mut add);
                     }
                     add(own(i, 0));
                     facets.filter(|f| *f != i).for_each(|f| add(What::Slack(f)));
                 }
                 ContactMode::Corner(i, j) => {
+                    if !(opens(i) && opens(j)) {
+                        faces(&mut add);
+                    }
                     add(own(i, 0));
                     add(own(j, 1));
                 }
@@ -127,12 +134,16 @@ impl Monitors {
         let force = greatest(&state.force).max(1e-12 * u.force);
         let rigidity = (0..state.gap.len()).map(|c| system.stiffness(c)).fold(0.0, |a: f64, k| a.max(k[0].max(k[1])));
         let rounding = gap_rounding(system, state);
+        // A structure that moves as a whole has gaps and forces whose rates are the rounding of its motion.
+        let fastest = tangent.motion.iter().map(|q| q[0].hypot(q[1]).max((q[2] * u.length).abs())).fold(0.0, f64::max);
         let gap_rate = greatest(&tangent.gap);
+        let gap_rounding = ROUNDING * fastest;
         let sizes = Sizes {
             force: (rounding * rigidity).clamp(FORCE * force, ALLOWED * force),
             gap: rounding.max(FORCE * force / rigidity.max(1e-300)),
-            force_rate: RATE * greatest(&tangent.force).max(1e-6 * gap_rate * u.force / u.displacement),
-            gap_rate: RATE * gap_rate,
+            force_rate: (RATE * greatest(&tangent.force).max(1e-6 * gap_rate * u.force / u.displacement))
+                .max(gap_rounding * rigidity),
+            gap_rate: (RATE * gap_rate).max(gap_rounding),
         };
         self.0.iter().map(|monitor| monitor.read(system, state, tangent, &sizes)).collect()
     }

@@ -1,0 +1,108 @@
+//! Converged states that are taken over, and paths that end with them because a joint or all contact is lost.
+
+use super::events::events;
+use super::peak::note_peak;
+use super::recorded::recorded;
+use super::second_order::stability;
+use super::state::{State, Tangent};
+use super::tracer::{LoadStepEnding, Tracer, direction, end_path, foreseen, is_above};
+use crate::path::energy::load_size;
+use crate::path::stability::regains_limit_point;
+use voussoir_core::limit::Status;
+use voussoir_core::path::{Contact, LimitPointEnd};
+
+/// Greatest contact force after a peak of finite displacements, by that at the peak, with which the blocks have
+/// come apart: what is left is rounding.
+const APART: f64 = 1e-6;
+/// Takes a converged state as the next one. Whether to go on.
+pub(super) fn commit(tracer: &mut Tracer, mut next: State) -> bool {
+    let greatest = |force: &[[f64; 2]]| force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
+    if tracer.system.finite()
+        && let Some(peak) = &tracer.limit.peak
+        && greatest(&next.force) <= APART * greatest(&peak.state.force)
+    {
+        end_path(
+            tracer,
+            Status::Collapse,
+            "after the peak the blocks come apart: no forces are left between them".into(),
+        );
+        return false;
+    }
+    if !tracer.system.finite() {
+        tracer.system.drop_rounding(&mut next, tracer.system.loads.start);
+    }
+    let gradient = tracer.system.gradient(&next);
+    tracer.record.events.extend(events(&tracer.system, tracer.load_step, &tracer.state, &next));
+    let (energy, work) = foreseen(tracer, &next, &gradient);
+    tracer.record.energy = energy;
+    let start = tracer.state.clone();
+    tracer.system.keep(&start, &mut next);
+    let mut seen = recorded(&tracer.record.energy, &tracer.system, tracer.load_step, &next, &gradient);
+    if regains_limit_point(&tracer.limit.proven_peaks, tracer.load_step, [start.factor, next.factor]) {
+        let settles = load_size(tracer.system.problem, tracer.system.loads.growing) == 0.0;
+        seen.stable_under_load = stability(&mut tracer.system, &next, settles).under_load;
+    }
+    let (problem, finite) = (tracer.system.problem, tracer.system.finite());
+    tracer.record.balance = tracer.record.balance.after(problem, finite, &tracer.record.state, &seen).0;
+    tracer.record.state = seen;
+    tracer.state = next;
+    tracer.record.work = work;
+    tracer.system.count("steps", 1);
+    if !tracer.observer.state(tracer.system.problem, &tracer.record.state) {
+        end_path(tracer, Status::Stalled, "stopped by the observer".into());
+        return false;
+    }
+    if tracer.system.finite()
+        && let Some((apart, why)) = left_its_pairing(tracer)
+    {
+        end_at_lost_joint(tracer, apart, None, why);
+        return false;
+    }
+    true
+}
+
+/// Ends a path with finite displacements at which a joint has slipped as far as its pairing holds. If its blocks have come
+/// `apart` they are no structure any longer, and a load that has grown up to here is a limit point; `rate` leads on from it.
+pub(super) fn end_at_lost_joint(
+    tracer: &mut Tracer,
+    apart: bool,
+    rate: Option<&Tangent>,
+    why: String,
+) -> LoadStepEnding {
+    let direction = direction(tracer);
+    let greatest = tracer.limit.peak.as_ref().is_none_or(|peak| is_above(direction, peak.factor, tracer.state.factor));
+    let status = match (apart, greatest) {
+        (true, true) => {
+            note_peak(tracer, rate, direction);
+            tracer.ending.limit_point_end = Some(LimitPointEnd::JointLost);
+            Status::LimitPoint
+        }
+        (false, true) => Status::Stalled,
+        (apart, false) if apart || tracer.post_peak.far => Status::Collapse,
+        _ => Status::Stalled,
+    };
+    end_path(tracer, status, why)
+}
+
+/// A pressed point that has slipped further than its pairing holds: whether its blocks have come apart, and why.
+fn left_its_pairing(tracer: &Tracer) -> Option<(bool, String)> {
+    let largest = tracer.state.force.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max);
+    let points = tracer.system.problem.contacts.iter().zip(&tracer.state.force).zip(&tracer.state.gap);
+    let mut pressed = points.filter(|((_, force), _)| force[0] > 1e-9 * largest);
+    let ((c, _), gap) = pressed.find(|((c, _), gap)| !c.sliding.holds(gap[1]))?;
+    Some(lost_joint(tracer, c, gap[1]))
+}
+
+/// Whether the blocks have come apart where a contact point has slipped as far as its pairing holds, and what has happened.
+pub(super) fn lost_joint(tracer: &Tracer, contact: &Contact, slip: f64) -> (bool, String) {
+    let (apart, why) = match contact.sliding.corners {
+        [low, high] if low != high => (true, "it has lost half of its height"),
+        [0.5, 0.5] if contact.sliding.passing == 0.0 => {
+            (false, "a contact point away from all corners is paired for less")
+        }
+        [0.5, 0.5] => (true, "it has lost half of its height"),
+        _ => (true, "its contact point leaves the face that it slides on"),
+    };
+    let (joint, factor) = (contact.joint, tracer.state.factor);
+    (apart, format!("joint {joint} has slipped by {:.4e} m at factor {factor}: {why}", slip.abs()))
+}
