@@ -115,7 +115,7 @@ voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::PathSolver,
         tag: "newton_path",
-        summary: "steps by semismooth Newton: any law of joints, blocks that yield, small or finite displacements, peaks and falling branches",
+        summary: "pieces between located events, or load steps by semismooth Newton: any law of joints, blocks that yield, small or finite displacements",
         parameters: &[],
         provides: &[Capability::FINITE_DISPLACEMENTS, Capability::SETTLEMENT],
         requires: &[&[Capability::FACETS, Capability::RESPONSE]],
@@ -127,8 +127,6 @@ voussoir_core::inventory::submit! {
             "Wriggers 2006, Computational Contact Mechanics, Springer",
             "de Borst 1987, Computers & Structures 25, 211-224",
             "Judice & Pires 1994, Computers & Operations Research 21, 587-596",
-            "Ralph 1994, Math. Operations Research 19, 352-389",
-            "Dirkse & Ferris 1995, Optim. Methods Software 5, 123-156",
             "De Luca, Facchinei & Kanzow 1996, Math. Programming 75, 407-439",
             "Christensen, Klarbring, Pang & Stromberg 1998, Int. J. Numer. Meth. Engng 42, 145-173",
             "Grippo, Lampariello & Lucidi 1986, SIAM J. Numer. Anal. 23, 707-716",
