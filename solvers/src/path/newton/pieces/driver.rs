@@ -460,7 +460,7 @@ impl<'d> Run<'d> {
             }
         };
         self.enter(tracer, piece, modes);
-        self.rises = self.goes_up(tracer, &self.piece.tangent.clone());
+        self.rises = self.goes_up(tracer, &self.piece.tangent).unwrap_or(was);
         if let Some(ending) = self.plateau(tracer) {
             return Some(ending);
         }
@@ -540,8 +540,11 @@ impl<'d> Run<'d> {
         self.piece = piece;
     }
 
-    fn goes_up(&self, tracer: &Tracer, rate: &Tangent) -> bool {
-        rate.factor * self.direction > STILL * tracer.system.units().factor * motion_size(&tracer.system, rate)
+    /// Whether the factor goes in its sense along a rate. `None` if it stands still: a mechanism may close a gap, behind which
+    /// the load rises again.
+    fn goes_up(&self, tracer: &Tracer, rate: &Tangent) -> Option<bool> {
+        let still = STILL * tracer.system.units().factor * motion_size(&tracer.system, rate);
+        (rate.factor.abs() > still).then_some(rate.factor * self.direction > 0.0)
     }
 
     /// The end at a mechanism under a constant load. Limit points from which the load has stood still up to here are the

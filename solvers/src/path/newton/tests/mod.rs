@@ -1,6 +1,7 @@
 //! Tests of newton_path on hand-made systems of few unknowns.
 
 mod derivatives;
+mod one_block;
 mod snap_through;
 mod two_degrees;
 mod yielding;
