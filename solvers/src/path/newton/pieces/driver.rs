@@ -167,8 +167,14 @@ impl<'d> Run<'d> {
         let moves = increment_along(&tracer.system, &tracer.state, &self.piece.tangent).motion;
         let length = self.length.min(self.longest / moves.max(1e-300));
         let slope = self.piece.tangent.factor / tracer.system.units().factor;
+        // From a load that stands still the path may go on in either sense.
+        let sense = match (slope.abs() > STILL, self.rises) {
+            (true, _) => slope.signum(),
+            (false, true) => self.direction,
+            (false, false) => -self.direction,
+        };
         let watched = Watched {
-            sense: (slope.abs() > STILL).then(|| slope.signum()),
+            sense: (!self.on_plateau).then_some(sense),
             target: self.target.is_finite().then_some((self.target, self.direction)),
         };
         let start = tracer.state.clone();
