@@ -166,3 +166,17 @@ fn mechanisms_without_resistance_are_twins() {
     let (rate, twins) = case.goes();
     assert!(rate.factor == 0.0 && !twins.is_empty(), "{rate:?} {twins:?}");
 }
+
+/// Two points that may slide independently under the load that has been reached: a rate in which both slide is not determined
+/// by its modes, so that one of them slides first. The other one is its twin.
+#[test]
+fn one_of_two_independent_parts_slides_first() {
+    let laws = dry(0.5, 0.0);
+    let case = Case::slipping(&laws, 2, &tangential(2, 0.0, |_, _| 0.0), &[0.0, 1.0, 0.0, 1.0])
+        .arriving(0, ContactMode::Stick, true)
+        .arriving(1, ContactMode::Stick, true);
+    let (rate, twins) = case.goes();
+    assert_eq!((rate.factor, twins.len()), (0.0, 1));
+    let modes = [&rate.modes, &twins[0].modes];
+    assert!(modes.contains(&&vec![SLIP, ContactMode::Stick]) && modes.contains(&&vec![ContactMode::Stick, SLIP]));
+}
