@@ -26,8 +26,6 @@ const MOST_TRIALS: usize = 100;
 const NARROW: f64 = 1e-13;
 /// Change of the factor in a step, relative to it, below which it is not looked at.
 const FLAT: f64 = 1e-7;
-/// Rate of the factor, in units, that is rounding.
-const STILL: f64 = 1e-13;
 /// Rate of the factor, relative to that at the start, at which it turns.
 const TURNS: f64 = 1e-8;
 
@@ -98,7 +96,7 @@ impl Step<'_, '_> {
         let at_start = (self.piece.tangent.factor / unit).abs();
         all.push(self.watched.sense.map_or(never, |sense| Reading {
             value: sense * rate.factor / unit,
-            tolerance: (TURNS * at_start).max(STILL),
+            tolerance: TURNS * at_start,
             ..never
         }));
         all.push(self.watched.target.map_or(never, |(target, direction)| Reading {

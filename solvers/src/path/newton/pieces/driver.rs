@@ -38,6 +38,8 @@ const AHEAD: f64 = 1e-5;
 const MOST_UNEXPLAINED: f64 = 0.1;
 /// Length of a step, relative to that wanted, from which on its error tells how long the next one may be.
 const TELLING: f64 = 0.1;
+/// Relative fall of a load that is rounding.
+const NOT_FALLEN: f64 = 1e-12;
 /// Relative difference of two loads that are the same in a result.
 const SAME_LOAD: f64 = 1e-6;
 /// Length, relative to the first step, below which there is no step.
@@ -167,14 +169,8 @@ impl<'d> Run<'d> {
         let moves = increment_along(&tracer.system, &tracer.state, &self.piece.tangent).motion;
         let length = self.length.min(self.longest / moves.max(1e-300));
         let slope = self.piece.tangent.factor / tracer.system.units().factor;
-        // From a load that stands still the path may go on in either sense.
-        let sense = match (slope.abs() > STILL, self.rises) {
-            (true, _) => slope.signum(),
-            (false, true) => self.direction,
-            (false, false) => -self.direction,
-        };
         let watched = Watched {
-            sense: (!self.on_plateau).then_some(sense),
+            sense: (slope.abs() > STILL).then(|| slope.signum()),
             target: self.target.is_finite().then_some((self.target, self.direction)),
         };
         let start = tracer.state.clone();
@@ -303,6 +299,7 @@ impl<'d> Run<'d> {
             return self.peak(tracer);
         }
         if !was && self.rises {
+            self.forget_still_peak(tracer);
             let state = tracer.state.clone();
             let lower =
                 tracer.post_peak.trough.as_ref().is_none_or(|t| (t.factor - state.factor) * self.direction > 0.0);
@@ -312,6 +309,17 @@ impl<'d> Run<'d> {
             }
         }
         self.after(tracer)
+    }
+
+    /// A load that has stood still since its last limit point and rises again has none there: a mechanism may close a gap.
+    fn forget_still_peak(&self, tracer: &mut Tracer) {
+        let own = |peak: &&ProvenPeak| peak.load_step == tracer.load_step;
+        let Some(last) = tracer.limit.proven_peaks.last().filter(own) else { return };
+        let (factor, here) = (last.factor, tracer.state.factor);
+        if [last.lowest, here].iter().all(|other| (factor - other).abs() <= NOT_FALLEN * factor.abs()) {
+            tracer.limit.proven_peaks.pop();
+            tracer.limit.peak.take_if(|peak| peak.factor == factor);
+        }
     }
 
     /// At a limit point.
@@ -466,7 +474,7 @@ impl<'d> Run<'d> {
             }
         };
         self.enter(tracer, piece, modes);
-        self.rises = self.goes_up(tracer, &self.piece.tangent).unwrap_or(was);
+        self.rises = self.goes_up(tracer, &self.piece.tangent.clone());
         if let Some(ending) = self.plateau(tracer) {
             return Some(ending);
         }
@@ -546,11 +554,8 @@ impl<'d> Run<'d> {
         self.piece = piece;
     }
 
-    /// Whether the factor goes in its sense along a rate. `None` if it stands still: a mechanism may close a gap, behind which
-    /// the load rises again.
-    fn goes_up(&self, tracer: &Tracer, rate: &Tangent) -> Option<bool> {
-        let still = STILL * tracer.system.units().factor * motion_size(&tracer.system, rate);
-        (rate.factor.abs() > still).then_some(rate.factor * self.direction > 0.0)
+    fn goes_up(&self, tracer: &Tracer, rate: &Tangent) -> bool {
+        rate.factor * self.direction > STILL * tracer.system.units().factor * motion_size(&tracer.system, rate)
     }
 
     /// The end at a mechanism under a constant load. Limit points from which the load has stood still up to here are the
