@@ -7,15 +7,7 @@ use super::direction::{Next, next_direction};
 use super::trace::Trace;
 use crate::contact::mode::ContactMode;
 use crate::path::system::Load;
-use voussoir_core::path::{PathObserver, PathProblem, PathSettings, PathState};
-
-struct Nobody;
-
-impl PathObserver for Nobody {
-    fn state(&mut self, _problem: &PathProblem, _state: &PathState) -> bool {
-        true
-    }
-}
+use voussoir_core::path::{PathProblem, PathSettings, Unobserved};
 
 /// Modes of all contact points just after a load step has begun at a state without forces, with its factor going in the
 /// sense `sense` (1 or −1).
@@ -28,8 +20,8 @@ pub fn first_modes(
     load_step: usize,
     sense: f64,
 ) -> Result<Vec<ContactMode>, String> {
-    let mut nobody = Nobody;
-    let mut trace = Trace::new(problem, settings, &mut nobody);
+    let mut unobserved = Unobserved;
+    let mut trace = Trace::new(problem, settings, &mut unobserved);
     trace.state.load_step = load_step;
     let load = Load::new(&trace.system, problem, &problem.load_steps[load_step].loading).reversed_if(sense < 0.0);
     match next_direction(&mut trace, &load) {

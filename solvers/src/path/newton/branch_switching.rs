@@ -1,7 +1,8 @@
 //! Branch switching: the rates on which points or blocks yield at a state from which no step converges.
 
+use super::ahead::facing_ahead;
 use super::control::Control;
-use super::inelastic::{plastic_power, update_blocks};
+use super::inelastic::plastic_power;
 use super::state::Tangent;
 use super::tangent::{modes_ahead, tangent_at, tangent_of_yielding};
 use super::tracer::{Tracer, moved_along};
@@ -35,10 +36,7 @@ pub(super) fn yielding_branch(tracer: &mut Tracer, rate: &Tangent, share: f64) -
 /// The rate on which blocks yield that a small share of `rate` takes beyond their strength, in the sense
 /// in which they dissipate. Their next predictor is that of the yielding tangent.
 pub(super) fn yielding_blocks_branch(tracer: &mut Tracer, rate: &Tangent, share: f64) -> Option<Tangent> {
-    let mut ahead = moved_along(tracer, rate, share);
-    update_blocks(&mut tracer.system, &mut ahead).ok()?;
-    let mut turning = tracer.state.clone();
-    turning.blocks = ahead.blocks;
+    let turning = facing_ahead(&mut tracer.system, &tracer.state, rate, share)?;
     if !turning.yields() {
         return None;
     }

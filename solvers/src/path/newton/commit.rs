@@ -6,7 +6,6 @@ use super::recorded::recorded;
 use super::second_order::stability;
 use super::state::{State, Tangent};
 use super::tracer::{LoadStepEnding, Tracer, direction, end_path, foreseen, is_above};
-use crate::path::energy::load_size;
 use crate::path::stability::regains_limit_point;
 use voussoir_core::limit::Status;
 use voussoir_core::path::{Contact, LimitPointEnd};
@@ -14,6 +13,7 @@ use voussoir_core::path::{Contact, LimitPointEnd};
 /// Greatest contact force after a peak of finite displacements, by that at the peak, with which the blocks have
 /// come apart: what is left is rounding.
 const APART: f64 = 1e-6;
+
 /// Takes a converged state as the next one. Whether to go on.
 pub(super) fn commit(tracer: &mut Tracer, mut next: State) -> bool {
     let greatest = |force: &[[f64; 2]]| force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
@@ -39,7 +39,7 @@ pub(super) fn commit(tracer: &mut Tracer, mut next: State) -> bool {
     tracer.system.keep(&start, &mut next);
     let mut seen = recorded(&tracer.record.energy, &tracer.system, tracer.load_step, &next, &gradient);
     if regains_limit_point(&tracer.limit.proven_peaks, tracer.load_step, [start.factor, next.factor]) {
-        let settles = load_size(tracer.system.problem, tracer.system.loads.growing) == 0.0;
+        let settles = tracer.system.settles();
         seen.stable_under_load = stability(&mut tracer.system, &next, settles).under_load;
     }
     let (problem, finite) = (tracer.system.problem, tracer.system.finite());

@@ -5,10 +5,9 @@ use super::measure::{cosine, increment_along, motion_size, tangent_size};
 use super::response::update_at_rest;
 use super::state::{State, Tangent};
 use super::tangent::tangent_at;
-use super::tracer::{LoadStepEnding, Tracer, end_path};
+use super::tracer::{LoadStepEnding, Tracer, direction, end_path};
 use crate::contact::mode::ContactMode;
 use crate::path::continuation::arc_length::ArcLength;
-use crate::path::energy::load_size;
 use std::sync::Arc;
 use voussoir_core::limit::Status;
 use voussoir_core::path::{Increment, LoadStep, LoadStepEnd};
@@ -86,7 +85,7 @@ pub(super) struct Following<'d> {
 impl<'d> Following<'d> {
     /// At the beginning of a load step, or how it ends there.
     pub fn begin(tracer: &mut Tracer, load_step: &'d LoadStep, target: f64) -> Result<Self, LoadStepEnding> {
-        let direction = if target < load_step.start { -1.0 } else { 1.0 };
+        let direction = direction(tracer);
         if target == tracer.state.factor {
             return Err(LoadStepEnding::Reached);
         }
@@ -98,9 +97,7 @@ impl<'d> Following<'d> {
             return Err(end_path(tracer, Status::Stalled, why));
         };
         let nothing = |one: f64, tracer: &Tracer| one.is_nan() || one <= 1e-14 * tangent_size(&tracer.system, &tangent);
-        if nothing(per_tangent(tracer, &tangent, None), tracer)
-            && load_size(tracer.system.problem, tracer.system.loads.growing) == 0.0
-        {
+        if nothing(per_tangent(tracer, &tangent, None), tracer) && tracer.system.settles() {
             // Without a load there is no displacement of one to control.
             tracer.strategy = Arc::new(ArcLength::default());
         }

@@ -13,7 +13,6 @@ use crate::contact::active_point::ActivePoint;
 use crate::contact::facet::slack;
 use crate::contact::mode::ContactMode;
 use crate::linear::inner;
-use crate::path::energy::load_size;
 use crate::rate::answer::{Budget, Continuation, answer};
 use crate::rate::arrival::{Arrival, ArrivalPoint};
 use crate::rate::branching::{RisingRate, rising_rate};
@@ -124,7 +123,7 @@ pub(super) fn rate_after_event(
     let mut problem = rate_problem(system, &active, &responses);
     let load = responses[2 * active.contacts.len()].iter().zip(&equations.factor);
     problem.load_flexibility = load.map(|(x, p)| x * p * direction).sum();
-    problem.settles = load_size(system.problem, system.loads.growing) == 0.0;
+    problem.settles = system.settles();
     problem.metric = Some(metric(system, &responses));
     let point = |c: &usize| ArrivalPoint {
         mode: state.mode[*c],

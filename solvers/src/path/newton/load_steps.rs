@@ -1,4 +1,4 @@
-//! The load steps one after the other, converged states taken over, and the answer.
+//! The load steps one after the other, and the answer.
 
 use super::follow::follow;
 use super::load_to_factor::load_to_factor;
@@ -11,7 +11,7 @@ use super::stable_branch::{Departure, leave_unstable};
 use super::system::StepSystem;
 use super::tracer::{Ending, LimitPoint, LoadStepEnding, PostPeak, Record, Tracer, end_path};
 use crate::path::continuation::arc_length::ArcLength;
-use crate::path::energy::{EnergyBalance, StageBalance, load_size};
+use crate::path::energy::{EnergyBalance, StageBalance};
 use crate::path::outcome::{Outcome, PathRecord, stalled};
 use std::sync::Arc;
 use voussoir_core::certificate::flow_residual;
@@ -107,7 +107,7 @@ fn run<'a>(tracer: &mut Tracer<'a, '_>, problem: &'a PathProblem) {
 /// The stability of the state at which a stage ends. From an unstable one damped descent leads to a stable one; where
 /// it leads to none the stage does not stand.
 fn end_stage(tracer: &mut Tracer, load_step: &LoadStep) -> LoadStepEnding {
-    let settles = load_size(tracer.system.problem, &load_step.loading) == 0.0;
+    let settles = tracer.system.settles();
     let state = tracer.state.clone();
     let mut found = stability(&mut tracer.system, &state, settles);
     if tracer.system.finite()

@@ -8,6 +8,12 @@ use super::system::StepSystem;
 use crate::path::energy;
 use voussoir_core::path::Increment;
 
+/// Greatest rate of a body's displacement \[m\]: of its pole, or by its rotation over the scene's size.
+pub(super) fn fastest(system: &StepSystem, motion: &[[f64; 3]]) -> f64 {
+    let size = system.units().length;
+    motion.iter().map(|q| q[0].hypot(q[1]).max(q[2].abs() * size)).fold(0.0, f64::max)
+}
+
 /// Work-conjugate displacement of the growing load, or how far supports have moved \[m\].
 pub(super) fn load_displacement(system: &StepSystem, motion: &[[f64; 3]], factor: f64) -> f64 {
     let rigid = |body, point| system.geometry.rigid(body, point, motion);

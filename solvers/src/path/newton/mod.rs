@@ -1,6 +1,7 @@
 //! `newton_path`: semismooth Newton on the modes of contact points, small and finite displacements.
 #![doc = include_str!("newton_path.md")]
 
+mod ahead;
 mod blocks;
 mod branch_switching;
 mod commit;
@@ -28,7 +29,6 @@ mod loads;
 mod measure;
 mod monitors;
 mod nearby;
-mod orientation;
 mod peak;
 mod pieces;
 mod plastic_plateau;

@@ -2,7 +2,7 @@
 
 use super::control::Control;
 use super::following::{Following, per_tangent};
-use super::measure::{increment_along, motion_size};
+use super::measure::{fastest, increment_along, motion_size};
 use super::recorded::recorded;
 use super::state::{State, Tangent};
 use super::step::solve_step;
@@ -47,8 +47,8 @@ pub(super) fn locate_peak(tracer: &mut Tracer, following: &Following, direction:
 }
 
 /// Keeps a proven peak; the greatest is what the path's answer speaks of (with small displacements the first).
-/// One where the path has been before, with less load in between, is not another one: with friction a path may run in
-/// a loop, which the search for cycles ends.
+/// If the path has been there before, with less load in between, it is not another one: with friction a path may run in a
+/// loop.
 pub(super) fn note_proven_peak(tracer: &mut Tracer, peak: Peak, direction: f64) {
     let (factor, displacement) = (peak.factor, peak.state.displacement);
     let greatest = |known: &Peak| (factor - known.factor) * direction > 0.0;
@@ -102,7 +102,7 @@ pub(super) fn scaled_motion(tracer: &Tracer, state: &State, rate: &Tangent) -> O
     let power = increment_along(&tracer.system, state, rate).displacement * u.displacement * load;
     let size = motion_size(&tracer.system, rate) * u.displacement * u.force / u.factor;
     let by = if load == 0.0 && tracer.system.finite() {
-        rate.motion.iter().map(|q| q[0].hypot(q[1]).max(q[2].abs() * u.length)).fold(0.0, f64::max)
+        fastest(&tracer.system, &rate.motion)
     } else if power > 1e-6 * size {
         power
     } else {

@@ -15,6 +15,10 @@ use crate::linear::inner;
 use crate::path::stability::{SecondOrderWork, over_weak_points, work_by_responses};
 use nalgebra::DMatrix;
 
+/// Eigenvalue in units, the mean stiffness of a contact, up to which its sign means nothing: ten times the regularisation of
+/// the equations.
+const SINGULAR: f64 = 1e-8;
+
 /// Slack, relative to the greatest force, with which a point is weakly active.
 const WEAK: f64 = 1e-9;
 
@@ -105,10 +109,16 @@ pub(super) fn stability(system: &mut StepSystem, state: &State, settles: bool) -
     StateStability { under_load, under_control, sufficient_only }
 }
 
-/// Whether a state is unstable under its loads although the points that slide stick.
-pub(super) fn is_unstable_at_rest(system: &mut StepSystem, state: &State) -> bool {
+/// The second-order work of a state that is unstable under its loads, also with the points that slide held. `None` if it is
+/// stable, or its second-order work is not known.
+pub(super) fn instability(system: &mut StepSystem, state: &State) -> Option<SecondOrderWork> {
+    let work = second_order_work(system, state)?;
+    if work.turned == 0 || work.nearest <= SINGULAR {
+        return None;
+    }
     let held = with_weak_points(system, state, |_, held| held);
-    second_order_work(system, &held).is_some_and(|work| work.turned > 0)
+    let at_rest = second_order_work(system, &held)?;
+    (at_rest.turned > 0).then_some(work)
 }
 
 /// The state with its weakly active points in modes of our choice among released and held: points that slide, and

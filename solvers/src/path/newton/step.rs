@@ -20,9 +20,7 @@ pub(super) fn solve_step(
     if found.is_ok() || (!system.laws.responses.is_empty() && system.laws.polygons.is_empty()) {
         return found;
     }
-    if system.rules.line_search
-        && let Ok(found) = line_searched(system, start, guess.clone(), control)
-    {
+    if let Ok(found) = line_searched(system, start, guess.clone(), control) {
         return Ok(found);
     }
     iterate(system, start, guess, control, 0, None)

@@ -13,6 +13,7 @@ use super::tractions::{Responses, TractionUpdates};
 use crate::contact::mode::ContactMode;
 use crate::contact::yield_polygon::YieldPolygon;
 use crate::linear::condensed::Elimination;
+use crate::path::energy::load_size;
 use crate::path::system::{Load, System, Units};
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -62,15 +63,8 @@ pub(super) struct StepSystem<'a> {
     pub counters: Counters,
     /// Greatest relative residual of each iteration of the last step that was tried.
     pub residuals: Vec<f64>,
-    pub rules: Rules,
     /// Viscous wrenches of a descent to a stable equilibrium.
     pub damping: Option<Damping>,
-}
-
-/// How steps are found and judged.
-pub(super) struct Rules {
-    /// Whether Newton's method may resort to a line search.
-    pub line_search: bool,
 }
 
 /// Viscous wrenches on the free bodies: rate × the motion since, both in units.
@@ -130,7 +124,6 @@ impl<'a> StepSystem<'a> {
             counters: Counters::new(),
             loads: StagedLoads { earlier: Vec::new(), growing: &problem.load_steps[0].loading, start: 0.0 },
             residuals: Vec::new(),
-            rules: Rules { line_search: true },
             damping: None,
             blocks: undeformed(problem)?,
             cache,
@@ -171,6 +164,11 @@ impl<'a> StepSystem<'a> {
     /// Whether with small displacements every law is one of facets.
     pub fn piecewise_linear(&self) -> bool {
         self.laws.responses.is_empty() && self.blocks.iter().all(Option::is_none)
+    }
+
+    /// Returns true if the present load step moves supports and adds no load.
+    pub fn settles(&self) -> bool {
+        load_size(self.problem, self.loads.growing) == 0.0
     }
 
     /// Whether factors may serve equations that are near theirs: those of a chain of elastic blocks with laws of facets.

@@ -12,7 +12,6 @@ use super::system::{StepFailure, StepSystem};
 use super::tangent::tangent_at;
 use super::tracer::{LoadStepEnding, Tracer, end_path, moved_along};
 use crate::path::continuation::arc_length::ArcLength;
-use crate::path::energy::load_size;
 use std::sync::Arc;
 use voussoir_core::limit::Status;
 use voussoir_core::path::{Continuation, LoadStep};
@@ -107,7 +106,7 @@ pub(super) fn ends_in_ray(tracer: &mut Tracer, rate: &Tangent, direction: f64, t
     // block that may yield carries any load.
     if target.is_infinite() && !tracer.system.problem.yields() && factor > 1e-9 * (motion + force) {
         // A support that moves what is statically determinate asks for no forces.
-        let constant = force <= 1e-7 * motion && load_size(tracer.system.problem, tracer.system.loads.growing) == 0.0;
+        let constant = force <= 1e-7 * motion && tracer.system.settles();
         let of = |x: f64| if constant { 0.0 } else { x / rate.factor };
         tracer.ending.ray = Some(rate.force.iter().map(|r| r.map(of)).collect());
         end_path(

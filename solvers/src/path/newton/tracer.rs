@@ -14,9 +14,6 @@ use voussoir_core::path::{
 
 /// Rise of the load above a peak, relative to it, that is none of rounding.
 const ABOVE: f64 = 1e-9;
-/// Movement of the load point after a peak, as a share of the span, from which on a path may end.
-pub(super) const MOVED_ON: f64 = 0.02;
-
 /// How a load step ended.
 pub(super) enum LoadStepEnding {
     /// At its factor.

@@ -131,9 +131,7 @@ impl Step<'_, '_> {
         let readings = self.readings(&state, &rate);
         Some(Trial { end: StepEnd { state, rate, length, error, unexplained }, readings })
     }
-}
 
-impl Step<'_, '_> {
     /// Error of the trapezoidal rule for the factor.
     fn unexplained(&self, end: &State, rate: &Tangent, length: f64) -> f64 {
         let [before, after] = [self.piece.tangent.factor, rate.factor].map(|slope| slope * length);

@@ -1,25 +1,26 @@
 //! Pieces one after the other, from the start of a load step to its end.
 
+use super::super::ahead::facing_ahead;
 use super::super::commit::{commit, end_at_lost_joint, lost_joint};
+use super::super::control::Control;
 use super::super::events::events;
 use super::super::measure::{increment_along, motion_size};
-use super::super::orientation::Orientation;
 use super::super::peak::{note_peak, peak_at};
+use super::super::second_order::{instability, second_order_work};
 use super::super::stable_branch::{Departure, leave_unstable};
 use super::super::state::{State, Tangent};
 use super::super::step_energy::step_energy;
-use super::super::tracer::{LoadStepEnding, Tracer, end_path};
+use super::super::tracer::{LoadStepEnding, Tracer, direction, end_path};
 use super::advance::{Advance, StepEnd, Watched, advance, state_at};
-use super::ahead::facing_ahead;
 use super::begin::begin;
+use super::corrector::correct;
 use super::end::{end_of_range, end_unfollowed};
 use super::monitors::{Monitor, What};
 use super::piece::Piece;
 use super::plateau::{Plateau, plateau, stands_still};
-use super::switch::{Following, after_event};
+use super::switch::{NextPiece, after_event};
 use crate::contact::mode::ContactMode;
 use crate::path::continuation::LARGEST_FINITE_STEP;
-use crate::path::energy::load_size;
 use crate::path::stability::SecondOrderWork;
 use voussoir_core::limit::Status;
 use voussoir_core::path::{Branching, LimitPointEnd, LoadStep, LoadStepEnd, ProvenPeak};
@@ -90,7 +91,7 @@ struct Cluster {
 
 /// By the strategy, up to a factor or the end of the path.
 pub(in super::super) fn follow(tracer: &mut Tracer, load_step: &LoadStep, target: f64) -> LoadStepEnding {
-    let direction = if target < load_step.start { -1.0 } else { 1.0 };
+    let direction = direction(tracer);
     if target == tracer.state.factor {
         return LoadStepEnding::Reached;
     }
@@ -175,7 +176,7 @@ impl<'d> Run<'d> {
         };
         let start = tracer.state.clone();
         let advance = advance(&mut tracer.system, &start, &self.piece, length, watched);
-        if let Some((end, work)) = advance.end().and_then(|end| self.instability(tracer, &start, end)) {
+        if let Some((end, work)) = advance.end().and_then(|end| self.first_unstable(tracer, &start, end)) {
             return self.leave(tracer, end, &work);
         }
         match advance {
@@ -264,11 +265,10 @@ impl<'d> Run<'d> {
     }
 
     /// The state at the target.
-    fn arrive(&mut self, tracer: &mut Tracer, end: StepEnd) -> Option<LoadStepEnding> {
-        let control = super::super::control::Control::Factor(self.target);
-        let mut end = end;
+    fn arrive(&mut self, tracer: &mut Tracer, mut end: StepEnd) -> Option<LoadStepEnding> {
+        let control = Control::Factor(self.target);
         let start = tracer.state.clone();
-        if let Some(state) = super::corrector::correct(&mut tracer.system, &start, end.state.clone(), &control) {
+        if let Some(state) = correct(&mut tracer.system, &start, end.state.clone(), &control) {
             end.state = state;
         }
         match self.take(tracer, end) {
@@ -324,8 +324,7 @@ impl<'d> Run<'d> {
 
     /// At a limit point.
     fn peak(&mut self, tracer: &mut Tracer) -> Option<LoadStepEnding> {
-        let settles = load_size(tracer.system.problem, tracer.system.loads.growing) == 0.0;
-        if settles && matches!(self.load_step.end, LoadStepEnd::Factor(_)) {
+        if tracer.system.settles() && matches!(self.load_step.end, LoadStepEnd::Factor(_)) {
             return self.snap(tracer);
         }
         note_peak(tracer, Some(&self.piece.tangent), self.direction);
@@ -343,10 +342,10 @@ impl<'d> Run<'d> {
     /// Beyond a limit point of a settlement: to the equilibrium that damped descent reaches.
     fn snap(&mut self, tracer: &mut Tracer) -> Option<LoadStepEnding> {
         let mut pushed = tracer.state.clone();
-        let orientation = Orientation::of(&mut tracer.system, &pushed, true);
+        let work = second_order_work(&mut tracer.system, &pushed);
         pushed.factor += SNAP * (self.target - self.load_step.start);
-        let departure = match &orientation {
-            Some(orientation) => leave_unstable(tracer, &pushed, &orientation.work, true),
+        let departure = match &work {
+            Some(work) => leave_unstable(tracer, &pushed, work, true),
             None => Departure::Falls,
         };
         match departure {
@@ -376,17 +375,14 @@ impl<'d> Run<'d> {
 
     /// The first state of a step that is unstable under its loads, on a rising branch above all limit points, with its
     /// second-order work.
-    fn instability(&self, tracer: &mut Tracer, start: &State, end: &StepEnd) -> Option<(StepEnd, SecondOrderWork)> {
+    fn first_unstable(&self, tracer: &mut Tracer, start: &State, end: &StepEnd) -> Option<(StepEnd, SecondOrderWork)> {
         let factor = end.state.factor;
         let mut own = tracer.limit.proven_peaks.iter().filter(|peak| peak.load_step == tracer.load_step);
         let above = own.all(|peak| (factor - peak.factor) * self.direction > 0.0);
         if self.unstable || !self.rises || !above || end.length == 0.0 {
             return None;
         }
-        let unstable = |tracer: &mut Tracer, state: &State| {
-            Orientation::of(&mut tracer.system, state, true).filter(|found| found.unstable)
-        };
-        let mut work = unstable(tracer, &end.state)?.work;
+        let mut work = instability(&mut tracer.system, &end.state)?;
         let (mut low, mut high) = (0.0, end.length);
         let mut found = None;
         while high - low > PLACED * end.length {
@@ -395,12 +391,8 @@ impl<'d> Run<'d> {
                 state_at(&mut tracer.system, start, &self.piece, length).map(|state| (length, state))
             });
             let Some((middle, state)) = looked else { break };
-            match unstable(tracer, &state.state) {
-                Some(orientation) => {
-                    work = orientation.work;
-                    high = middle;
-                    found = Some(state);
-                }
+            match instability(&mut tracer.system, &state.state) {
+                Some(here) => (work, high, found) = (here, middle, Some(state)),
                 None => low = middle,
             }
         }
@@ -461,15 +453,16 @@ impl<'d> Run<'d> {
         }
         let hits = self.all_hits(tracer, hits);
         let here = tracer.state.clone();
-        let state = facing_ahead(&mut tracer.system, &here, &self.piece.tangent, AHEAD * self.first);
+        let length = AHEAD * self.first;
+        let state = facing_ahead(&mut tracer.system, &here, &self.piece.tangent, length).unwrap_or(here);
         let was = self.rises;
         let found = after_event(&mut tracer.system, &state, &self.piece, &hits, (self.direction, was));
         let (piece, modes, open) = match found {
-            Following::Piece { piece, modes, twins, open } => {
+            NextPiece::Piece { piece, modes, twins, open } => {
                 self.note_twins(tracer, twins);
                 (piece, modes, open)
             }
-            Following::Nothing { why, none_rises, proved } => {
+            NextPiece::Nothing { why, none_rises, proved } => {
                 return Some(self.end_at_event(tracer, &why, none_rises, proved));
             }
         };

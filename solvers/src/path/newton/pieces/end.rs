@@ -1,10 +1,11 @@
 //! Where a path ends: the range that a stage asks for.
 
-use super::super::tracer::{LoadStepEnding, MOVED_ON, Tracer, end_path, is_above};
-use crate::path::energy::load_size;
+use super::super::tracer::{LoadStepEnding, Tracer, end_path, is_above};
 use voussoir_core::limit::Status;
 use voussoir_core::path::LoadStep;
 
+/// Movement of the load point behind its greatest limit point, as a share of the span, from which on a path may end.
+const MOVED_ON: f64 = 0.02;
 /// Share of the greatest limit point to which the load falls.
 const HALF: f64 = 0.5;
 
@@ -30,10 +31,9 @@ pub(super) fn end_of_range(
         });
     };
     let beyond = (displacement - place).abs();
-    let settles = load_size(tracer.system.problem, tracer.system.loads.growing) == 0.0;
     let done = match tracer.settings.stop(load_step.stage) {
         // A support that goes no further by itself: what follows is a fall.
-        [None, None] if settles => true,
+        [None, None] if tracer.system.settles() => true,
         [None, None] => {
             let fallen = (greatest - factor) * direction;
             let halved = fallen >= HALF * (greatest - load_step.start).abs();

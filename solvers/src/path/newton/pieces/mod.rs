@@ -5,7 +5,6 @@
 //! gives the modes of the next piece ([`switch`]). [`driver`] puts pieces together, and [`end`] says where they end.
 
 mod advance;
-mod ahead;
 mod begin;
 mod corrector;
 pub(super) mod driver;

@@ -7,6 +7,7 @@
 //! open      opening above the dilated surface ≥ 0
 //! ```
 
+use super::super::measure::fastest;
 use super::super::state::{State, Tangent};
 use super::super::system::StepSystem;
 use super::super::tangent::{ALLOWED, gap_rounding};
@@ -135,9 +136,8 @@ impl Monitors {
         let rigidity = (0..state.gap.len()).map(|c| system.stiffness(c)).fold(0.0, |a: f64, k| a.max(k[0].max(k[1])));
         let rounding = gap_rounding(system, state);
         // A structure that moves as a whole has gaps and forces whose rates are the rounding of its motion.
-        let fastest = tangent.motion.iter().map(|q| q[0].hypot(q[1]).max((q[2] * u.length).abs())).fold(0.0, f64::max);
         let gap_rate = greatest(&tangent.gap);
-        let gap_rounding = ROUNDING * fastest;
+        let gap_rounding = ROUNDING * fastest(system, &tangent.motion);
         let sizes = Sizes {
             force: (rounding * rigidity).clamp(FORCE * force, ALLOWED * force),
             gap: rounding.max(FORCE * force / rigidity.max(1e-300)),

@@ -1,6 +1,7 @@
 //! Whether a piece is a mechanism that moves on under a constant load.
 
 use super::super::limit_point_test::{LimitPointTest, limit_point_test};
+use super::super::measure::fastest;
 use super::super::state::State;
 use super::super::tracer::Tracer;
 use super::advance::{Advance, StepEnd, Watched, advance};
@@ -32,7 +33,7 @@ pub(super) fn stands_still(tracer: &Tracer, piece: &Piece) -> bool {
 /// Moves along a piece that stands still. `None` if it is no plateau.
 pub(super) fn plateau(tracer: &mut Tracer, piece: &Piece, direction: f64) -> Option<Plateau> {
     let start = tracer.state.clone();
-    let fastest = fastest(tracer, &piece.tangent.motion);
+    let fastest = fastest(&tracer.system, &piece.tangent.motion).max(1e-300);
     let size = tracer.system.units().length;
     let (mut state, mut piece_here) = (start.clone(), piece.clone());
     let (mut moved, mut length) = (0.0, 1e-5 * size / fastest);
@@ -67,12 +68,6 @@ pub(super) fn plateau(tracer: &mut Tracer, piece: &Piece, direction: f64) -> Opt
         LimitPointTest::Unknown(why) => Some(Plateau { moved: state, unproved: Some(why) }),
         LimitPointTest::Tangent(..) => None,
     }
-}
-
-/// Greatest displacement of a body by its rates, its rotation times the scene's size.
-fn fastest(tracer: &Tracer, motion: &[[f64; 3]]) -> f64 {
-    let size = tracer.system.units().length;
-    motion.iter().map(|q| q[0].hypot(q[1]).max(q[2].abs() * size)).fold(1e-300, f64::max)
 }
 
 /// Returns true if factor and forces of two states are the same.

@@ -16,7 +16,7 @@ use voussoir_core::law::FacetMode;
 pub(super) type Start = (Tangent, Vec<ContactMode>);
 
 /// What follows an event.
-pub(super) enum Following {
+pub(super) enum NextPiece {
     /// A piece with its modes.
     Piece {
         piece: Piece,
@@ -167,7 +167,7 @@ pub(super) fn after_event(
     piece: &Piece,
     hits: &[Monitor],
     (direction, rises): (f64, bool),
-) -> Following {
+) -> NextPiece {
     let single = hits.iter().all(|m| m.contact == hits[0].contact);
     let mut crossing = if single { crossings(system, state, piece, hits) } else { Vec::new() };
     let goes_up = |start: &Start| start.0.factor * direction > 0.0;
@@ -181,23 +181,23 @@ pub(super) fn after_event(
             let open = (!none_rises).then(|| "it is not decided whether a rate has a growing factor".to_string());
             leading(system, (rate, modes), twins, open)
         }
-        AfterEvent::Nothing => Following::Nothing {
+        AfterEvent::Nothing => NextPiece::Nothing {
             why: "no rate of equilibrium leads on from the event".into(),
             none_rises: true,
             proved: true,
         },
         AfterEvent::Unknown(why, none_rises) => match crossing.pop() {
             Some(start) if crossing.is_empty() => leading(system, start, 0, (!none_rises).then_some(why)),
-            _ => Following::Nothing { why: format!("the rate is not decided: {why}"), none_rises, proved: false },
+            _ => NextPiece::Nothing { why: format!("the rate is not decided: {why}"), none_rises, proved: false },
         },
     }
 }
 
-fn leading(system: &StepSystem, (rate, modes): Start, twins: usize, open: Option<String>) -> Following {
+fn leading(system: &StepSystem, (rate, modes): Start, twins: usize, open: Option<String>) -> NextPiece {
     match Piece::new(system, &modes, &rate) {
-        Some(piece) => Following::Piece { piece, modes, twins, open },
+        Some(piece) => NextPiece::Piece { piece, modes, twins, open },
         None => {
-            Following::Nothing { why: "the rate that leads on does not move".into(), none_rises: false, proved: false }
+            NextPiece::Nothing { why: "the rate that leads on does not move".into(), none_rises: false, proved: false }
         }
     }
 }
