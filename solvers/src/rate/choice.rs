@@ -4,7 +4,7 @@
 //! 2. Otherwise the rate with the greatest dissipation per unit step, if any dissipates.
 //! 3. Otherwise the rate with the least second-order energy per unit step.
 //!
-//! Rates that their modes do not determine are left out if others are left: where two parts of a structure may slide
+//! Rates that their modes do not determine are left out if others are left: if two parts of a structure may slide
 //! independently, one of them slides first. Rates within a relative 1e-6 are twins. A unit step has a length of one
 //! ([`RateProblem::step`](super::problem::RateProblem::step)).
 //!

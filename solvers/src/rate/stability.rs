@@ -12,8 +12,8 @@ const SINGULAR: f64 = 1e-9;
 const ROUNDING: f64 = 1e-9;
 
 impl RateProblem<'_> {
-    /// Length of a rate: that of the settlement if supports move, since it does not depend on the axes in which blocks move;
-    /// else by the motions of the structure, or the Euclidean norm of the gap rates in the units of the points.
+    /// Length of a rate. If supports move it is the length of the settlement, which does not depend on the axes in which blocks
+    /// move. Otherwise it is measured by the motions of the structure, or the Euclidean norm of the gap rates in the units of the points.
     pub fn step(&self, rate: &Rate) -> f64 {
         if self.settles && rate.factor != 0.0 {
             return rate.factor.abs();

@@ -10,11 +10,11 @@ use crate::path::stability::regains_limit_point;
 use voussoir_core::limit::Status;
 use voussoir_core::path::{Contact, LimitPointEnd};
 
-/// Greatest contact force after a peak of finite displacements, by that at the peak, with which the blocks have
-/// come apart: what is left is rounding.
+/// Greatest contact force after a peak of finite displacements, by that at the peak, up to which the blocks
+/// have come apart: such forces are rounding.
 const APART: f64 = 1e-6;
 
-/// Takes a converged state as the next one. Whether to go on.
+/// Takes a converged state as the next one. Returns true if the path goes on.
 pub(super) fn commit(tracer: &mut Tracer, mut next: State) -> bool {
     let greatest = |force: &[[f64; 2]]| force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
     if tracer.system.finite()
@@ -84,7 +84,7 @@ pub(super) fn end_at_lost_joint(
     end_path(tracer, status, why)
 }
 
-/// A pressed point that has slipped further than its pairing holds: whether its blocks have come apart, and why.
+/// A pressed point that has slipped further than its pairing holds: true if its blocks have come apart, and a note.
 fn left_its_pairing(tracer: &Tracer) -> Option<(bool, String)> {
     let largest = tracer.state.force.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max);
     let points = tracer.system.problem.contacts.iter().zip(&tracer.state.force).zip(&tracer.state.gap);
@@ -93,7 +93,7 @@ fn left_its_pairing(tracer: &Tracer) -> Option<(bool, String)> {
     Some(lost_joint(tracer, c, gap[1]))
 }
 
-/// Whether the blocks have come apart where a contact point has slipped as far as its pairing holds, and what has happened.
+/// Returns true if the blocks have come apart at a contact point that has slipped as far as its pairing holds, with a note.
 pub(super) fn lost_joint(tracer: &Tracer, contact: &Contact, slip: f64) -> (bool, String) {
     let (apart, why) = match contact.sliding.corners {
         [low, high] if low != high => (true, "it has lost half of its height"),

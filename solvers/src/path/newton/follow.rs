@@ -116,7 +116,7 @@ fn strategy_stopped(tracer: &mut Tracer, following: &mut Following) -> StepEnd {
     StepEnd::Ended(no_step(tracer, &why, &rate, following.direction))
 }
 
-/// Whether a converged step is accurate and has a tangent.
+/// Examines a converged step: its energy, its tangent, and the change of the load in it.
 fn examine(tracer: &mut Tracer, following: &mut Following, trial: Trial) -> StepEnd {
     let StepEnergy { growth: accuracy, holds } = step_energy(tracer, &trial.next);
     if !holds && following.refinements < MOST_REFINEMENTS {

@@ -22,7 +22,7 @@ use nalgebra::{DMatrix, DVector};
 use voussoir_core::law::FacetMode;
 use voussoir_core::linear::{Entries, SparseLu};
 
-/// Slack, relative to the greatest force, up to which a facet may yield in a rate: that up to which a monitor is active.
+/// Slack, relative to the greatest force, up to which a facet may yield in a rate. A monitor is active up to the same slack.
 const ACTIVE: f64 = 1e-8;
 /// Multiplier of opening, relative to the unit of displacement, above which a point is open.
 const OPEN: f64 = 1e-9;
@@ -106,7 +106,7 @@ pub(super) struct EventPoints {
     pub closing: Vec<usize>,
 }
 
-/// What continues a path after an event. `direction`: the sense in which the factor is to grow; `sense`: 1 if it has grown
+/// Finds the rate that continues a path after an event. `direction`: the sense in which the factor is to grow; `sense`: 1 if it has grown
 /// up to the event, 0 if it stood still, −1 if it fell.
 pub(super) fn rate_after_event(
     system: &mut StepSystem,

@@ -147,7 +147,7 @@ fn tractions_persist(system: &StepSystem, state: &State, rate: &Tangent) -> bool
     })
 }
 
-/// Whether the path went as far after its limit point as was asked for.
+/// Returns true if the path went as far after its limit point as its stage asks for, and has ended.
 pub(super) fn stops(tracer: &mut Tracer, load_step: &LoadStep, direction: f64) -> bool {
     let (factor, displacement) = (tracer.state.factor, tracer.record.state.displacement);
     let Some(peak) = &tracer.limit.peak else { return false };

@@ -1,11 +1,11 @@
-//! Which of several twins is followed: continuations that neither energy nor dissipation tells apart.
+//! The choice among twins: continuations with the same energy or dissipation.
 //!
 //! Numbers of blocks and rounding must not decide. The loads of the present and of later stages do more work on one twin
 //! than on another, or the blocks lean to the right on it.
 
 use voussoir_core::path::PathProblem;
 
-/// Difference of works, relative to the sum of what they are made of, up to which they are the same.
+/// Difference of works, relative to the sum of their terms, up to which they are the same.
 const SAME: f64 = 1e-6;
 
 /// The number of the motion that is followed. `load_step`: the present one.

@@ -37,7 +37,7 @@ pub(super) struct StepEnd {
     pub length: f64,
     /// Distance from the predictor, relative to the length.
     pub error: f64,
-    /// Part of the change of the factor that its rates at both ends do not explain, relative to what they would give.
+    /// Error of the trapezoidal rule for the factor's change by its rates at both ends, relative to that change.
     /// Without it a factor that falls, rises and falls again within the step would not be noticed.
     pub unexplained: f64,
 }

@@ -30,7 +30,7 @@ pub(super) fn begin(tracer: &mut Tracer, target: f64, direction: f64) -> Result<
     }
 }
 
-/// The rate from a state without forces. Its modes are those of a state under a small load: Newton's method keeps the
+/// The rate from a state without forces. The modes of a state under a small load come first: Newton's method keeps the
 /// symmetry of a scene, without which friction that is not associated may have other solutions. If that finds none, the rate
 /// problem of the first piece is solved. If joints are open at first no such rate exists: the path begins at the small load.
 fn rate_from_nothing(tracer: &mut Tracer, target: f64, direction: f64) -> Result<Start, String> {

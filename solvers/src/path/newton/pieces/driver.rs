@@ -159,7 +159,7 @@ impl<'d> Run<'d> {
         let u = tracer.system.units();
         let most = match tracer.strategy.largest_step() {
             step if step.is_finite() => step,
-            // Friction's flow turns with the blocks: its error over a path is not that of a single step.
+            // Friction's flow turns with the blocks: its error adds up over a path, and the error of one step does not show it.
             _ => LARGEST_FINITE_STEP,
         };
         most * u.length / u.displacement
@@ -330,7 +330,8 @@ impl<'d> Run<'d> {
         note_peak(tracer, Some(&self.piece.tangent), self.direction);
         if matches!(self.load_step.end, LoadStepEnd::Factor(_)) {
             tracer.ending.limit_point_end = Some(LimitPointEnd::Target);
-            let why = format!("the load factor {} is a limit point below what its stage asks for", tracer.state.factor);
+            let (factor, target) = (tracer.state.factor, self.target);
+            let why = format!("the path has a limit point at factor {factor}, before the factor {target} of its stage");
             return Some(end_path(tracer, Status::LimitPoint, why));
         }
         if !tracer.strategy.passes_limit_points() || tracer.settings.ends_at_first_limit_point(self.load_step.stage) {
