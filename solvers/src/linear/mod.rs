@@ -14,3 +14,14 @@ pub(crate) mod updated_inverse;
 pub(crate) fn inner(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
+
+/// Greatest size of a number among these.
+pub(crate) fn largest(values: &[f64]) -> f64 {
+    let eights = values.chunks_exact(8);
+    let rest = eights.remainder().iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+    let mut lanes = [0.0f64; 8];
+    for eight in eights {
+        lanes.iter_mut().zip(eight).for_each(|(lane, value)| *lane = lane.max(value.abs()));
+    }
+    lanes.into_iter().fold(rest, f64::max)
+}

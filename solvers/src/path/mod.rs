@@ -1,6 +1,7 @@
 //! Path solvers: elastic blocks under growing loads until they collapse, and post-peak; and what both share.
 
 pub mod continuation;
+mod dual_vector;
 mod energy;
 pub mod event;
 mod events;

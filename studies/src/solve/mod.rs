@@ -20,6 +20,7 @@ mod load_history;
 mod observer;
 pub(crate) mod ours;
 mod path;
+mod path_proof;
 mod path_result;
 pub(crate) mod path_status;
 mod recorded;

@@ -6,7 +6,7 @@ use super::path_result::{Seen, path_result};
 use super::path_status::Progress;
 use super::recorded::Recorder;
 use crate::results::{CaseResult, LimitPointEntry};
-use voussoir_core::certificate::{PathChecker, tolerance};
+use voussoir_core::certificate::{PathChain, PathChecker, tolerance};
 use voussoir_core::path::{PathObserver, PathProblem, PathState};
 
 /// Relative difference of two strategies' limit points that are one.
@@ -15,6 +15,7 @@ const SAME_PEAK: f64 = 1e-6;
 /// A path's certificate, with somebody else who looks on.
 struct Watched<'a> {
     checker: PathChecker,
+    chain: PathChain,
     observer: &'a mut dyn PathObserver,
     /// Whether that somebody has ended the path.
     ended: bool,
@@ -35,6 +36,7 @@ impl PathObserver for Watched<'_> {
         self.ends[problem.load_steps[state.load_step].stage] = Some(state.clone());
         self.progress.add(problem, state);
         self.recorder.state(problem, state);
+        self.chain.add(state);
         self.ended |= !self.observer.state(problem, state);
         self.checker.state(problem, state) && !self.ended
     }
@@ -119,8 +121,10 @@ fn traced(
         Ok(checker) => checker,
         Err(why) => return (failed(tag, why), false),
     };
+    let Some(structure) = checker.structure() else { return (failed(tag, "no structure".into()), false) };
     let recorder = Recorder::new(input);
     let mut watched = Watched {
+        chain: PathChain::new(structure, input.settings.finite),
         checker,
         observer,
         ended: false,
@@ -132,11 +136,11 @@ fn traced(
     let solved = solver.trace(problem, input.settings, &mut watched);
     // A solver may ask for less, never for more.
     let energy = solver.energy_tolerance().min(tolerance("path_energy").result);
-    let Watched { checker, ended, ends, progress, recorder, malformed, .. } = watched;
+    let Watched { checker, chain, ended, ends, progress, recorder, malformed, .. } = watched;
     if let Err(why) = malformed.and_then(|()| solved.check_form(problem)) {
         return (failed(tag, format!("{tag}: {why}")), ended);
     }
-    let seen = Seen { checker, ends, progress, energy, states: recorder.chosen() };
+    let seen = Seen { checker, chain, ends, progress, energy, states: recorder.chosen() };
     (path_result(input, tag, problem, solved, seen), ended)
 }
 

@@ -9,6 +9,7 @@ use super::limit_points::{
 };
 use super::load_history::LoadHistory;
 use super::ours::path_is_ours;
+use super::path_proof::PathProof;
 use super::path_status::{Evidence, PathVerdict, Progress};
 use super::safe_theorem::safe_theorem_holds;
 use super::symmetric::symmetric;
@@ -23,7 +24,7 @@ use crate::results::{
 };
 use std::collections::BTreeMap;
 use voussoir_core::certificate::{
-    CentroidVelocity, Certificate, ContactForce, Hinge, PathChecker, flow_residual, jumps, largest_jump, tolerance,
+    CentroidVelocity, Certificate, ContactForce, Hinge, PathChain, PathChecker, flow_residual, jumps, largest_jump, tolerance,
 };
 use voussoir_core::limit::Status;
 use voussoir_core::model::geometry::{Vec2, turned};
@@ -34,6 +35,8 @@ use voussoir_core::path::{Branching, PathAnswer, PathEvent, PathProblem, PathSta
 pub(super) struct Seen {
     /// Residuals of all states.
     pub checker: PathChecker,
+    /// The states as a chain.
+    pub chain: PathChain,
     /// The last state of each stage, by index.
     pub ends: Vec<Option<PathState>>,
     /// The load steps that the states have reached.
@@ -50,7 +53,7 @@ pub(super) fn path_result(
     tag: &str,
     problem: &PathProblem,
     mut solved: PathAnswer,
-    Seen { checker, ends, mut progress, energy, states }: Seen,
+    Seen { checker, chain, ends, mut progress, energy, states }: Seen,
 ) -> CaseResult {
     let (assembly, finite) = (input.assembly, input.settings.finite);
     let associated = associated_load(input);
@@ -59,11 +62,16 @@ pub(super) fn path_result(
     }
     prefer_symmetric(assembly, &checker, finite, &mut solved);
     let mut certificate = certificate(&solved, &checker, finite, energy);
+    let proof = PathProof { chain: &chain, problem, solved: &solved, settings: input.settings };
+    let end = proof.end();
+    let end_is_checked = end.is_ok();
     let ours = path_is_ours(tag, input.settings);
     if ours {
         progress.add_peak(&solved.state);
     } else {
+        let limit_points = proof.limit_points();
         leave_out_unproved(&mut solved);
+        solved.limit_points = limit_points;
     }
     let evidence = Evidence {
         problem,
@@ -71,7 +79,7 @@ pub(super) fn path_result(
         hint: (solved.status, solved.load_step, solved.factor),
         range: search_range(input, problem, &solved),
         certificate: &certificate,
-        ours,
+        end: if ours { Ok(()) } else { end },
         field_is_proof: !finite && safe_theorem_holds(assembly),
         associated: associated.as_ref(),
     };
@@ -142,7 +150,7 @@ pub(super) fn path_result(
             &solved.stability,
         ),
         notes,
-        path: PathRecord { states, ..path_record(input, problem, solved, checker, &progress.history) },
+        path: PathRecord { states, end_is_checked: end_is_checked && status.is_answer(), ..path_record(input, problem, solved, checker, &progress.history) },
         ..CaseResult::empty()
     }
 }
@@ -217,6 +225,7 @@ fn path_record(
         limit_points,
         branches,
         states: Vec::new(),
+        end_is_checked: false,
     }
 }
 

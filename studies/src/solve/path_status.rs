@@ -100,8 +100,8 @@ pub(super) struct Evidence<'a> {
     pub range: Option<f64>,
     /// Residuals of all states.
     pub certificate: &'a Certificate,
-    /// Set if solver and strategies belong to this project: the proof of a limit point rests on them.
-    pub ours: bool,
+    /// The check of the end; not needed if solver and strategies belong to this project.
+    pub end: Result<(), String>,
     /// Set if a static field at the target is proof enough: small displacements and associated flow, without softening.
     pub field_is_proof: bool,
     /// The load of limit analysis with associated flow, if no state of the path can lie above it.
@@ -139,12 +139,9 @@ impl Evidence<'_> {
             Status::Stands if !self.progress.arrives_at(self.problem.load_steps.len()) => {
                 failures.push("no state of the path is at the target of the last stage".into());
             }
-            Status::Stands if !self.ours && !self.field_is_proof => failures.push(ELSEWHERE.into()),
-            Status::Collapse | Status::LimitPoint | Status::Unbounded | Status::NoEquilibrium if !self.ours => {
-                failures.push(ELSEWHERE.into());
-            }
             Status::Open | Status::Stalled => failures.push(self.unproved_end(load_step)),
-            _ => {}
+            Status::Stands if self.field_is_proof => {}
+            _ => failures.extend(self.end.as_ref().err().map(|why| format!("{ELSEWHERE}: {why}"))),
         }
         failures.extend(self.contradiction(step));
         if failures.is_empty() {

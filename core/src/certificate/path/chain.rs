@@ -10,7 +10,9 @@ use super::increment::{Allowed, first_opening, passed};
 use super::none_rises::RateProblem;
 use super::point_modes::{ACTIVE, ModeCone, point_modes};
 use super::rate_equations::RateEquations;
-use crate::path::{LoadStep, LoadStepEnd, PathProblem, PathState, RateClaim, Witness};
+use crate::path::{
+    FarkasVector, LoadStep, LoadStepEnd, ModeTree, PathProblem, PathState, RateClaim, Witness,
+};
 use std::sync::Arc;
 
 /// Most distance of all increments together from the flow of laws, as a share of the greatest displacement.
@@ -21,6 +23,11 @@ const CLOSED: f64 = 1e-9;
 const SAME_FACTOR: f64 = 1e-9;
 /// With finite displacements, unbalanced forces of the state midway, as a share of all forces.
 const MIDWAY: f64 = 1e-3;
+
+/// Change of load and forces, relative to them, along a mechanism of finite displacements.
+const STANDS_STILL: f64 = 1e-8;
+/// Least motion along it, as a share of the scene's size.
+const MECHANISM: f64 = 1e-3;
 
 /// A state of a chain.
 #[derive(Debug, Clone)]
@@ -50,6 +57,11 @@ fn deformation(state: &PathState) -> f64 {
 
 fn greatest_force(state: &PathState) -> f64 {
     state.force.iter().map(|r| r[0].hypot(r[1])).fold(0.0, f64::max)
+}
+
+/// Returns true if two records are of one state.
+fn is_same(a: &PathState, b: &PathState) -> bool {
+    a.load_step == b.load_step && a.factor == b.factor && a.force == b.force && a.motion == b.motion
 }
 
 /// Returns true if a load step has neither a load nor a settlement, so that its factor means nothing.
@@ -189,17 +201,9 @@ impl PathChain {
         self.links.iter().map(|link| &link.state)
     }
 
-    /// The state of the chain that a witness speaks of, with the equations of its rates and the modes of its points.
-    fn at(&self, witness: &Witness) -> Result<(&Link, RateEquations, Vec<Vec<ModeCone>>), String> {
-        let same = |link: &&Link| {
-            let own = &witness.state;
-            let state = &link.state;
-            state.load_step == own.load_step
-                && state.factor == own.factor
-                && state.force == own.force
-                && state.motion == own.motion
-        };
-        let link = self.links.iter().rev().find(same).ok_or("the witness speaks of a state that is not on the path")?;
+    /// A state of the chain with the equations of its rates and the modes of its points.
+    fn at(&self, own: &PathState) -> Result<(&Link, RateEquations, Vec<Vec<ModeCone>>), String> {
+        let link = self.links.iter().rev().find(|link| is_same(&link.state, own)).ok_or("the state is not on the path")?;
         let state = &link.state;
         let equations = RateEquations::new(&self.structure, state, self.finite)?;
         let rounding = if self.finite { 512.0 * f64::EPSILON * self.structure.length } else { 0.0 };
@@ -215,7 +219,7 @@ impl PathChain {
     /// # Errors
     /// The first part that is wrong, in words.
     pub fn check(&self, witness: &Witness) -> Result<(), String> {
-        let (_, equations, modes) = self.at(witness)?;
+        let (_, equations, modes) = self.at(&witness.state)?;
         let rates = RateProblem { equations: &equations, modes: &modes };
         match &witness.claim {
             RateClaim::Rate(rate) => rates.check_rate(rate).map(|_| ()),
@@ -223,22 +227,81 @@ impl PathChain {
         }
     }
 
-    /// Checks that a witness proves that no rate rises at its state, and that a mechanism moves on there at constant load.
-    /// Small displacements only.
+    /// Checks that no rate rises at a state, and that a mechanism moves on there at constant load. If flow is associated the
+    /// mechanism proves both. Small displacements only.
     ///
     /// # Errors
     /// The first part that is wrong, in words.
-    pub fn check_collapse(&self, witness: &Witness, motion: &[[f64; 3]]) -> Result<(), String> {
+    pub fn check_collapse(
+        &self,
+        state: &PathState,
+        motion: &[[f64; 3]],
+        witnesses: &[&Witness],
+    ) -> Result<(), String> {
         if self.finite {
             return Err("mechanisms at constant load are checked with small displacements only".into());
         }
-        let RateClaim::NoneRises(tree) = &witness.claim else {
-            return Err("no proof that the load does not rise".into());
-        };
-        let (link, equations, modes) = self.at(witness)?;
+        let (link, equations, modes) = self.at(state)?;
         let rates = RateProblem { equations: &equations, modes: &modes };
-        rates.check_none_rises(tree)?;
-        rates.check_plateau(&self.structure, &link.state, motion)
+        rates.check_plateau(&self.structure, &link.state, motion)?;
+        let own = ModeTree::Leaf(FarkasVector {
+            equilibrium: motion.iter().map(|velocity| velocity.map(|v| -equations.sense * v)).collect(),
+            gap: vec![[0.0; 2]; self.structure.contacts.len()],
+        });
+        rates.check_none_rises(&own).map(|_| ()).or_else(|_| self.check_none_rises(state, witnesses))
+    }
+
+    /// Checks that after a state the structure moves on to the last state under the same load and forces.
+    ///
+    /// # Errors
+    /// If the load or a force changes, or the structure hardly moves.
+    pub fn stands_still_after(&self, state: &PathState) -> Result<(), String> {
+        let last = self.links.last().map(|link| &link.state).ok_or("an empty chain")?;
+        let moved = state.motion.iter().zip(&last.motion).flat_map(|(a, b)| (0..2).map(|i| (b[i] - a[i]).abs()));
+        let changed = state.force.as_flattened().iter().zip(last.force.as_flattened()).map(|(a, b)| (a - b).abs());
+        let same_load = (last.factor - state.factor).abs() <= STANDS_STILL * state.factor.abs();
+        if last.load_step != state.load_step || !same_load {
+            return Err("the load changes after the state".into());
+        }
+        if changed.fold(0.0, f64::max) > STANDS_STILL * greatest_force(state) {
+            return Err("forces change after the state".into());
+        }
+        if moved.fold(0.0, f64::max) < MECHANISM * self.structure.length {
+            return Err("the structure hardly moves after the state".into());
+        }
+        Ok(())
+    }
+
+    /// Checks that the rates of a witness are admissible for ever, so that any load is carried. Small displacements only.
+    ///
+    /// # Errors
+    /// The first part that is wrong, in words.
+    pub fn check_ray(&self, witness: &Witness) -> Result<(), String> {
+        let RateClaim::Rate(rate) = &witness.claim else { return Err("a ray is a rate".into()) };
+        if self.finite {
+            return Err("rays are checked with small displacements only".into());
+        }
+        let (_, equations, modes) = self.at(&witness.state)?;
+        RateProblem { equations: &equations, modes: &modes }.check_ray(&self.structure, rate)
+    }
+
+    /// Checks that one of the witnesses at a state proves that no rate raises the load there.
+    ///
+    /// # Errors
+    /// The first part of the last witness that is wrong, in words.
+    pub fn check_none_rises(&self, state: &PathState, witnesses: &[&Witness]) -> Result<(), String> {
+        let (_, equations, modes) = self.at(state)?;
+        let rates = RateProblem { equations: &equations, modes: &modes };
+        let mut found = Err("no witness that no rate raises the load".to_string());
+        for witness in witnesses.iter().filter(|witness| is_same(&witness.state, state)) {
+            if let RateClaim::NoneRises(tree) = &witness.claim {
+                found = rates.check_none_rises(tree).map(|_| ());
+            }
+            if found.is_ok() {
+                break;
+            }
+        }
+        found
     }
 
     /// Returns true if the last state is at the end of the last load step and no increment lowers a factor away from its end.

@@ -6,7 +6,7 @@
 //! dilatancy has raised.
 
 use super::claims::outside;
-use super::point_modes::{active_facets, dilatancy, is_apex};
+use super::point_modes::{active_facets, dilatancy, dot, is_apex};
 use super::rate_check::opening_of;
 use crate::law::{Facet, FacetMode};
 use crate::path::{Contact, PointLaw};
@@ -70,12 +70,12 @@ fn flowing(facets: &[Facet], active: &[usize], moved: [f64; 2], stuck: Passed) -
     let flows: Vec<[f64; 2]> = active.iter().map(|f| facets[*f].flow.map(|d| -d)).collect();
     let outside = outside(moved, &flows);
     let facet = active.iter().copied().find(|f| facets[*f].mode == FacetMode::Opening);
-    let opened = facet.map_or(0.0, |facet| opening_of(facets, active, facet, moved));
+    let opened = facet.map_or(0.0, |facet| opened_by(facets, active, facet, moved));
     let slides = |f: &usize| facets[*f].mode != FacetMode::Opening;
     // Slip alone does not open a point above its surface.
     let sliding: Vec<[f64; 2]> = active.iter().filter(|f| slides(f)).map(|f| facets[*f].flow.map(|d| -d)).collect();
     let closed = super::claims::outside(moved, &sliding) <= outside;
-    let opened = if closed || !opened.is_finite() { 0.0 } else { opened.max(0.0) };
+    let opened = if closed { 0.0 } else { opened.max(0.0) };
     Passed { opening: stuck.opening + opened, outside }
 }
 
@@ -85,10 +85,13 @@ fn reopened(facets: &[Facet], active: &[usize], facet: usize, moved: [f64; 2], o
     let others = active.iter().filter(|f| **f != facet).map(|f| facets[*f].flow.map(|d| -d));
     let flows: Vec<[f64; 2]> = [d, back].into_iter().chain(others).collect();
     let off = outside(moved, &flows);
-    let after = opening + opening_of(facets, active, facet, moved);
-    if after.is_finite() {
-        return Passed { opening: after.max(0.0), outside: off.max(-after) };
-    }
-    let alone = opening - (moved[0] * facets[facet].flow[0] + moved[1] * facets[facet].flow[1]);
-    Passed { opening: alone.max(0.0), outside: off.max(-alone) }
+    let after = opening + opened_by(facets, active, facet, moved);
+    Passed { opening: after.max(0.0), outside: off.max(-after) }
+}
+
+/// The multiplier of an opening facet in an increment; if rounding keeps it from the flow of the facets, its part along this one.
+fn opened_by(facets: &[Facet], active: &[usize], facet: usize, moved: [f64; 2]) -> f64 {
+    let own = opening_of(facets, active, facet, moved);
+    let flow = facets[facet].flow;
+    if own.is_finite() { own } else { -dot(moved, flow) / dot(flow, flow) }
 }

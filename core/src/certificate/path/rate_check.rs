@@ -101,11 +101,35 @@ impl RateProblem<'_> {
         if (dissipated - done).abs() > RATE * size || dissipated < -RATE * size {
             return Err(format!("the mechanism dissipates {dissipated:.3e}, and the loads do {done:.3e}"));
         }
+        self.check_closing(problem, &rate)
+    }
+
+    /// Checks that rates are admissible for ever: contact forces grow within their facets, and no open point closes.
+    ///
+    /// # Errors
+    /// The first part that is wrong, in words.
+    pub fn check_ray(&self, problem: &PathProblem, rate: &PathRate) -> Result<(), String> {
+        self.check_rate(rate)?;
+        if rate.factor * self.equations.sense <= 0.0 {
+            return Err("the load does not grow along the ray".into());
+        }
+        let most = RATE * greatest(&rate.force);
+        for (index, (contact, force)) in problem.contacts.iter().zip(&rate.force).enumerate() {
+            let facets = contact.law.facets().unwrap_or_default();
+            if facets.iter().any(|facet| dot(facet.normal, *force) > most * length(facet.normal)) {
+                return Err(format!("the force of contact point {index} leaves its facets along the ray"));
+            }
+        }
+        self.check_closing(problem, rate)
+    }
+
+    /// Checks that no open point closes along rates.
+    fn check_closing(&self, problem: &PathProblem, rate: &PathRate) -> Result<(), String> {
         let least = RATE * greatest(&rate.gap);
         for (contact, modes) in self.modes.iter().enumerate() {
             let closing = closing_rate(&problem.contacts[contact], modes, rate.gap[contact]);
             if closing > least {
-                return Err(format!("contact point {contact} is open and closes along the mechanism"));
+                return Err(format!("contact point {contact} is open and closes"));
             }
         }
         Ok(())

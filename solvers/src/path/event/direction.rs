@@ -98,7 +98,7 @@ pub fn next_direction(trace: &mut Trace, load: &Load) -> Next {
     Next::Lost("the stiffness of the contact points of the active set could not be found".into())
 }
 
-fn factorise(trace: &mut Trace, modes: Vec<ContactMode>, refine_columns: bool) -> bool {
+pub(super) fn factorise(trace: &mut Trace, modes: Vec<ContactMode>, refine_columns: bool) -> bool {
     trace.log.counts.factorisations += 1;
     trace.factors.present = FactorisedModes::new(&trace.system, modes, refine_columns);
     trace.factors.present.is_some()

@@ -94,6 +94,15 @@ impl FactorisedModes {
         self.updated.factors.solve(&right, refinements).map(|mut x| x.split_off(first))
     }
 
+    /// All unknowns for gaps of points that stick, at a held load.
+    pub fn opened(&self, system: &System, points: &[usize], gaps: &[[f64; 2]]) -> Option<Vec<f64>> {
+        let mut right = vec![0.0; system.size()];
+        for (c, gap) in points.iter().zip(gaps) {
+            right[2 * c..2 * c + 2].copy_from_slice(gap);
+        }
+        self.updated.factors.solve(&right, REFINEMENTS)
+    }
+
     /// Forgets responses to single points; whether those to come are refined.
     pub fn set_refined(&mut self, refine_columns: bool) {
         self.refine_columns = refine_columns;

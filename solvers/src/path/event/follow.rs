@@ -10,13 +10,14 @@ use super::rates::Direction;
 use super::stability::stage_stability;
 use super::trace::Trace;
 use super::unique::unique;
+use super::witness::{none_rises, rate_witness};
 use crate::path::outcome::{Outcome, PathRecord};
 use crate::path::stability::regains_limit_point;
 use crate::path::system::Load;
 use voussoir_core::certificate::flow_residual;
 use voussoir_core::limit::{Counters, Status};
 use voussoir_core::path::{
-    LimitPointEnd, LoadStepEnd, PathAnswer, PathObserver, PathProblem, PathSettings, PathState, ProvenPeak,
+    LimitPointEnd, LoadStepEnd, PathAnswer, PathObserver, PathProblem, PathSettings, PathState, ProvenPeak, Witness,
 };
 
 /// Rate problems put to the whole system, at most, before the force method is tried again.
@@ -102,6 +103,8 @@ struct Follower<'a> {
     trace: Trace<'a>,
     sections: Option<Sections>,
     limits: LimitPoints,
+    /// Proofs at states of the path.
+    witnesses: Vec<Witness>,
 }
 
 /// The limit points of a load step.
@@ -154,7 +157,7 @@ pub fn follow(problem: &PathProblem, settings: &PathSettings, observer: &mut dyn
     if sections.is_none() {
         trace.factors.chain = ElasticChain::new(&trace.system, problem);
     }
-    let mut follower = Follower { trace, sections, limits: LimitPoints::default() };
+    let mut follower = Follower { trace, sections, limits: LimitPoints::default(), witnesses: Vec::new() };
     for load_step in 0..problem.load_steps.len() {
         let mut run = begin(&mut follower, load_step);
         if follower.trace.last.is_none() && !follower.trace.record() {
@@ -316,7 +319,7 @@ fn try_force_method(follower: &mut Follower, run: &mut Run) -> Result<bool, End>
 }
 
 /// The direction in which the path goes on; where λ begins to fall, the limit point is noted.
-fn direction(follower: &mut Follower, run: &Run) -> Result<Direction, End> {
+fn direction(follower: &mut Follower, run: &mut Run) -> Result<Direction, End> {
     let factor = follower.trace.state.factor;
     let excluded = "every combination of the contact points of the active set is excluded";
     let next = next_direction(&mut follower.trace, &run.load);
@@ -346,11 +349,16 @@ fn direction(follower: &mut Follower, run: &Run) -> Result<Direction, End> {
         ),
         Next::Lost(why) => return Err(End::Stalled(why)),
     };
+    if run.unrecorded.events > 0 && !run.unrecorded.record(&mut follower.trace) {
+        return Err(End::Stalled("stopped by its observer".into()));
+    }
     if direction.is_none() || follower.limits.greatest.is_none() {
         follower.trace.log.notes.push(note);
     }
     if !follower.limits.falling {
         follower.limits.add(follower.trace.present(), run.sense);
+        let witness = none_rises(&mut follower.trace, &run.load);
+        follower.witnesses.extend(witness);
     }
     match direction {
         Some(direction) => Ok(direction),
@@ -380,7 +388,10 @@ fn ray_outcome(follower: &mut Follower, direction: &Direction, load: &Load, sens
     let (contacts, force_unit) = (trace.system.contacts, trace.system.units.force);
     if direction.factor > 0.0 {
         let of = |c: usize| [0, 1].map(|i| direction.x[2 * c + i] * force_unit / direction.factor * sense);
-        return Outcome::at(Status::Unbounded, None).carried_by(Some((0..contacts).map(of).collect()));
+        let ray = (0..contacts).map(of).collect();
+        let witness = rate_witness(trace, direction, sense);
+        follower.witnesses.push(witness);
+        return Outcome::at(Status::Unbounded, None).carried_by(Some(ray));
     }
     if direction.factor < 0.0 {
         trace.log.notes.push("beyond the limit point λ falls without end".into());
@@ -409,6 +420,12 @@ fn ray_outcome(follower: &mut Follower, direction: &Direction, load: &Load, sens
             Outcome::at(Status::LimitPoint, None)
         }
     };
+    // With associated flow the mechanism itself is the proof.
+    if matches!(outcome.status, Status::Collapse | Status::NoEquilibrium) {
+        let witness = if trace.associated { None } else { none_rises(trace, load) };
+        follower.witnesses.extend(witness);
+    }
+    let trace = &mut follower.trace;
     let unique = unique(&trace.system, &trace.state.points, load, &direction.x, &direction.gaps);
     // The mechanism belongs to the last state; the one at the limit point may not allow it.
     let allowed = |state: &PathState| flow_residual(trace.problem, &state.force, &motion) <= SAME_MECHANISM;
@@ -419,7 +436,7 @@ fn ray_outcome(follower: &mut Follower, direction: &Direction, load: &Load, sens
 
 /// The answer at the present state, or at the limit point with the present state as its last one.
 fn answer(follower: Follower, mut outcome: Outcome) -> PathAnswer {
-    let Follower { trace, mut limits, .. } = follower;
+    let Follower { trace, mut limits, witnesses, .. } = follower;
     let present = trace.present();
     let problem = trace.problem;
     let log = trace.log;
@@ -457,6 +474,7 @@ fn answer(follower: Follower, mut outcome: Outcome) -> PathAnswer {
         limit_points,
         stability,
         events,
+        witnesses,
         counters,
         notes,
         ..PathRecord::default()

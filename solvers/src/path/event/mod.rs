@@ -21,6 +21,7 @@ mod schur;
 mod stability;
 mod trace;
 mod unique;
+mod witness;
 
 pub(super) use self::first_modes::first_modes;
 pub(super) use self::follow::follow;

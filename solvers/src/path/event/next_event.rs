@@ -1,10 +1,11 @@
 //! A step along a direction: how far it is to the next events, and what they change.
 
 use super::point::Point;
-use super::rates::{Direction, MECHANISM, largest};
+use super::rates::{Direction, MECHANISM};
 use super::trace::Trace;
 use crate::contact::facet::{dot, slack};
 use crate::contact::mode::ContactMode;
+use crate::linear::largest;
 use crate::path::events::{ContactStatus, transition};
 use voussoir_core::law::FacetMode;
 use voussoir_core::path::{ContactEvent, PathEvent};

@@ -2,6 +2,7 @@
 //! their modes.
 
 use super::point::{Point, active_points};
+use crate::linear::largest;
 use crate::contact::mode::ContactMode;
 use crate::path::system::{Load, System};
 
@@ -44,17 +45,6 @@ pub struct Rates {
     pub worst: f64,
     /// Steps of refinement.
     pub refinements: u64,
-}
-
-/// Greatest size of a number among these.
-pub fn largest(values: &[f64]) -> f64 {
-    let eights = values.chunks_exact(8);
-    let rest = eights.remainder().iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-    let mut lanes = [0.0f64; 8];
-    for eight in eights {
-        lanes.iter_mut().zip(eight).for_each(|(lane, value)| *lane = lane.max(value.abs()));
-    }
-    lanes.into_iter().fold(rest, f64::max)
 }
 
 impl Rates {

@@ -81,7 +81,7 @@ impl<'a> SchurComplement<'a> {
         (load_step, load): (usize, &Load),
         rate: &Rate,
     ) -> Option<Vec<f64>> {
-        let mut gaps: Vec<f64> = rate.gaps.iter().flatten().copied().collect();
+        let mut gaps = rate.gaps.as_flattened().to_vec();
         gaps.push(rate.factor);
         let epsilon = &self.epsilon * DVector::from_vec(gaps);
         let mut x = if self.points.is_empty() {

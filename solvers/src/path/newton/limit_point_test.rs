@@ -34,11 +34,11 @@ const REGULARISATION: f64 = 1e-11;
 const MOST: u64 = 20_000;
 
 /// The active set of a state.
-struct ActiveSet {
+pub(super) struct ActiveSet {
     /// Contact points.
-    contacts: Vec<usize>,
+    pub contacts: Vec<usize>,
     /// Facets of each without slack, and the opening facet where it is open with a strength.
-    facets: Vec<(Vec<usize>, Option<usize>)>,
+    pub facets: Vec<(Vec<usize>, Option<usize>)>,
     /// Modes of all points with those of the active set stuck.
     modes: Vec<ContactMode>,
 }
@@ -190,7 +190,7 @@ fn modes_of(system: &StepSystem, active: &ActiveSet, modes: Vec<ContactMode>) ->
 }
 
 /// Points that may change their modes: those with a facet without slack or at the tip of opening, and those that close.
-fn active_set(system: &StepSystem, state: &State, closing: &[usize]) -> ActiveSet {
+pub(super) fn active_set(system: &StepSystem, state: &State, closing: &[usize]) -> ActiveSet {
     let mut active = ActiveSet { contacts: Vec::new(), facets: Vec::new(), modes: state.mode.clone() };
     let largest = largest_force(state);
     for c in 0..active.modes.len() {
@@ -230,7 +230,7 @@ pub(super) fn active_facets(
 
 /// Rates of all unknowns but λ by a unit gap rate in each of the two directions of every point of the active set
 /// and, last, by λ̇ in the sense `direction`. `None` where linear algebra fails.
-fn responses_of(
+pub(super) fn responses_of(
     system: &StepSystem,
     active: &ActiveSet,
     equations: &Equations,
@@ -283,7 +283,7 @@ fn responses_of(
     Some(x)
 }
 
-fn rate_problem<'s>(system: &'s StepSystem, active: &ActiveSet, responses: &[Vec<f64>]) -> RateProblem<'s> {
+pub(super) fn rate_problem<'s>(system: &'s StepSystem, active: &ActiveSet, responses: &[Vec<f64>]) -> RateProblem<'s> {
     let n = 2 * active.contacts.len();
     let force = |i: usize, x: &[f64]| x[2 * active.contacts[i / 2] + i % 2];
     let point = |(c, (facets, open)): (&usize, &(Vec<usize>, Option<usize>))| {

@@ -45,6 +45,7 @@ pub(super) fn trace(problem: &PathProblem, settings: &PathSettings, observer: &m
             notes: Vec::new(),
             stability: Vec::new(),
             branchings: Vec::new(),
+            witnesses: Vec::new(),
         },
         ending: Ending { status: Status::Stalled, motion: None, ray: None, limit_point_end: None },
         limit: LimitPoint::default(),
@@ -204,6 +205,7 @@ fn answer(mut tracer: Tracer) -> PathAnswer {
         limit_points: tracer.limit.proven_peaks,
         stability: tracer.record.stability,
         branchings: tracer.record.branchings,
+        witnesses: tracer.record.witnesses,
         counters,
         notes,
         ..PathRecord::default()

@@ -48,6 +48,7 @@ mod tracer;
 mod tractions;
 mod trial;
 mod twins;
+mod witness;
 
 use self::monitors::resolve;
 use super::event::{self, is_piecewise_linear};

@@ -7,6 +7,7 @@ use super::recorded::recorded;
 use super::state::{State, Tangent};
 use super::step::solve_step;
 use super::tangent::tangent_at;
+use super::witness::none_rises;
 use super::tracer::{Peak, PostPeak, Tracer, foreseen, moved_along};
 use crate::path::energy::load_size;
 use voussoir_core::path::ProvenPeak;
@@ -90,6 +91,10 @@ pub(super) fn note_peak(tracer: &mut Tracer, beyond: Option<&Tangent>, direction
         let motion = beyond.and_then(|rate| scaled_motion(tracer, &tracer.state, rate));
         let peak = Peak { factor: tracer.state.factor, state: tracer.record.state.clone(), motion };
         note_proven_peak(tracer, peak, direction);
+        if let (true, Some(rate)) = (tracer.system.finite(), beyond) {
+            let Tracer { system, state, record, .. } = tracer;
+            record.witnesses.extend(none_rises(system, (state, &record.state), rate, direction));
+        }
     }
 }
 

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use voussoir_core::limit::Status;
 use voussoir_core::path::{
     Branching, Continuation, LimitPointEnd, LoadStepEnd, PathEvent, PathObserver, PathSettings, PathState, ProvenPeak,
-    StageStability,
+    StageStability, Witness,
 };
 
 /// Rise of the load above a peak, relative to it, that is none of rounding.
@@ -42,6 +42,7 @@ pub(super) struct Record {
     pub notes: Vec<String>,
     pub stability: Vec<StageStability>,
     pub branchings: Vec<Branching>,
+    pub witnesses: Vec<Witness>,
 }
 
 /// How a path ends.

@@ -52,13 +52,15 @@ fn the_collapse_of_a_sliding_block_is_proved() {
         let chain = chain(&problem, &states);
         assert_eq!(chain.broken(), None);
         assert_eq!(chain.check(&proof(&end)), Ok(()));
-        assert_eq!(chain.check_collapse(&proof(&end), &motion), Ok(()));
-        assert_eq!(chain.check_collapse(&proof(&states[3]), &motion), Ok(()));
+        assert_eq!(chain.check_collapse(&end, &motion, &[&proof(&end)]), Ok(()));
+        assert_eq!(chain.check_collapse(&states[3], &motion, &[&proof(&states[3])]), Ok(()));
+        // With associated flow the mechanism proves by itself that no rate rises.
+        assert_eq!(chain.check_collapse(&end, &motion, &[]).is_ok(), dilatancy > 0.0);
         // It does not lift, slip back, or move with half of the power.
         for forged in
             [[1.0, dilatancy + 0.1, 0.0], [-1.0, dilatancy, 0.0], [0.5, 0.5 * dilatancy, 0.0], [1.0, dilatancy, 0.1]]
         {
-            assert!(chain.check_collapse(&proof(&end), &[[0.0; 3], forged]).is_err(), "{forged:?}");
+            assert!(chain.check_collapse(&end, &[[0.0; 3], forged], &[&proof(&end)]).is_err(), "{forged:?}");
         }
         // Before the limit the proof is refused.
         assert!(chain.check(&proof(&states[1])).is_err());

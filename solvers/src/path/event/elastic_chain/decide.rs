@@ -2,7 +2,8 @@
 
 use super::chain::ElasticChain;
 use crate::contact::mode::ContactMode;
-use crate::path::event::rates::{Rates, largest, leaving};
+use crate::linear::largest;
+use crate::path::event::rates::{Rates, leaving};
 use crate::path::event::trace::Trace;
 use crate::path::system::{Load, System};
 

@@ -1,7 +1,7 @@
 //! Rates of the joints of a chain, kept from event to event.
 
 use crate::linear::dense::add_product;
-use crate::path::event::rates::largest;
+use crate::linear::largest;
 use nalgebra::{DMatrix, DVector};
 
 /// What the joints do.

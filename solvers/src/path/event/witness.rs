@@ -1,0 +1,59 @@
+//! Witnesses for the certificate: rates at a state, and the proof that no rate raises the load.
+
+use super::direction::factorise;
+use super::point::Point;
+use super::rates::Direction;
+use super::schur::SchurComplement;
+use super::trace::Trace;
+use crate::contact::mode::ContactMode;
+use crate::path::dual_vector::dual_vector;
+use crate::path::system::Load;
+use crate::rate::answer::Budget;
+use crate::rate::tree::search;
+use voussoir_core::path::{FarkasVector, PathRate, RateClaim, Witness};
+
+/// Facets of the active set up to which the search is tried: its program is dense.
+const MOST_FACETS: usize = 160;
+
+/// The proof that no rate raises the load at the present state. `None` if the search does not find it within its budget.
+pub fn none_rises(trace: &mut Trace, load: &Load) -> Option<Witness> {
+    let points = &trace.state.points;
+    let active: Vec<usize> = (0..points.len()).filter(|c| points[*c].settled().is_none()).collect();
+    if active.iter().map(|c| points[*c].active.len()).sum::<usize>() > MOST_FACETS {
+        return None;
+    }
+    let closed = |point: &Point| point.settled().unwrap_or(ContactMode::Stick);
+    let modes: Vec<ContactMode> = points.iter().map(closed).collect();
+    factorise(trace, modes.clone(), true).then_some(())?;
+    let state = trace.present();
+    let Trace { system, state: present, factors, log, .. } = &mut *trace;
+    let base = factors.present.as_mut()?;
+    let at = (present.load_step, load);
+    let local = SchurComplement::new((system, &present.points), base, at, &active, &modes, &mut log.counts.solves)?;
+    let proof = search(&local.rate, 1.0, Budget::default().leaves, &mut log.counts.rates.trials).proof?;
+    let vector = |alpha: &[[f64; 2]]| {
+        let Some(x) = base.opened(system, &active, alpha) else { return FarkasVector::default() };
+        dual_vector(system, &x, alpha)
+    };
+    let tree = proof.certified(&local.rate, &active, &vector)?;
+    Some(Witness { state, claim: RateClaim::NoneRises(tree) })
+}
+
+/// The rates of a direction from the present state; `sense` of λ in the load step.
+pub fn rate_witness(trace: &Trace, direction: &Direction, sense: f64) -> Witness {
+    let (system, units) = (&trace.system, trace.system.units);
+    let (forces, motions) = direction.x.split_at(2 * system.contacts);
+    let loading = &trace.problem.load_steps[trace.state.load_step].loading;
+    let factor = sense * direction.factor;
+    let mut motion = system.motions(motions);
+    for (body, settlement) in &loading.settlements {
+        (0..3).for_each(|i| motion[*body][i] += factor * settlement[i]);
+    }
+    let rate = PathRate {
+        factor,
+        force: forces.chunks_exact(2).map(|own| [0, 1].map(|i| own[i] * units.force)).collect(),
+        gap: direction.gaps.iter().map(|own| own.map(|gap| gap * units.displacement)).collect(),
+        motion,
+    };
+    Witness { state: trace.present(), claim: RateClaim::Rate(rate) }
+}
