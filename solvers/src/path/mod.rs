@@ -10,3 +10,8 @@ mod outcome;
 mod self_check;
 mod stability;
 mod system;
+
+#[cfg(test)]
+mod tests;
+#[cfg(test)]
+mod two_blocks;

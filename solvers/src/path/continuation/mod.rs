@@ -34,3 +34,6 @@ pub const LARGEST_FINITE_STEP: f64 = 0.002;
 fn first_step() -> f64 {
     0.1
 }
+
+#[cfg(test)]
+mod tests;

@@ -90,3 +90,6 @@ voussoir_core::inventory::submit! {
         ..Card::BLANK
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -13,3 +13,6 @@ mod units;
 pub use load::Load;
 pub use scaled::System;
 pub use units::Units;
+
+#[cfg(test)]
+mod tests;

@@ -192,7 +192,7 @@ pub(super) fn advance(system: &mut StepSystem, start: &State, piece: &Piece, len
 }
 
 /// Length at which the first monitor would be zero if all rates stayed.
-fn first_crossing(readings: &[Reading]) -> f64 {
+pub(super) fn first_crossing(readings: &[Reading]) -> f64 {
     let crossing = |reading: &Reading| {
         let rate = reading.rate.filter(|rate| *rate < 0.0 && reading.value > reading.tolerance)?;
         Some(reading.value / -rate)

@@ -13,3 +13,6 @@ mod monitors;
 mod piece;
 mod plateau;
 mod switch;
+
+#[cfg(test)]
+mod tests;

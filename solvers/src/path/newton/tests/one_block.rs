@@ -1,94 +1,13 @@
 //! A rigid block on a floor with two compliant points at its corners: pieces, events and ends by hand.
 
-use super::{Kept, body, settings};
-use crate::path::continuation::arc_length::ArcLength;
-use crate::path::continuation::displacement_control::DisplacementControl;
-use crate::path::continuation::dissipation::Dissipation;
 use crate::path::continuation::load_control::LoadControl;
 use crate::path::newton::NewtonPath;
 use crate::path::newton::twins::favoured;
+use crate::path::two_blocks::{Kept, STIFFNESS, block, finite, followed, force, point, pushed_at, strategies};
 use std::sync::Arc;
-use voussoir_core::law::Facet;
-use voussoir_core::limit::{Counters, Status};
+use voussoir_core::limit::Status;
 use voussoir_core::model::geometry::Vec2;
-use voussoir_core::path::{
-    Attachment, Contact, Continuation, LimitPointEnd, LoadStep, LoadStepEnd, Loading, PathAnswer, PathProblem,
-    PathSettings, PathSolver, PointLaw, Sliding, Unobserved,
-};
-
-/// Stiffness of a point \[N/m\]; the block has a width of 1 m and a weight of 1 N.
-const STIFFNESS: f64 = 1e4;
-
-/// A point between the ground (body 0) and the block (body 1), by its place and the normal that points into the block.
-fn point(joint: usize, position: Vec2, normal: Vec2, friction: f64, gap: f64) -> Contact {
-    let [left, right] = Facet::friction(friction, 0.0, 0.0);
-    Contact {
-        joint,
-        position,
-        normal,
-        tangent: Vec2::new(-normal.y, normal.x),
-        minus: Attachment { body: 0, slot: None },
-        plus: Attachment { body: 1, slot: None },
-        area: 1.0,
-        gap,
-        law: PointLaw::Facets(vec![Facet::opening(0.0), left, right].into()),
-        compliance: [1.0 / STIFFNESS; 2],
-        sliding: Sliding::fixed(0.0),
-    }
-}
-
-fn stage(stage: usize, loading: Loading, end: LoadStepEnd) -> LoadStep {
-    LoadStep { stage, gravity: false, loading, start: 0.0, end }
-}
-
-fn force(at: Vec2, force: Vec2) -> Loading {
-    Loading { forces: vec![(1, None, at, force)], ..Loading::default() }
-}
-
-/// The block under its weight, then `pushed` until collapse.
-fn block(friction: f64, pushed: Loading) -> PathProblem {
-    let up = Vec2::new(0.0, 1.0);
-    let centre = Vec2::new(0.5, 0.5);
-    PathProblem {
-        bodies: vec![body(Vec2::zeros(), vec![], None, true), body(centre, vec![], None, false)],
-        body_of: vec![0, 1],
-        contacts: vec![
-            point(0, Vec2::new(0.0, 0.0), up, friction, 0.0),
-            point(0, Vec2::new(1.0, 0.0), up, friction, 0.0),
-        ],
-        load_steps: vec![
-            stage(0, force(centre, -up), LoadStepEnd::Factor(1.0)),
-            stage(1, pushed, LoadStepEnd::Collapse(f64::INFINITY)),
-        ],
-        length: 1.0,
-        span: 1.0,
-        counters: Counters::new(),
-    }
-}
-
-/// Pushed by 1 N to the right at a height of the left face.
-fn pushed_at(height: f64) -> Loading {
-    force(Vec2::new(0.0, height), Vec2::new(1.0, 0.0))
-}
-
-fn finite(strategy: Option<Arc<dyn Continuation>>) -> PathSettings {
-    PathSettings { finite: true, ..settings(strategy) }
-}
-
-fn followed(problem: &PathProblem, strategy: Option<Arc<dyn Continuation>>) -> PathAnswer {
-    NewtonPath {}.trace(problem, &finite(strategy), &mut Unobserved)
-}
-
-/// Strategies that pass limit points, with whole and half steps.
-fn strategies() -> Vec<Option<Arc<dyn Continuation>>> {
-    vec![
-        None,
-        Some(Arc::new(ArcLength { first_step: 0.05, ..ArcLength::default() })),
-        Some(Arc::new(ArcLength { first_step: 0.01, ..ArcLength::default() })),
-        Some(Arc::new(DisplacementControl::default())),
-        Some(Arc::new(Dissipation::default())),
-    ]
-}
+use voussoir_core::path::{LimitPointEnd, LoadStepEnd, Loading, PathSolver};
 
 /// Load at the limit point of a block that tips about its right corner: the left one has just opened, at the tilt
 /// sin θ = W/(k b) that the compression of the right one gives.

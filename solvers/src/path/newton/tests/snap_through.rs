@@ -1,8 +1,8 @@
 //! The truss of von Mises with finite displacements.
 
-use super::{Kept, body, settings};
 use crate::path::continuation::dissipation::Dissipation;
 use crate::path::newton::NewtonPath;
+use crate::path::two_blocks::{Kept, body, settings};
 use nalgebra::Rotation2;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;

@@ -1,89 +1,14 @@
 //! One contact point with friction, held by two springs.
 
-use super::{Kept, settings};
 use crate::path::continuation::arc_length::ArcLength;
 use crate::path::continuation::dissipation::Dissipation;
 use crate::path::continuation::load_control::LoadControl;
 use crate::path::newton::NewtonPath;
-use nalgebra::DMatrix;
+use crate::path::two_blocks::{Kept, SPRINGS, settings, turning, two_degrees};
 use std::sync::Arc;
-use voussoir_core::law::Facet;
-use voussoir_core::limit::{Counters, Status};
+use voussoir_core::limit::Status;
 use voussoir_core::model::geometry::Vec2;
-use voussoir_core::path::{
-    Attachment, Contact, Continuation, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem, PathSolver, PointLaw,
-    Sliding, Unobserved,
-};
-
-/// One contact point on the ground, held by springs K over (t, n): the two-degree-of-freedom example.
-fn two_degrees(stiffness: [[f64; 2]; 2], friction: f64, load_steps: Vec<(Vec2, LoadStepEnd)>) -> PathProblem {
-    let [[a, b], [_, d]] = stiffness;
-    let det = a * d - b * b;
-    let inverse = [[d / det, -b / det], [-b / det, a / det]];
-    // x is t reversed: n = y, t = −x. Forces and displacements below are given in (t, n).
-    let entry = |i: usize, j: usize| inverse[i % 2][j % 2] * if (i + j) % 2 == 1 { -1.0 } else { 1.0 };
-    let points = vec![Vec2::zeros(), Vec2::zeros()];
-    let block = PathBody {
-        members: vec![0],
-        pole: Vec2::zeros(),
-        held: true,
-        mass: 0.0,
-        points,
-        flexibility: Some(Arc::new(DMatrix::from_fn(4, 4, entry))),
-        inelastic: None,
-    };
-    let mut ground = block.clone();
-    ground.points.clear();
-    ground.flexibility = None;
-    let [left, right] = Facet::friction(friction, 0.0, 0.0);
-    let contact = Contact {
-        joint: 0,
-        position: Vec2::zeros(),
-        normal: Vec2::new(0.0, 1.0),
-        tangent: Vec2::new(-1.0, 0.0),
-        minus: Attachment { body: 1, slot: None },
-        plus: Attachment { body: 0, slot: Some(0) },
-        area: 1.0,
-        gap: 0.0,
-        law: PointLaw::Facets(vec![Facet::opening(0.0), left, right].into()),
-        compliance: [0.0; 2],
-        sliding: Sliding::middle(0.0),
-    };
-    PathProblem {
-        bodies: vec![block, ground],
-        body_of: vec![0, 1],
-        contacts: vec![contact],
-        load_steps: load_steps
-            .into_iter()
-            .map(|(f, end)| LoadStep {
-                stage: 0,
-                gravity: false,
-                loading: Loading {
-                    forces: vec![(0, Some(1), Vec2::zeros(), Vec2::new(-f.x, f.y))],
-                    ..Loading::default()
-                },
-                start: 0.0,
-                end,
-            })
-            .collect(),
-        length: 1.0,
-        span: 1.0,
-        counters: Counters::new(),
-    }
-}
-
-const K: [[f64; 2]; 2] = [[1.0, -1.0], [-1.0, 2.0]];
-
-fn turning() -> PathProblem {
-    two_degrees(
-        K,
-        1.25,
-        vec![
-            (Vec2::new(0.0, -1.0), LoadStepEnd::Factor(1.0)),
-            (Vec2::new(1.0, 0.0), LoadStepEnd::Collapse(f64::INFINITY)),
-        ],
-    )
-}
+use voussoir_core::path::{Continuation, LoadStepEnd, PathSolver, Unobserved};
 
 /// Stick to λ = 1.25, slip back to λ = 1 along λ = 1.25 − u_t/4, then open without bound. Strategies have no influence.
 #[test]
@@ -107,7 +32,7 @@ fn one_solution_of_the_two_degree_example() {
     for (friction, tangential, normal) in
         [(0.5, 1.4, 0.2), (0.9, 1.4, 0.2), (1.25, 0.0, 0.0), (1.5, 0.0, 0.0), (2.0, 0.0, 0.0)]
     {
-        let problem = two_degrees(K, friction, vec![(Vec2::new(1.2, -1.0), LoadStepEnd::Factor(1.0))]);
+        let problem = two_degrees(SPRINGS, friction, vec![(Vec2::new(1.2, -1.0), LoadStepEnd::Factor(1.0))]);
         let answer = NewtonPath {}.trace(&problem, &settings(None), &mut Unobserved);
         assert_eq!(answer.status, Status::Stands, "μ {friction}: {:?}", answer.notes);
         let [n, t] = answer.state.gap[0];
@@ -119,7 +44,7 @@ fn one_solution_of_the_two_degree_example() {
 /// cycles, the one from the open state does not.
 #[test]
 fn separation_at_a_friction_close_to_the_load() {
-    let problem = two_degrees(K, 1.1, vec![(Vec2::new(1.2, -1.0), LoadStepEnd::Factor(1.0))]);
+    let problem = two_degrees(SPRINGS, 1.1, vec![(Vec2::new(1.2, -1.0), LoadStepEnd::Factor(1.0))]);
     let answer = NewtonPath {}.trace(&problem, &settings(None), &mut Unobserved);
     assert_eq!(answer.status, Status::Stands, "{:?} {:?} {:?}", answer.factor, answer.state.gap, answer.notes);
     let [n, t] = answer.state.gap[0];

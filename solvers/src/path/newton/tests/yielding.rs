@@ -1,10 +1,10 @@
 //! Convergence of steps in which a block yields.
 
-use super::body;
 use crate::path::newton::control::Control;
 use crate::path::newton::loads::StagedLoads;
 use crate::path::newton::step::solve_step;
 use crate::path::newton::system::StepSystem;
+use crate::path::two_blocks::body;
 use std::sync::Arc;
 use voussoir_core::elastic::{Condenser, MeshDensity};
 use voussoir_core::law::{

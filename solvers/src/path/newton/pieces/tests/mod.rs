@@ -1,0 +1,32 @@
+//! Tests of pieces: their monitors, and steps along them up to events and targets.
+
+mod monitors;
+mod steps;
+
+use super::super::control::Control;
+use super::super::loads::StagedLoads;
+use super::super::state::State;
+use super::super::step::solve_step;
+use super::super::system::StepSystem;
+use super::super::tangent::tangent_at;
+use super::piece::Piece;
+use voussoir_core::path::PathProblem;
+
+/// The system of the second load step, and the state at its start.
+fn second_step(problem: &PathProblem) -> (StepSystem<'_>, State) {
+    let mut system = StepSystem::new(problem, true).expect("a system");
+    let [first, second] = [0, 1].map(|k| &problem.load_steps[k].loading);
+    system.load(StagedLoads { earlier: Vec::new(), growing: first, start: 0.0 });
+    let start = system.undeformed();
+    let (mut state, _) = solve_step(&mut system, &start, start.clone(), &Control::Factor(1.0)).expect("a state");
+    system.keep(&start, &mut state);
+    system.load(StagedLoads { earlier: vec![(1.0, first)], growing: second, start: 0.0 });
+    state.factor = 0.0;
+    (system, state)
+}
+
+/// The piece of a state on which its modes hold and the factor grows.
+fn piece_at(system: &mut StepSystem, state: &State) -> Piece {
+    let rate = tangent_at(system, state, state, &Control::Factor(1.0)).expect("a rate");
+    Piece::new(system, &state.mode, &rate).expect("a piece")
+}
