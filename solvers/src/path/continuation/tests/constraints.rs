@@ -105,7 +105,7 @@ fn lengths_by_default() {
     const { assert!(LARGEST_FINITE_STEP > 0.0 && LARGEST_FINITE_STEP < 0.1) };
 }
 
-/// Lengths that are given are those of the strategy.
+/// A strategy reports the lengths that it is given.
 #[test]
 fn lengths_that_are_given() {
     let arc = ArcLength { first_step: 0.02, largest_step: Some(0.3), ..ArcLength::default() };

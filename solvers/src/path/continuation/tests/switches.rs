@@ -1,4 +1,4 @@
-//! Strategies that measure what the last step did.
+//! Strategies whose measure depends on the last step.
 
 use super::{all, some};
 use crate::path::continuation::arc_length::ArcLength;

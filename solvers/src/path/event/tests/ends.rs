@@ -1,4 +1,4 @@
-//! How exact paths end: targets, requests, rays, stops, and what the solver refuses.
+//! Ends of exact paths: targets, requests, rays, stops, and refusals.
 
 use crate::path::continuation::load_control::LoadControl;
 use crate::path::event::EventPath;
@@ -60,7 +60,7 @@ fn a_pressing_load_has_a_ray() {
     });
 }
 
-/// The path of the two-degree example turns back at λ = 1.25, where it ends if its first limit point is asked for.
+/// The path of the two-degree example turns back at λ = 1.25. It ends there if its first limit point is requested.
 #[test]
 fn a_path_ends_at_its_first_limit_point_on_request() {
     let first = StageSettings { first_limit_point: true, ..StageSettings::default() };

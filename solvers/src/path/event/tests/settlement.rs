@@ -1,4 +1,4 @@
-//! Supports that move: a block of weight W = 1 N between supports that are bodies of their own.
+//! Supports that move: a block of weight W = 1 N on supports that are separate bodies.
 
 use crate::path::two_blocks::{
     STIFFNESS, assert_close, between, block, force, ground, point, rigid, scene, settlement, stage, states, traced, v,

@@ -74,7 +74,7 @@ fn a_wedge_presses_its_walls_apart() {
     assert_close(wall(2), right, 1e-12);
 }
 
-/// A wall beside the foot of a block, d away, is met at λ = 2 k d and then takes a third of what is added.
+/// A wall at a distance d from the foot of a block is reached at λ = 2 k d. It then carries a third of the further load.
 #[test]
 fn a_gap_closes_and_shares_the_load() {
     let (gap, factor) = (1e-5, 0.25);

@@ -8,6 +8,7 @@ mod responses;
 mod small_functions;
 mod snap_through;
 mod springs;
+mod stack;
 mod tilting;
 mod tipping;
 mod two_degrees;

@@ -1,4 +1,4 @@
-//! What a study may ask of a path with finite displacements: first limit point, strategies, stages, observers.
+//! Requests of a study with finite displacements: first limit point, strategies, stages, observers.
 
 use crate::path::continuation::arc_length::ArcLength;
 use crate::path::continuation::crack_opening::CrackOpening;

@@ -70,7 +70,7 @@ fn five_monitors_are_too_many() {
     assert!(resolve(&problem, &[opening; 5]).is_err());
 }
 
-/// A local control along a direction d reads 1 where its points have moved by d, and s where they have moved by s d.
+/// A local control along a direction d reads s if its points have moved by s d.
 #[test]
 fn a_local_control_measures_along_its_direction() {
     let problem = block(0.3, pushed_at(0.1));
@@ -96,7 +96,7 @@ fn the_cosine_between_motions() {
     assert_eq!(cosine(&one, &[[0.0; 3]]), 0.0);
 }
 
-/// The fastest body is that of the greatest |(u_x, u_y)| or |θ| L.
+/// The fastest body has the greatest |(u_x, u_y)| or |θ| L.
 #[test]
 fn the_fastest_body_translates_or_turns() {
     let mut problem = block(0.3, pushed_at(0.1));

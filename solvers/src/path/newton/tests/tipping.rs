@@ -63,7 +63,7 @@ fn the_left_corner_opens_once() {
     assert!(answer.events.iter().all(|event| event.what != ContactEvent::Closes), "{:?}", answer.events);
 }
 
-/// The limit point lies below the load of small displacements by what the compressed corner moves: W b/(2 h) (1 − O(1/k)).
+/// The compressed corner moves by s = W/(k b), which lowers the limit point to (½ − ½ s)/(h + s), to first order in s.
 #[test]
 fn a_stiffer_joint_tips_closer_to_half_its_width() {
     let limit = |compliance: f64| {
@@ -73,7 +73,6 @@ fn a_stiffer_joint_tips_closer_to_half_its_width() {
     };
     let [soft, stiff] = [1e-3, 1e-4].map(limit);
     assert!(stiff > 0.0 && soft > 0.0);
-    // First order in the compliance: λ = (½ − ½ s)/(h + s) with s = W/(k b).
     assert_close(soft, 1e-3 * 0.5 * (1.0 / HEIGHT + 1.0 / (HEIGHT * HEIGHT)), 5e-6);
     assert_close(soft / stiff, 10.0, 0.05);
 }

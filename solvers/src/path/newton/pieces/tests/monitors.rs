@@ -35,7 +35,7 @@ fn a_rate_leaves_a_mode_that_is_at_its_end() {
     assert!(reading(-0.1, None).leaves() && !reading(0.1, None).leaves());
 }
 
-/// What the monitors of modes read: stick 3 slacks, facet 1 rate and 2 slacks, open 1 opening.
+/// A point that sticks has 3 slacks, one on a facet 1 rate and 2 slacks, an open one 1 opening.
 #[test]
 fn each_mode_has_its_monitors() {
     let problem = block(FRICTION, pushed_at(HEIGHT));
