@@ -92,7 +92,7 @@ fn a_middle_support_that_sinks_far_opens() {
     assert_close(answer.state.gap[1][0], sunk - 0.5 / STIFFNESS, 1e-12);
 }
 
-/// The loads' work is stored: a support that sinks by δ under W/2 does −W δ/2, and the weight does as much.
+/// A support that sinks by δ under W/2 does the work −W δ/2, and the weight does W δ/2: nothing more is stored.
 #[test]
 fn a_sinking_support_does_the_work_of_its_reaction() {
     let all = states(&supported(&[0.0, 1.0], 0.5, settlement(2, [0.0, -1e-3, 0.0])));

@@ -35,7 +35,7 @@ fn the_mechanism_of_tipping_turns_about_a_corner() {
     right.iter().zip(motion[1]).for_each(|(right, found)| assert_close(found, *right, 1e-9));
 }
 
-/// On three points with N = W/3 ∓ M/b the left one opens at the edge of the kern, M = W b/3, and the middle at M = W b/2.
+/// On three points with N = W/3 ∓ M/b the left one opens at M = W b/3, and the block tips later, at M = W b/2.
 #[test]
 fn points_open_one_after_the_other() {
     let height = 0.8;

@@ -78,7 +78,7 @@ fn a_law_remembers_its_slip() {
     assert_close(answer.state.force[0][1], kept, 2e-3 * factor);
 }
 
-/// A law of stiffness without friction facets is not needed for facets of strength alone: lifting at λ = W + 2 f A.
+/// A tensile strength f on the area A of two points holds the block down to λ = W + 2 f A.
 #[test]
 fn a_tensile_strength_holds_a_lifted_block() {
     let strength = 0.2;

@@ -41,7 +41,7 @@ fn gaps_of_motions_are_derivatives_of_places() {
     }
 }
 
-/// A rigid motion of both blocks and the ground's opposite have the same gaps: two blocks that move alike open nothing between.
+/// Two blocks that turn together about one place open no gap between them, and a gap to the ground.
 #[test]
 fn a_common_motion_opens_nothing_between_the_blocks() {
     let problem = uneven();
