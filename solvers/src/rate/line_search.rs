@@ -54,6 +54,7 @@ pub fn line_search(problem: &RateProblem, guess: &[ContactMode], trials: &mut u6
         s,
         load_rate: problem.load_rate.clone(),
         from_nothing: false,
+        load_force: problem.load_force,
         load_flexibility: problem.load_flexibility,
         metric: None,
         settles: problem.settles,

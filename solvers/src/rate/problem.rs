@@ -64,6 +64,8 @@ pub struct RateProblem<'a> {
     /// Whether nothing is loaded yet: then every sliding motion is without forces, and one that is not
     /// associated does not prove that the load cannot be carried.
     pub from_nothing: bool,
+    /// The greatest force that λ̇ = 1 causes at any point of the structure if all points are held: forces far below it are rounding.
+    pub load_force: f64,
     /// p·q̇ for a unit of λ̇ if all points are held; 0 if it is not known.
     pub load_flexibility: f64,
     /// Products of the motions (and factors) of the structure for unit gap rates and, last, for λ̇ = 1: the square of the
@@ -176,7 +178,7 @@ impl RateProblem<'_> {
             gap_size * self.points.iter().map(|p| p.stiffness).fold(0.0, f64::max)
         } else {
             let share = if self.settles { CANCELLED } else { 1e-4 };
-            share * self.load_rate.amax()
+            share * self.load_rate.amax().max(self.load_force)
         });
         let sizes = [force_size.max(1e-300), gap_size];
         let mut at = 0;
@@ -210,8 +212,9 @@ impl RateProblem<'_> {
 
     /// Whether a rate is one along which a path goes on: λ grows, or the load does work.
     pub fn leads_on(&self, rate: &Rate) -> bool {
-        let gaps = rate.gaps.iter().flatten();
-        let size = gaps.zip(&self.load_rate).map(|(gap, force)| (gap * force).abs()).sum::<f64>();
+        // Where the load causes no force its rates are rounding, and so is its work.
+        let size = rate.gaps.iter().flatten().fold(0.0, |a: f64, gap| a.max(gap.abs()));
+        let size = size * self.load_rate.amax().max(self.load_force);
         rate.factor > 0.0 || (rate.factor == 0.0 && self.power(&rate.gaps) > INEQUALITY * size)
     }
 

@@ -104,8 +104,8 @@ pub struct PathRecord {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub continuation: Option<LimitPointEnd>,
     /// True if the end is proved by the states and witnesses alone, whoever has found them.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub end_is_checked: bool,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub end_is_checked: Option<bool>,
     /// The last state of the path: the range that `greatest` is about ends there.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub followed_to: Option<FollowedTo>,

@@ -1,7 +1,7 @@
 //! The solvers and strategies that belong to this project.
 //!
-//! The proof of a limit point still rests on the path solver: a check that shares nothing with it does not exist yet. So a
-//! path of a solver or strategy from elsewhere is `open` at best, unless a static field proves that the structure stands.
+//! Some ends of paths are not proved by states and witnesses. They are believed if solver and strategy belong to this project; a path
+//! from elsewhere is then `open` at best.
 
 use voussoir_core::path::PathSettings;
 

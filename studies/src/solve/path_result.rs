@@ -24,7 +24,8 @@ use crate::results::{
 };
 use std::collections::BTreeMap;
 use voussoir_core::certificate::{
-    CentroidVelocity, Certificate, ContactForce, Hinge, PathChain, PathChecker, flow_residual, jumps, largest_jump, tolerance,
+    CentroidVelocity, Certificate, ContactForce, Hinge, PathChain, PathChecker, flow_residual, jumps, largest_jump,
+    tolerance,
 };
 use voussoir_core::limit::Status;
 use voussoir_core::model::geometry::{Vec2, turned};
@@ -72,6 +73,10 @@ pub(super) fn path_result(
         let limit_points = proof.limit_points();
         leave_out_unproved(&mut solved);
         solved.limit_points = limit_points;
+        if finite {
+            // The rate just behind a limit point is not checked.
+            solved.motion = None;
+        }
     }
     let evidence = Evidence {
         problem,
@@ -150,7 +155,11 @@ pub(super) fn path_result(
             &solved.stability,
         ),
         notes,
-        path: PathRecord { states, end_is_checked: end_is_checked && status.is_answer(), ..path_record(input, problem, solved, checker, &progress.history) },
+        path: PathRecord {
+            states,
+            end_is_checked: Some(end_is_checked && status.is_answer()),
+            ..path_record(input, problem, solved, checker, &progress.history)
+        },
         ..CaseResult::empty()
     }
 }
@@ -225,7 +234,7 @@ fn path_record(
         limit_points,
         branches,
         states: Vec::new(),
-        end_is_checked: false,
+        end_is_checked: None,
     }
 }
 

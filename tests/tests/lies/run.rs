@@ -108,6 +108,33 @@ fn no_lie_of_a_strategy_is_believed() {
     assert!(believed.is_empty(), "{} are believed:\n{}", believed.len(), believed.join("\n"));
 }
 
+/// A solver from outside this project that tells the truth is believed where its states and witnesses prove the end.
+#[test]
+fn the_truth_of_a_stranger_is_proved() {
+    let kind = PluginKind::PathSolver;
+    let (mut proved, mut all) = (0, 0);
+    for scene in scenes(kind) {
+        for of in ["event_path", "newton_path"] {
+            let Ok(case) = scene.case(&voussoir::conformance::lies::solver_keys(kind, of)) else { continue };
+            let honest = solve_case(&case);
+            let Some((stranger, _)) = told_in(scene, kind, of, "no lie", reference(scene).as_ref()) else { continue };
+            all += 1;
+            if honest.path.end_is_checked == Some(true) {
+                proved += 1;
+                assert_eq!(
+                    (stranger.status, stranger.load_factor),
+                    (honest.status, honest.load_factor),
+                    "{}",
+                    scene.name
+                );
+                assert_eq!(stranger.path.first_limit_point, honest.path.first_limit_point, "{}", scene.name);
+                assert!(stranger.certificate.passed && stranger.path.end_is_checked == Some(true), "{}", scene.name);
+            }
+        }
+    }
+    assert!(3 * proved >= 2 * all, "{proved} of {all}");
+}
+
 /// Honest plug-ins contradict no known answer, and answer.
 #[test]
 fn honest_answers_are_true() {

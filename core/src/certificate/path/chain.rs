@@ -10,9 +10,7 @@ use super::increment::{Allowed, first_opening, passed};
 use super::none_rises::RateProblem;
 use super::point_modes::{ACTIVE, ModeCone, point_modes};
 use super::rate_equations::RateEquations;
-use crate::path::{
-    FarkasVector, LoadStep, LoadStepEnd, ModeTree, PathProblem, PathState, RateClaim, Witness,
-};
+use crate::path::{FarkasVector, LoadStep, LoadStepEnd, ModeTree, PathProblem, PathState, RateClaim, Witness};
 use std::sync::Arc;
 
 /// Most distance of all increments together from the flow of laws, as a share of the greatest displacement.
@@ -203,7 +201,8 @@ impl PathChain {
 
     /// A state of the chain with the equations of its rates and the modes of its points.
     fn at(&self, own: &PathState) -> Result<(&Link, RateEquations, Vec<Vec<ModeCone>>), String> {
-        let link = self.links.iter().rev().find(|link| is_same(&link.state, own)).ok_or("the state is not on the path")?;
+        let link =
+            self.links.iter().rev().find(|link| is_same(&link.state, own)).ok_or("the state is not on the path")?;
         let state = &link.state;
         let equations = RateEquations::new(&self.structure, state, self.finite)?;
         let rounding = if self.finite { 512.0 * f64::EPSILON * self.structure.length } else { 0.0 };
@@ -232,12 +231,7 @@ impl PathChain {
     ///
     /// # Errors
     /// The first part that is wrong, in words.
-    pub fn check_collapse(
-        &self,
-        state: &PathState,
-        motion: &[[f64; 3]],
-        witnesses: &[&Witness],
-    ) -> Result<(), String> {
+    pub fn check_collapse(&self, state: &PathState, motion: &[[f64; 3]], witnesses: &[&Witness]) -> Result<(), String> {
         if self.finite {
             return Err("mechanisms at constant load are checked with small displacements only".into());
         }

@@ -176,7 +176,8 @@ fn by_newcomers(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<Dire
         let moved = leaving((system, &state.points), (&rates, load), active, &modes)?;
         if moved.is_empty() {
             let rates = solved_anew(trace, rates, load, &modes);
-            return (rates.worst <= BELIEVED[0]).then(|| take(trace, modes, rates, load));
+            let believed = rates.worst <= BELIEVED[0] && !rates.is_neutral(load);
+            return believed.then(|| take(trace, modes, rates, load));
         }
         let new = moved.into_iter().map(|(_, c, _)| c).filter(|c| !open.contains(c));
         let before = open.len();
@@ -250,6 +251,12 @@ fn by_rate_problem(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<N
             )));
         };
         rates = motion;
+    }
+    if rates.is_neutral(load) {
+        return Some(Next::Lost(format!(
+            "at λ = {:.9} a block is free to move, and the load does no work on it",
+            trace.state.factor
+        )));
     }
     active.iter().zip(&rate.modes).for_each(|(c, mode)| trace.state.points[*c].mode = *mode);
     let direction = direction_of(&trace.system, &mut trace.state.points, rates, load);
@@ -325,7 +332,7 @@ fn on_whole_system(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<D
         let rates = Rates::new(system, x, 1.0, load);
         let mut changes = leaving((system, &trace.state.points), (&rates, load), active, &modes)?;
         if changes.is_empty() {
-            if residual(system, &rates, load, &modes).0 > BELIEVED[0] {
+            if residual(system, &rates, load, &modes).0 > BELIEVED[0] || rates.is_neutral(load) {
                 return None;
             }
             trace.factors.present = Some(base);

@@ -4,6 +4,7 @@
 use super::factorisation::FactorisedModes;
 use super::point::{Point, active_points};
 use crate::contact::mode::ContactMode;
+use crate::linear::largest;
 use crate::path::system::{Load, System};
 use crate::rate::problem::{Rate, RateProblem};
 use nalgebra::{DMatrix, DVector};
@@ -67,6 +68,7 @@ impl<'a> SchurComplement<'a> {
             s: DMatrix::from_fn(2 * m, 2 * m, |i, j| responses[(row(i), j)]),
             load_rate: DVector::from_fn(2 * m, |i, _| responses[(row(i), 2 * m)] + response[(row(i), 2 * n)]),
             from_nothing: false,
+            load_force: largest(&base.load_rate(system, load_step, load)?[..2 * system.contacts]),
             load_flexibility: 0.0,
             metric: None,
             settles: load.settles,

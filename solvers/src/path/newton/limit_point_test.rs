@@ -12,7 +12,7 @@ use super::twins::favoured;
 use crate::contact::active_point::ActivePoint;
 use crate::contact::facet::slack;
 use crate::contact::mode::ContactMode;
-use crate::linear::inner;
+use crate::linear::{inner, largest};
 use crate::rate::answer::{Budget, Continuation, answer};
 use crate::rate::arrival::{Arrival, ArrivalPoint};
 use crate::rate::branching::{RisingRate, rising_rate};
@@ -303,6 +303,7 @@ pub(super) fn rate_problem<'s>(system: &'s StepSystem, active: &ActiveSet, respo
         s: DMatrix::from_fn(n, n, |i, j| force(i, &responses[j])),
         load_rate: DVector::from_fn(n, |i, _| force(i, &responses[n])),
         from_nothing: false,
+        load_force: largest(&responses[n][..2 * system.scaled.contacts]),
         load_flexibility: 0.0,
         metric: None,
         settles: false,

@@ -120,7 +120,7 @@ fn end_stage(tracer: &mut Tracer, load_step: &LoadStep) -> LoadStepEnding {
             Departure::Falls => {
                 let why = "the stage ends in an unstable equilibrium, from which damped descent reaches no stable one";
                 record_stability(tracer, load_step.stage, found);
-                return end_path(tracer, Status::LimitPoint, why.into());
+                return end_path(tracer, Status::Stalled, why.into());
             }
             Departure::Stable => {
                 let state = tracer.state.clone();

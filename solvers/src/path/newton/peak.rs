@@ -7,8 +7,8 @@ use super::recorded::recorded;
 use super::state::{State, Tangent};
 use super::step::solve_step;
 use super::tangent::tangent_at;
-use super::witness::none_rises;
 use super::tracer::{Peak, PostPeak, Tracer, foreseen, moved_along};
+use super::witness::none_rises;
 use crate::path::energy::load_size;
 use voussoir_core::path::ProvenPeak;
 

@@ -57,6 +57,7 @@ impl<'a> Case<'a> {
                 s: DMatrix::from_row_slice(n, n, s),
                 load_rate: DVector::from_column_slice(load_rate),
                 from_nothing: false,
+                load_force: 0.0,
                 load_flexibility: 0.0,
                 metric: None,
                 settles: false,

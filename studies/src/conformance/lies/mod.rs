@@ -16,6 +16,7 @@ mod path_endings;
 mod path_liar;
 mod path_lie;
 mod path_states;
+mod path_witnesses;
 mod scenes;
 mod strategy_lies;
 mod suite;

@@ -2,7 +2,7 @@
 
 use super::last_answer::LastAnswer;
 use super::path_lie::{PathAsked, PathLie};
-use super::{path_answers, path_endings, path_states};
+use super::{path_answers, path_endings, path_states, path_witnesses};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -10,7 +10,7 @@ use voussoir_core::path::{Continuation, PathAnswer, PathObserver, PathProblem, P
 
 /// All dishonest path solvers.
 pub fn path_lies() -> impl Iterator<Item = &'static PathLie> {
-    path_endings::LIES.iter().chain(path_states::LIES).chain(path_answers::LIES)
+    path_endings::LIES.iter().chain(path_states::LIES).chain(path_answers::LIES).chain(path_witnesses::LIES)
 }
 
 /// A path solver that tells one lie.

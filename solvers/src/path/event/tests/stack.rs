@@ -38,6 +38,14 @@ fn a_push_on_the_lower_block_carries_the_upper_one() {
     }
 }
 
+/// A block that rests on a joint without friction is free to slide, but no load moves it: λ = 2 μ₀ W of the joint below.
+#[test]
+fn a_motion_on_which_the_load_does_no_work_is_no_mechanism() {
+    let answer = traced(&stack([0.2, 0.0], pushed(1, 0.1)));
+    assert_eq!(answer.status, Status::Collapse, "{:?}", answer.notes);
+    assert_close(answer.factor.expect("a factor"), 0.4, 1e-12);
+}
+
 /// Pushed at height H, both blocks tip at λ = 2 W b/(2 H) or the upper one at W b/(2 (H − 1 m)): at H = 2 m at the same load,
 /// below it the whole stack first.
 #[test]

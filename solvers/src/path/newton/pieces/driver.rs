@@ -93,7 +93,8 @@ struct Cluster {
 pub(in super::super) fn follow(tracer: &mut Tracer, load_step: &LoadStep, target: f64) -> LoadStepEnding {
     let direction = direction(tracer);
     if target == tracer.state.factor {
-        return LoadStepEnding::Reached;
+        let here = tracer.state.clone();
+        return if commit(tracer, here) { LoadStepEnding::Reached } else { LoadStepEnding::Ended };
     }
     let mut run = match Run::begin(tracer, load_step, target, direction) {
         Ok(run) => run,

@@ -168,3 +168,12 @@ fn twins_are_told_apart_by_loads() {
     let idle = block(0.3, Loading::default());
     assert_eq!(favoured(&idle, 1, &[&left, &right]), 1);
 }
+
+/// A stage whose target is its start changes nothing, and stands.
+#[test]
+fn a_stage_without_a_change_stands() {
+    let mut problem = block(0.3, pushed_at(0.1));
+    problem.load_steps[1].end = LoadStepEnd::Factor(0.0);
+    let answer = followed(&problem, None);
+    assert_eq!(answer.status, Status::Stands, "{:?}", answer.notes);
+}

@@ -1,0 +1,101 @@
+//! Path solvers that claim the end at an earlier state, with forged witnesses.
+
+use super::path_lie::{PathAsked, PathLie, Story};
+use voussoir_core::limit::Status;
+use voussoir_core::path::{FarkasVector, ModeTree, ProvenPeak, RateClaim, Witness};
+
+/// The path ends at a share of its greatest factor, with the witnesses that `forge` makes of the true ones.
+fn witnessed_early(
+    asked: &PathAsked,
+    story: &mut Story,
+    status: Status,
+    forge: impl Fn(ModeTree) -> ModeTree,
+) -> Option<()> {
+    story.falls()?;
+    let index = story.below(0.7)?;
+    let state = story.states[index].clone();
+    let rate = asked.rate(&state, &story.states[index + 1]);
+    let witnesses = std::mem::take(&mut story.answer.witnesses);
+    story.stop_at(index);
+    story.answer.status = status;
+    story.answer.motion = Some(story.answer.motion.take().unwrap_or(rate));
+    let trees = witnesses.into_iter().filter_map(|witness| match witness.claim {
+        RateClaim::NoneRises(tree) => Some(forge(tree)),
+        RateClaim::Rate(_) => None,
+    });
+    let by_motion = ModeTree::Leaf(FarkasVector {
+        equilibrium: story.answer.motion.iter().flatten().map(|own| own.map(|v| -v)).collect(),
+        gap: vec![[0.0; 2]; asked.problem.contacts.len()],
+    });
+    let trees: Vec<ModeTree> = trees.chain([forge(by_motion)]).collect();
+    let claim = |tree| Witness { state: state.clone(), claim: RateClaim::NoneRises(tree) };
+    story.answer.witnesses = trees.into_iter().map(claim).collect();
+    let peak = ProvenPeak {
+        load_step: state.load_step,
+        factor: state.factor,
+        displacement: state.displacement,
+        lowest: state.factor,
+    };
+    story.answer.limit_points = vec![peak];
+    Some(())
+}
+
+/// The same tree with other numbers in its leaves.
+fn with_leaves(tree: ModeTree, change: fn(f64) -> f64) -> ModeTree {
+    match tree {
+        ModeTree::Leaf(mut vector) => {
+            let numbers = vector.equilibrium.as_flattened_mut().iter_mut().chain(vector.gap.as_flattened_mut());
+            numbers.for_each(|number| *number = change(*number));
+            ModeTree::Leaf(vector)
+        }
+        ModeTree::Split { contact, branches } => {
+            let branches = branches.into_iter().map(|(mode, tree)| (mode, with_leaves(tree, change))).collect();
+            ModeTree::Split { contact, branches }
+        }
+    }
+}
+
+/// A tree whose first decision has no branch.
+fn without_branches(_: ModeTree) -> ModeTree {
+    ModeTree::Split { contact: 0, branches: Vec::new() }
+}
+
+/// Forged witnesses.
+pub const LIES: &[PathLie] = &[
+    PathLie {
+        name: "witness_of_a_later_state",
+        tell: |asked, story| witnessed_early(asked, story, Status::Collapse, |tree| tree),
+    },
+    PathLie {
+        name: "witness_of_a_later_limit_point",
+        tell: |asked, story| witnessed_early(asked, story, Status::LimitPoint, |tree| tree),
+    },
+    PathLie {
+        name: "witness_of_nothing",
+        tell: |asked, story| witnessed_early(asked, story, Status::Collapse, |tree| with_leaves(tree, |_| 0.0)),
+    },
+    PathLie {
+        name: "witness_turned",
+        tell: |asked, story| {
+            witnessed_early(asked, story, Status::Collapse, |tree| with_leaves(tree, |number| -number))
+        },
+    },
+    PathLie {
+        name: "witness_nan",
+        tell: |asked, story| witnessed_early(asked, story, Status::Collapse, |tree| with_leaves(tree, |_| f64::NAN)),
+    },
+    PathLie {
+        name: "witness_without_branches",
+        tell: |asked, story| witnessed_early(asked, story, Status::Collapse, without_branches),
+    },
+    PathLie {
+        name: "states_left_out_before_the_witness",
+        tell: |_, story| {
+            story.falls()?;
+            let index = story.below(0.3)?;
+            let end = story.below(0.9)?;
+            story.states.drain(index + 1..=end);
+            Some(())
+        },
+    },
+];
