@@ -95,12 +95,6 @@ impl PathSettings {
         self.stages.get(stage).is_some_and(|own| own.first_limit_point)
     }
 
-    /// The same with all stages followed by one strategy.
-    pub fn followed_by(&self, strategy: Arc<dyn Continuation>) -> Self {
-        let stages = self.stages.iter().map(|own| StageSettings { continuation: None, ..own.clone() }).collect();
-        PathSettings { continuation: Some(strategy), stages, ..self.clone() }
-    }
-
     /// All continuation strategies that are named.
     pub fn strategies(&self) -> impl Iterator<Item = &Arc<dyn Continuation>> {
         self.stages.iter().filter_map(|own| own.continuation.as_ref()).chain(&self.continuation)
@@ -130,12 +124,6 @@ pub trait PathSolver: Debug + Send + Sync {
 
     /// Why this solver cannot take this problem, if so.
     fn refuses(&self, problem: &PathProblem, settings: &PathSettings) -> Option<String>;
-
-    /// Strategies to follow the path by, one after another, where the solver's own stalls, or those that
-    /// the study names and the solver knows to lose paths.
-    fn further_strategies(&self, _settings: &PathSettings) -> Vec<Arc<dyn Continuation>> {
-        Vec::new()
-    }
 
     /// How much of the energy of a stage its steps may lose.
     fn energy_tolerance(&self) -> f64 {

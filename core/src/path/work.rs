@@ -14,14 +14,46 @@ impl PathProblem {
         forces + masses * loading.acceleration.norm()
     }
 
+    /// By how much a loading moves the contact points of supports, at most, per unit of its factor \[m\].
+    pub fn settlement_size(&self, loading: &Loading) -> f64 {
+        let moves = |&(body, [x, y, theta]): &(usize, [f64; 3])| {
+            let pole = self.bodies[body].pole;
+            let own = self.contacts.iter().filter(move |c| c.minus.body == body || c.plus.body == body);
+            own.map(move |c| (Vec2::new(x, y) + turned(c.position - pole) * theta).norm()).fold(0.0, f64::max)
+        };
+        loading.settlements.iter().map(moves).fold(0.0, f64::max)
+    }
+
+    /// Work-conjugate displacement of a loading by rigid motions: Σ F·u / Σ|F| \[m\], u by `rigid` of (body, point). Of a
+    /// loading that only moves supports, how far it has moved them at its factor.
+    pub fn load_displacement(
+        &self,
+        (loading, factor): (&Loading, f64),
+        motion: &[[f64; 3]],
+        rigid: impl Fn(usize, Vec2) -> Vec2,
+    ) -> f64 {
+        let size = self.load_size(loading);
+        if size == 0.0 {
+            return factor * self.settlement_size(loading);
+        }
+        let forces: f64 = loading.forces.iter().map(|(body, _, point, f)| f.dot(&rigid(*body, *point))).sum();
+        let free = self.bodies.iter().zip(motion).filter(|(b, _)| !b.held);
+        let masses: f64 = free.map(|(b, q)| b.mass * loading.acceleration.dot(&Vec2::new(q[0], q[1]))).sum();
+        (forces + masses) / size
+    }
+
+    /// Displacement of a point of a body by the rigid motion of a state \[m\].
+    pub fn rigid_displacement(&self, motion: &[[f64; 3]], body: usize, point: Vec2, finite: bool) -> Vec2 {
+        let ([x, y, theta], arm) = (motion[body], point - self.bodies[body].pole);
+        Vec2::new(x, y) + if finite { Rotation2::new(theta) * arm - arm } else { turned(arm) * theta }
+    }
+
     /// Σ|work| between two states \[J\]: that of the loads of earlier steps, which stand and act on the bodies' rigid
     /// motions, and that of all else, the load that changes and the supports that move. Where a mechanism moves the two
     /// cancel: their sum would say that nothing was done.
     pub fn gross_work(&self, from: &PathState, to: &PathState, finite: bool) -> f64 {
-        let moved = |state: &PathState, body: usize, point: Vec2| {
-            let ([x, y, theta], arm) = (state.motion[body], point - self.bodies[body].pole);
-            Vec2::new(x, y) + if finite { Rotation2::new(theta) * arm - arm } else { turned(arm) * theta }
-        };
+        let moved =
+            |state: &PathState, body: usize, point: Vec2| self.rigid_displacement(&state.motion, body, point, finite);
         let mut standing = 0.0;
         let applied = self.applied(to.load_step, to.factor);
         for (step, factor) in self.load_steps[..to.load_step].iter().zip(applied).filter(|(_, factor)| *factor != 0.0) {

@@ -1,7 +1,7 @@
 //! Energy along a path: the work of loads and of settled supports by the trapezoidal rule, exact where everything
 //! changes linearly during a step, and what dissipates.
 
-use voussoir_core::model::geometry::{Vec2, turned};
+use voussoir_core::model::geometry::Vec2;
 use voussoir_core::path::{Loading, PathProblem, PathState};
 
 /// Energies so far \[J\].
@@ -91,28 +91,15 @@ pub(super) fn load_size(problem: &PathProblem, loading: &Loading) -> f64 {
 
 /// By how much a loading moves the contact points of supports, at most, per unit of its factor \[m\].
 pub(super) fn settlement_size(problem: &PathProblem, loading: &Loading) -> f64 {
-    let moves = |&(body, [x, y, theta]): &(usize, [f64; 3])| {
-        let pole = problem.bodies[body].pole;
-        let own = problem.contacts.iter().filter(move |c| c.minus.body == body || c.plus.body == body);
-        own.map(move |c| (Vec2::new(x, y) + turned(c.position - pole) * theta).norm()).fold(0.0, f64::max)
-    };
-    loading.settlements.iter().map(moves).fold(0.0, f64::max)
+    problem.settlement_size(loading)
 }
 
-/// Work-conjugate displacement of a loading by rigid motions: Σ F·u / Σ|F| \[m\], u by `rigid` of (body, point). Of a
-/// loading that only moves supports, how far it has moved them at its factor.
+/// Work-conjugate displacement of a loading by rigid motions \[m\], u by `rigid` of (body, point).
 pub(super) fn load_displacement(
     problem: &PathProblem,
-    (loading, factor): (&Loading, f64),
+    at: (&Loading, f64),
     motion: &[[f64; 3]],
     rigid: impl Fn(usize, Vec2) -> Vec2,
 ) -> f64 {
-    let size = load_size(problem, loading);
-    if size == 0.0 {
-        return factor * settlement_size(problem, loading);
-    }
-    let forces: f64 = loading.forces.iter().map(|(body, _, point, f)| f.dot(&rigid(*body, *point))).sum();
-    let free = problem.bodies.iter().zip(motion).filter(|(b, _)| !b.held);
-    let masses: f64 = free.map(|(b, q)| b.mass * loading.acceleration.dot(&Vec2::new(q[0], q[1]))).sum();
-    (forces + masses) / size
+    problem.load_displacement(at, motion, rigid)
 }

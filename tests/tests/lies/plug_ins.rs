@@ -102,10 +102,6 @@ impl PathSolver for LyingPath {
         self.solver().refuses(problem, settings)
     }
 
-    fn further_strategies(&self, settings: &PathSettings) -> Vec<Arc<dyn Continuation>> {
-        self.solver().further_strategies(settings)
-    }
-
     fn energy_tolerance(&self) -> f64 {
         self.solver().energy_tolerance()
     }

@@ -19,6 +19,8 @@ const DRIFT: f64 = 1e-7;
 const CLOSED: f64 = 1e-9;
 /// Relative difference of factors that are the same.
 const SAME_FACTOR: f64 = 1e-9;
+/// Error of the displacement of the load, relative to the greatest motion.
+const DISPLACEMENT: f64 = 1e-9;
 /// With finite displacements, unbalanced forces of the state midway, as a share of all forces.
 const MIDWAY: f64 = 1e-3;
 
@@ -109,6 +111,7 @@ impl PathChain {
         }
         self.check_factors(&last.state, state)?;
         self.check_supports(state)?;
+        self.check_displacement(state)?;
         let size = deformation(state).max(deformation(&last.state));
         let rounding = if self.finite { 512.0 * f64::EPSILON * problem.length } else { 0.0 };
         let force = greatest_force(state).max(greatest_force(&last.state));
@@ -162,6 +165,18 @@ impl PathChain {
             (0..3).map(|i| (own[i] - settled[i]).abs() - SAME_FACTOR * settled[i].abs())
         });
         if off.fold(0.0, f64::max) > 0.0 { Err("a support has not moved by its settlement".into()) } else { Ok(()) }
+    }
+
+    /// The displacement of the load is that of the motions.
+    fn check_displacement(&self, state: &PathState) -> Result<(), String> {
+        let problem = &*self.structure;
+        let growing = (&problem.load_steps[state.load_step].loading, state.factor);
+        let moved = |body, point| problem.rigid_displacement(&state.motion, body, point, self.finite);
+        let right = problem.load_displacement(growing, &state.motion, moved);
+        let moves = state.motion.iter().flat_map(|u| [u[0], u[1], u[2] * problem.length]);
+        let size = moves.fold(right.abs(), |a: f64, v| a.max(v.abs()));
+        let is_right = (state.displacement - right).abs() <= DISPLACEMENT * size;
+        if is_right { Ok(()) } else { Err("the displacement of the load is not that of the motions".into()) }
     }
 
     /// The mean of two neighbours is nearly in equilibrium.

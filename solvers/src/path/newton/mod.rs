@@ -53,17 +53,9 @@ mod witness;
 use self::monitors::resolve;
 use super::event::{self, is_piecewise_linear};
 use super::outcome::stalled;
-use crate::path::continuation::arc_length::ArcLength;
-use crate::path::continuation::displacement_control::DisplacementControl;
-use crate::path::continuation::dissipation::Dissipation;
 use serde::{Deserialize, Serialize};
-use std::any::Any;
-use std::sync::Arc;
-use voussoir_core::path::{Continuation, PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver};
+use voussoir_core::path::{PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver};
 use voussoir_core::plugin::{Capability, Card, PluginKind};
-
-/// First step of the last strategy that is tried; the usual one is 0.1.
-const SHORT: f64 = 0.003;
 
 /// Steps with Newton's method.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
@@ -92,23 +84,6 @@ impl PathSolver for NewtonPath {
             return Some(why.into());
         }
         settings.strategies().find_map(|strategy| resolve(problem, &strategy.monitors()).err())
-    }
-
-    /// With finite displacements a step may fall short of a sharp fold by one strategy and pass it by another; what
-    /// displacement control and dissipation measure may turn back. Arc lengths that are asked for are what is used.
-    fn further_strategies(&self, settings: &PathSettings) -> Vec<Arc<dyn Continuation>> {
-        let turns_back = |strategy: &Arc<dyn Continuation>| {
-            let strategy: &dyn Any = &**strategy;
-            strategy.is::<DisplacementControl>() || strategy.is::<Dissipation>()
-        };
-        let usual: Arc<dyn Continuation> = match settings.strategies().next() {
-            None => Arc::new(DisplacementControl::default()),
-            Some(_) => Arc::new(ArcLength::default()),
-        };
-        if !settings.finite || !settings.strategies().all(turns_back) {
-            return Vec::new();
-        }
-        vec![usual, Arc::new(ArcLength { first_step: SHORT, ..ArcLength::default() })]
     }
 }
 

@@ -6,7 +6,7 @@ use super::{path_answers, path_endings, path_states, path_witnesses};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use voussoir_core::path::{Continuation, PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver};
+use voussoir_core::path::{PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver};
 
 /// All dishonest path solvers.
 pub fn path_lies() -> impl Iterator<Item = &'static PathLie> {
@@ -53,10 +53,6 @@ impl PathSolver for DishonestPath {
     fn refuses(&self, problem: &PathProblem, settings: &PathSettings) -> Option<String> {
         let Some(honest) = &self.honest else { return Some("has no honest solver".into()) };
         honest.refuses(problem, settings)
-    }
-
-    fn further_strategies(&self, settings: &PathSettings) -> Vec<Arc<dyn Continuation>> {
-        self.honest.as_ref().map_or_else(Vec::new, |honest| honest.further_strategies(settings))
     }
 
     fn energy_tolerance(&self) -> f64 {

@@ -31,8 +31,25 @@ fn slipped(slip: f64, dilatancy: f64) -> PathState {
 
 fn chain(problem: &PathProblem, states: &[PathState]) -> PathChain {
     let mut chain = PathChain::new(Arc::new(problem.clone()), false);
-    states.iter().for_each(|state| chain.add(state));
+    states.iter().for_each(|state| chain.add(&with_displacement(problem, state)));
     chain
+}
+
+/// A state with the displacement of its load.
+fn with_displacement(problem: &PathProblem, state: &PathState) -> PathState {
+    let growing = (&problem.load_steps[state.load_step].loading, state.factor);
+    let moved = |body, point| problem.rigid_displacement(&state.motion, body, point, false);
+    PathState { displacement: problem.load_displacement(growing, &state.motion, moved), ..state.clone() }
+}
+
+/// A state whose load has moved otherwise than its motions say breaks the chain.
+#[test]
+fn the_displacement_of_the_load_is_that_of_the_motions() {
+    let problem = sliding_block(0.0);
+    let state = with_displacement(&problem, &weight());
+    let mut chain = PathChain::new(Arc::new(problem), false);
+    chain.add(&PathState { displacement: 2.0 * state.displacement, ..state });
+    assert!(chain.broken().is_some_and(|why| why.contains("displacement of the load")), "{:?}", chain.broken());
 }
 
 /// The mechanism with p·q̇ = 1, and the proof that it makes: its slip opens the joint as the normal of the facet says.
