@@ -77,9 +77,8 @@ pub(super) fn end_at_lost_joint(
             tracer.ending.limit_point_end = Some(LimitPointEnd::JointLost);
             Status::LimitPoint
         }
-        (false, true) => Status::Stalled,
-        (apart, false) if apart || tracer.post_peak.far => Status::Collapse,
-        _ => Status::Stalled,
+        (true, false) => Status::Collapse,
+        (false, _) => Status::Stalled,
     };
     end_path(tracer, status, why)
 }

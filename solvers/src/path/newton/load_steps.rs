@@ -9,7 +9,7 @@ use super::recorded::{recorded, work_state};
 use super::second_order::{StateStability, second_order_work, stability};
 use super::stable_branch::{Departure, leave_unstable};
 use super::system::StepSystem;
-use super::tracer::{Ending, LimitPoint, LoadStepEnding, PostPeak, Record, Tracer, end_path};
+use super::tracer::{Ending, LimitPoint, LoadStepEnding, Record, Tracer, end_path};
 use crate::path::continuation::arc_length::ArcLength;
 use crate::path::energy::{EnergyBalance, StageBalance};
 use crate::path::outcome::{Outcome, PathRecord, stalled};
@@ -49,7 +49,7 @@ pub(super) fn trace(problem: &PathProblem, settings: &PathSettings, observer: &m
         },
         ending: Ending { status: Status::Stalled, motion: None, ray: None, limit_point_end: None },
         limit: LimitPoint::default(),
-        post_peak: PostPeak::default(),
+        trough: None,
     };
     run(&mut tracer, problem);
     answer(tracer)
@@ -166,7 +166,7 @@ fn answer(mut tracer: Tracer) -> PathAnswer {
         ));
     }
     if tracer.ending.status != Status::NoEquilibrium
-        && let (Some(peak), Some(trough)) = (&tracer.limit.peak, &tracer.post_peak.trough)
+        && let (Some(peak), Some(trough)) = (&tracer.limit.peak, &tracer.trough)
     {
         notes.push(format!(
             "after the peak the load falls to the factor {} at a displacement of {} m and rises again: snap-through",

@@ -7,7 +7,7 @@ use super::recorded::recorded;
 use super::state::{State, Tangent};
 use super::step::solve_step;
 use super::tangent::tangent_at;
-use super::tracer::{Peak, PostPeak, Tracer, foreseen, moved_along};
+use super::tracer::{Peak, Tracer, foreseen, moved_along};
 use super::witness::none_rises;
 use crate::path::energy::load_size;
 use voussoir_core::path::ProvenPeak;
@@ -66,11 +66,10 @@ pub(super) fn note_proven_peak(tracer: &mut Tracer, peak: Peak, direction: f64) 
             return;
         }
         tracer.limit.proven_peaks.push(ProvenPeak { load_step, factor, displacement, lowest: factor });
-        tracer.post_peak = PostPeak { far: tracer.post_peak.far, ..PostPeak::default() };
+        tracer.trough = None;
     }
     if tracer.limit.peak.as_ref().is_none_or(greatest) {
         tracer.limit.peak = Some(peak);
-        tracer.post_peak.far = false;
     }
 }
 

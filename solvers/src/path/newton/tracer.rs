@@ -68,15 +68,6 @@ pub(super) struct LimitPoint {
     pub rose: Option<(f64, u32)>,
 }
 
-/// The path after its peak.
-#[derive(Default)]
-pub(super) struct PostPeak {
-    /// The least load since.
-    pub trough: Option<Peak>,
-    /// True if the load has fallen to half of the greatest one.
-    pub far: bool,
-}
-
 /// A trace of a path.
 pub(super) struct Tracer<'a, 'o> {
     pub system: StepSystem<'a>,
@@ -89,7 +80,8 @@ pub(super) struct Tracer<'a, 'o> {
     pub record: Record,
     pub ending: Ending,
     pub limit: LimitPoint,
-    pub post_peak: PostPeak,
+    /// The least load since the last limit point.
+    pub trough: Option<Peak>,
 }
 
 /// Energies at the end of a step from the last state, and what the next one needs of it.

@@ -14,7 +14,7 @@ use super::super::tracer::{LoadStepEnding, Tracer, direction, end_path};
 use super::advance::{Advance, StepEnd, Watched, advance, state_at};
 use super::begin::begin;
 use super::corrector::correct;
-use super::end::{end_of_range, end_unfollowed};
+use super::end::end_of_range;
 use super::monitors::{Monitor, What};
 use super::piece::Piece;
 use super::plateau::{Plateau, plateau, stands_still};
@@ -111,7 +111,7 @@ pub(in super::super) fn follow(tracer: &mut Tracer, load_step: &LoadStep, target
         }
     }
     let why = format!("the budget of steps is used up; the last state is at factor {}", tracer.state.factor);
-    end_unfollowed(tracer, direction, why)
+    end_path(tracer, Status::Stalled, why)
 }
 
 impl<'d> Run<'d> {
@@ -197,7 +197,7 @@ impl<'d> Run<'d> {
         self.length = length;
         (length < SHORTEST * self.first).then(|| {
             let why = format!("no state of the piece was found beyond factor {}", tracer.state.factor);
-            end_unfollowed(tracer, self.direction, why)
+            end_path(tracer, Status::Stalled, why)
         })
     }
 
@@ -302,11 +302,10 @@ impl<'d> Run<'d> {
         if !was && self.rises {
             self.forget_still_peak(tracer);
             let state = tracer.state.clone();
-            let lower =
-                tracer.post_peak.trough.as_ref().is_none_or(|t| (t.factor - state.factor) * self.direction > 0.0);
+            let lower = tracer.trough.as_ref().is_none_or(|t| (t.factor - state.factor) * self.direction > 0.0);
             if tracer.limit.peak.is_some() && lower {
                 let beyond = self.piece.tangent.clone();
-                tracer.post_peak.trough = Some(peak_at(tracer, state, &beyond));
+                tracer.trough = Some(peak_at(tracer, state, &beyond));
             }
         }
         self.after(tracer)
@@ -451,7 +450,7 @@ impl<'d> Run<'d> {
         }
         if self.cluster.pieces > MOST_SHORT_PIECES {
             let why = format!("at factor {} events follow each other without end", tracer.state.factor);
-            return Some(end_unfollowed(tracer, self.direction, why));
+            return Some(end_path(tracer, Status::Stalled, why));
         }
         let hits = self.all_hits(tracer, hits);
         let here = tracer.state.clone();
@@ -534,10 +533,7 @@ impl<'d> Run<'d> {
         let proved = proved && tracer.limit.peak.is_some();
         tracer.ending.limit_point_end = proved.then_some(LimitPointEnd::None);
         let why = format!("at factor {factor} {why}");
-        if !proved || tracer.post_peak.far {
-            return end_unfollowed(tracer, self.direction, why);
-        }
-        end_path(tracer, Status::LimitPoint, why)
+        end_path(tracer, if proved { Status::LimitPoint } else { Status::Stalled }, why)
     }
 
     /// Takes the modes of the next piece over.

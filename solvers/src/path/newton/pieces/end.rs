@@ -4,8 +4,6 @@ use super::super::tracer::{LoadStepEnding, Tracer, end_path, is_above};
 use voussoir_core::limit::Status;
 use voussoir_core::path::LoadStep;
 
-/// Movement of the load point behind its greatest limit point, as a share of the span, from which on a path may end.
-const MOVED_ON: f64 = 0.02;
 /// Share of the greatest limit point to which the load falls.
 const HALF: f64 = 0.5;
 
@@ -30,15 +28,12 @@ pub(super) fn end_of_range(
             end_path(tracer, Status::Stalled, why)
         });
     };
-    let beyond = (displacement - place).abs();
     let done = match tracer.settings.stop(load_step.stage) {
         // A support that goes no further by itself: what follows is a fall.
         [None, None] if tracer.system.settles() => true,
         [None, None] => {
             let fallen = (greatest - factor) * direction;
-            let halved = fallen >= HALF * (greatest - load_step.start).abs();
-            tracer.post_peak.far |= halved;
-            (halved && beyond >= MOVED_ON * span) || gone
+            fallen >= HALF * (greatest - load_step.start).abs() || gone
         }
         [most, least] => {
             // Counted from the last limit point.
@@ -56,13 +51,4 @@ pub(super) fn end_of_range(
         return Some(end_path(tracer, Status::Stalled, why));
     }
     Some(end_path(tracer, Status::Collapse, String::new()))
-}
-
-/// The end of a path that is not followed further. Where the load has fallen to half of its greatest limit point the range
-/// has ended already: what comes later is looked at for greater limit points only.
-pub(super) fn end_unfollowed(tracer: &mut Tracer, direction: f64, why: String) -> LoadStepEnding {
-    let factor = tracer.state.factor;
-    let below = tracer.limit.peak.as_ref().is_some_and(|peak| !is_above(direction, peak.factor, factor));
-    let status = if tracer.post_peak.far && below { Status::Collapse } else { Status::Stalled };
-    end_path(tracer, status, why)
 }
