@@ -208,7 +208,6 @@ fn answer(mut tracer: Tracer) -> PathAnswer {
         witnesses: tracer.record.witnesses,
         counters,
         notes,
-        ..PathRecord::default()
     };
     let outcome =
         Outcome { limit_point_end: tracer.ending.limit_point_end, ..Outcome::at(tracer.ending.status, factor) };
