@@ -69,8 +69,7 @@ impl PathProof<'_> {
         let motion = self.solved.motion.as_deref().ok_or("no mechanism")?;
         let witnesses: Vec<&Witness> = self.witnesses(state).collect();
         self.chain.check_collapse(state, motion, &witnesses)?;
-        let highest = self.of_step(state.load_step).all(|own| own.factor <= state.factor * (1.0 + SAME));
-        if highest { Ok(()) } else { Err("the load is greater at an earlier state".into()) }
+        if self.is_greatest(state) { Ok(()) } else { Err("the load is greater at an earlier state".into()) }
     }
 
     /// The ray that carries any load.
@@ -118,6 +117,12 @@ impl PathProof<'_> {
         self.chain.states().filter(move |own| own.load_step == load_step)
     }
 
+    /// True if no state of its load step has a greater load, in the sense of the step.
+    fn is_greatest(&self, state: &PathState) -> bool {
+        let sense = sense(&self.problem.load_steps[state.load_step]);
+        self.of_step(state.load_step).all(|own| (own.factor - state.factor) * sense <= SAME * state.factor.abs())
+    }
+
     /// States of the chain behind which the load falls after it has risen.
     fn maxima(&self) -> Vec<&PathState> {
         let mut found: Vec<&PathState> = Vec::new();
@@ -155,7 +160,7 @@ impl PathProof<'_> {
         let (Some(first), Some(last)) = (of_step().next(), of_step().last()) else {
             return Err("no state of the load step".into());
         };
-        if of_step().any(|own| own.factor > state.factor) {
+        if !self.is_greatest(state) {
             return Err("the load exceeds the limit point".into());
         }
         let ended = match self.settings.stop(step.stage) {
@@ -181,7 +186,9 @@ impl PathProof<'_> {
         }
         let peak = |state: &PathState| {
             let after = self.of_step(state.load_step).skip_while(|own| !std::ptr::eq(*own, state));
-            let lowest = after.map(|own| own.factor).fold(state.factor, f64::min);
+            let sense = sense(&self.problem.load_steps[state.load_step]);
+            let lower = |a: f64, own: &PathState| if (own.factor - a) * sense < 0.0 { own.factor } else { a };
+            let lowest = after.fold(state.factor, lower);
             ProvenPeak { load_step: state.load_step, factor: state.factor, displacement: state.displacement, lowest }
         };
         states.into_iter().filter(|state| self.limit_point(state).is_ok()).map(peak).collect()
