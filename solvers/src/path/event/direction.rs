@@ -176,7 +176,7 @@ fn by_newcomers(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<Dire
         let moved = leaving((system, &state.points), (&rates, load), active, &modes)?;
         if moved.is_empty() {
             let rates = solved_anew(trace, rates, load, &modes);
-            let believed = rates.worst <= BELIEVED[0] && !rates.is_neutral(load);
+            let believed = rates.worst <= BELIEVED[0];
             return believed.then(|| take(trace, modes, rates, load));
         }
         let new = moved.into_iter().map(|(_, c, _)| c).filter(|c| !open.contains(c));
@@ -252,12 +252,6 @@ fn by_rate_problem(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<N
         };
         rates = motion;
     }
-    if rates.is_neutral(load) {
-        return Some(Next::Lost(format!(
-            "at λ = {:.9} a block is free to move, and the load does no work on it",
-            trace.state.factor
-        )));
-    }
     active.iter().zip(&rate.modes).for_each(|(c, mode)| trace.state.points[*c].mode = *mode);
     let direction = direction_of(&trace.system, &mut trace.state.points, rates, load);
     Some(if falling { Next::Falling(direction) } else { Next::Go(direction) })
@@ -332,7 +326,7 @@ fn on_whole_system(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<D
         let rates = Rates::new(system, x, 1.0, load);
         let mut changes = leaving((system, &trace.state.points), (&rates, load), active, &modes)?;
         if changes.is_empty() {
-            if residual(system, &rates, load, &modes).0 > BELIEVED[0] || rates.is_neutral(load) {
+            if residual(system, &rates, load, &modes).0 > BELIEVED[0] {
                 return None;
             }
             trace.factors.present = Some(base);

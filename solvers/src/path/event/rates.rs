@@ -3,7 +3,7 @@
 
 use super::point::{Point, active_points};
 use crate::contact::mode::ContactMode;
-use crate::linear::{inner, largest};
+use crate::linear::largest;
 use crate::path::system::{Load, System};
 
 /// Rates of force below this share of the rates of gaps (in scaled units) are rounding.
@@ -57,16 +57,6 @@ impl Rates {
             }
         }
         Rates { x, factor, gaps, worst: 0.0, refinements: 0 }
-    }
-
-    /// Whether this is next to nothing but a motion under constant forces on which the load does no work, such as that of an idle
-    /// block on a joint without friction: it has any size, and continues no path.
-    pub fn is_neutral(&self, load: &Load) -> bool {
-        let (forces, motions) = self.x.split_at(self.x.len() - 3 * load.wrench.len());
-        let size = largest(motions);
-        let work = inner(load.wrench.as_flattened(), motions);
-        let terms = largest(load.wrench.as_flattened()) * size;
-        !load.settles && largest(forces) < MECHANISM * size && work.abs() <= INEQUALITY * terms
     }
 
     /// Whether motions are so large beside the forces that a mechanism is near.
