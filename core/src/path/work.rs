@@ -24,8 +24,8 @@ impl PathProblem {
         loading.settlements.iter().map(moves).fold(0.0, f64::max)
     }
 
-    /// Work-conjugate displacement of a loading by rigid motions: Σ F·u / Σ|F| \[m\], u by `rigid` of (body, point). Of a
-    /// loading that only moves supports, how far it has moved them at its factor.
+    /// Work-conjugate displacement of a loading by rigid motions: Σ F·u / Σ|F| \[m\], u by `rigid` of (body, point). If a loading
+    /// only moves supports, the distance by which it has moved them at its factor.
     pub fn load_displacement(
         &self,
         (loading, factor): (&Loading, f64),

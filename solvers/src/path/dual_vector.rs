@@ -1,8 +1,14 @@
-//! Multipliers of the certificate from the response of a structure.
+//! Proofs for the certificate that no rate raises the load: trees of modes, with multipliers from the response of the structure.
 
 use super::system::System;
 use crate::linear::largest;
-use voussoir_core::path::FarkasVector;
+use crate::rate::answer::Budget;
+use crate::rate::problem::RateProblem;
+use crate::rate::tree::search;
+use voussoir_core::path::{FarkasVector, ModeTree};
+
+/// Facets of the active set up to which the search is tried: its program is dense.
+pub(super) const MOST_FACETS: usize = 160;
 
 /// Forces per gap, in scaled units, that are rounding: along a mechanism forces rest.
 const REST: f64 = 1e-10;
@@ -11,7 +17,7 @@ const STILL: f64 = 1e-10;
 
 /// The multipliers that complete `alpha`, the gap rates of the active points, by the response `x` to them at a held load, in scaled
 /// units. The active points stick in it, so that the structure is symmetric: y = −q̇, β = −ṙ.
-pub(super) fn dual_vector(system: &System, x: &[f64], alpha: &[[f64; 2]]) -> FarkasVector {
+fn dual_vector(system: &System, x: &[f64], alpha: &[[f64; 2]]) -> FarkasVector {
     let (forces, motions) = x.split_at(2 * system.contacts);
     let unit = if largest(forces) <= REST * largest(alpha.as_flattened()) { 0.0 } else { system.units.force };
     let still = STILL * largest(motions);
@@ -21,4 +27,17 @@ pub(super) fn dual_vector(system: &System, x: &[f64], alpha: &[[f64; 2]]) -> Far
         equilibrium: system.motions(&moving).into_iter().map(|own| own.map(|v| -v)).collect(),
         gap: forces.chunks_exact(2).map(negative).collect(),
     }
+}
+
+/// The tree that proves that no rate of a problem over the contact points `contacts` raises the load. `response`: all unknowns for gap
+/// rates of these points at a held load. `None` if the search does not find the proof within its budget.
+pub(super) fn none_rises(
+    (problem, system): (&RateProblem, &System),
+    contacts: &[usize],
+    trials: &mut u64,
+    response: impl Fn(&[[f64; 2]]) -> Option<Vec<f64>>,
+) -> Option<ModeTree> {
+    let proof = search(problem, 1.0, Budget::default().leaves, trials).proof?;
+    let vector = |alpha: &[[f64; 2]]| response(alpha).map(|x| dual_vector(system, &x, alpha)).unwrap_or_default();
+    proof.certified(problem, contacts, &vector)
 }

@@ -83,23 +83,3 @@ impl EnergyBalance {
         }
     }
 }
-
-/// Σ|F| of a loading, weights of accelerated free bodies included \[N\].
-pub(super) fn load_size(problem: &PathProblem, loading: &Loading) -> f64 {
-    problem.load_size(loading)
-}
-
-/// By how much a loading moves the contact points of supports, at most, per unit of its factor \[m\].
-pub(super) fn settlement_size(problem: &PathProblem, loading: &Loading) -> f64 {
-    problem.settlement_size(loading)
-}
-
-/// Work-conjugate displacement of a loading by rigid motions \[m\], u by `rigid` of (body, point).
-pub(super) fn load_displacement(
-    problem: &PathProblem,
-    at: (&Loading, f64),
-    motion: &[[f64; 3]],
-    rigid: impl Fn(usize, Vec2) -> Vec2,
-) -> f64 {
-    problem.load_displacement(at, motion, rigid)
-}

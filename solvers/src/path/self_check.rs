@@ -8,7 +8,6 @@
 //! - limit point: no modes of the active points have a rate with growing λ
 //!   (`rising`).
 
-use super::energy::load_size;
 use voussoir_core::certificate::{PathChecker, flow_residual, leaves_forces, power_residual, ray_residual, tolerance};
 use voussoir_core::limit::Status;
 use voussoir_core::path::{PathAnswer, PathObserver, PathProblem};
@@ -47,7 +46,7 @@ fn confirm(problem: &PathProblem, finite: bool, answer: &PathAnswer) -> Result<(
     let still = moves <= 1e-9 * force * blocks;
     let applied = problem.applied(answer.state.load_step, answer.state.factor);
     let parts = problem.load_steps.iter().zip(applied);
-    let load: f64 = parts.map(|(d, factor)| (factor * load_size(problem, &d.loading)).abs()).sum();
+    let load: f64 = parts.map(|(d, factor)| (factor * problem.load_size(&d.loading)).abs()).sum();
     for (name, value) in checker.worst {
         if still && !matches!(name, "path_equilibrium" | "path_strength" | "path_inner_equilibrium") {
             continue;

@@ -212,7 +212,7 @@ impl RateProblem<'_> {
 
     /// Whether a rate is one along which a path goes on: λ grows, or the load does work.
     pub fn leads_on(&self, rate: &Rate) -> bool {
-        // Where the load causes no force its rates are rounding, and so is its work.
+        // If the load causes no force at these points, its rates are rounding, and so is its work.
         let size = rate.gaps.iter().flatten().fold(0.0, |a: f64, gap| a.max(gap.abs()));
         let size = size * self.load_rate.amax().max(self.load_force);
         rate.factor > 0.0 || (rate.factor == 0.0 && self.power(&rate.gaps) > INEQUALITY * size)

@@ -76,9 +76,7 @@ impl NoRate {
     /// a proof that no rate rises.
     ///
     /// `vector` completes gap multipliers α of the points to multipliers of the whole structure. If the structure is
-    /// symmetric, they are the negative response of the structure to the gap rates α at a held load: y = −q̇, β = −ṙ.
-    // Until a path solver hands its proofs over.
-    #[allow(dead_code)]
+    /// symmetric, it is the negative response of the structure to the gap rates α at a held load: y = −q̇, β = −ṙ.
     pub fn certified(
         &self,
         problem: &RateProblem,

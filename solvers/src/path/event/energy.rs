@@ -10,12 +10,6 @@ use crate::path::energy::WorkState;
 use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::path::{Attachment, Contact, PathProblem, PathState};
 
-/// Displacement of a point by the rigid motion of its body.
-pub fn rigid(problem: &PathProblem, motion: &[[f64; 3]], body: usize, point: Vec2) -> Vec2 {
-    let [x, y, theta] = motion[body];
-    Vec2::new(x, y) + turned(point - problem.bodies[body].pole) * theta
-}
-
 /// What forces do to the blocks of a state.
 pub struct Deformation {
     /// Displacements (x, y) of every body's points beside its rigid motion \[m\]; none of a rigid body.
@@ -56,7 +50,7 @@ impl Deformation {
     /// Gaps of all contact points \[m\].
     pub fn gaps(&self, problem: &PathProblem, state: &PathState) -> Vec<[f64; 2]> {
         let place = |side: Attachment, point: Vec2| {
-            rigid(problem, &state.motion, side.body, point) + self.at(side.body, side.slot)
+            problem.rigid_displacement(&state.motion, side.body, point, false) + self.at(side.body, side.slot)
         };
         let gap = |(contact, force): (&Contact, &[f64; 2])| {
             let apart = place(contact.plus, contact.position) - place(contact.minus, contact.position);
@@ -70,7 +64,7 @@ impl Deformation {
 /// What the work of a step needs of a state with its deformation.
 pub fn work_state(problem: &PathProblem, state: &PathState, deformation: &Deformation) -> WorkState {
     let place = |&(body, slot, point, _): &(usize, Option<usize>, Vec2, Vec2)| {
-        rigid(problem, &state.motion, body, point) + deformation.at(body, slot)
+        problem.rigid_displacement(&state.motion, body, point, false) + deformation.at(body, slot)
     };
     let displacements = problem.load_steps.iter().map(|step| step.loading.forces.iter().map(place).collect());
     let factors = problem.applied(state.load_step, state.factor);

@@ -5,7 +5,7 @@ use super::trace::Trace;
 use crate::contact::mode::ContactMode;
 
 /// Events that are all recorded; of more, so many each time their number grows e-fold.
-pub const RECORDED: u64 = 256;
+pub const RECORDED: u64 = 512;
 /// Rounds of the active set, and those in which all points change at once.
 pub const ROUNDS: [usize; 2] = [40, 12];
 

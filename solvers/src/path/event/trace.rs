@@ -2,11 +2,11 @@
 //! and what was noted on the way.
 
 use super::elastic_chain::ElasticChain;
-use super::energy::{Deformation, rigid, work_state};
+use super::energy::{Deformation, work_state};
 use super::factorisation::FactorisedModes;
 use super::point::Point;
 use crate::contact::facet::dot;
-use crate::path::energy::{EnergyBalance, WorkState, load_displacement};
+use crate::path::energy::{EnergyBalance, WorkState};
 use crate::path::system::System;
 use crate::rate::solve::RateCounts;
 use voussoir_core::path::{Loading, PathEvent, PathObserver, PathProblem, PathSettings, PathState, StageStability};
@@ -144,7 +144,8 @@ impl<'a> Trace<'a> {
     fn displacement_of(&self, motion: &[[f64; 3]]) -> f64 {
         let loading = &self.problem.load_steps[self.state.load_step].loading;
         let growing = (loading, self.state.factor);
-        load_displacement(self.problem, growing, motion, |body, point| rigid(self.problem, motion, body, point))
+        let moved = |body, point| self.problem.rigid_displacement(motion, body, point, false);
+        self.problem.load_displacement(growing, motion, moved)
     }
 
     /// The present state in physical units, with the energies of the last record.

@@ -6,14 +6,9 @@ use super::rates::Direction;
 use super::schur::SchurComplement;
 use super::trace::Trace;
 use crate::contact::mode::ContactMode;
-use crate::path::dual_vector::dual_vector;
+use crate::path::dual_vector::{self, MOST_FACETS};
 use crate::path::system::Load;
-use crate::rate::answer::Budget;
-use crate::rate::tree::search;
-use voussoir_core::path::{FarkasVector, PathRate, RateClaim, Witness};
-
-/// Facets of the active set up to which the search is tried: its program is dense.
-const MOST_FACETS: usize = 160;
+use voussoir_core::path::{PathRate, RateClaim, Witness};
 
 /// The proof that no rate raises the load at the present state. `None` if the search does not find it within its budget.
 pub fn none_rises(trace: &mut Trace, load: &Load) -> Option<Witness> {
@@ -30,12 +25,8 @@ pub fn none_rises(trace: &mut Trace, load: &Load) -> Option<Witness> {
     let base = factors.present.as_mut()?;
     let at = (present.load_step, load);
     let local = SchurComplement::new((system, &present.points), base, at, &active, &modes, &mut log.counts.solves)?;
-    let proof = search(&local.rate, 1.0, Budget::default().leaves, &mut log.counts.rates.trials).proof?;
-    let vector = |alpha: &[[f64; 2]]| {
-        let Some(x) = base.opened(system, &active, alpha) else { return FarkasVector::default() };
-        dual_vector(system, &x, alpha)
-    };
-    let tree = proof.certified(&local.rate, &active, &vector)?;
+    let response = |gaps: &[[f64; 2]]| base.opened(system, &active, gaps);
+    let tree = dual_vector::none_rises((&local.rate, system), &active, &mut log.counts.rates.trials, response)?;
     Some(Witness { state, claim: RateClaim::NoneRises(tree) })
 }
 

@@ -8,7 +8,6 @@ use super::monitors::by_motion;
 use super::response::dissipation_gradient;
 use super::state::State;
 use super::system::StepSystem;
-use crate::path::energy::{load_size, settlement_size};
 use voussoir_core::path::{Constraint, Increment};
 
 /// The row of a control over the scaled unknowns, at a state: the gradient of its constraint.
@@ -106,10 +105,10 @@ fn add_dissipation(
 /// Adds the gradient of the work-conjugate displacement of the growing load, or of how far supports have moved.
 fn add_load_displacement(system: &StepSystem, state: &State, by: f64, row: &mut [f64]) {
     let loading = system.loads.growing;
-    let load = load_size(system.problem, loading);
+    let load = system.problem.load_size(loading);
     if load == 0.0 {
         let u = system.units();
-        row[system.size() - 1] += by * settlement_size(system.problem, loading) * u.factor / u.displacement;
+        row[system.size() - 1] += by * system.problem.settlement_size(loading) * u.factor / u.displacement;
         return;
     }
     let scale = by / load.max(1e-300);

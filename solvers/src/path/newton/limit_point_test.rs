@@ -167,11 +167,17 @@ fn metric(system: &StepSystem, responses: &[Vec<f64>]) -> DMatrix<f64> {
 
 /// The unknowns of a rate by its gap rates over the active set and λ̇ in the sense `direction`.
 fn unknowns_of(responses: &[Vec<f64>], gaps: &[[f64; 2]], factor: f64, direction: f64) -> Vec<f64> {
+    let mut x = without_factor(responses, gaps, factor);
+    x.push(factor * direction);
+    x
+}
+
+/// The same unknowns but λ; λ̇ = 0 stands for a held load.
+pub(super) fn without_factor(responses: &[Vec<f64>], gaps: &[[f64; 2]], factor: f64) -> Vec<f64> {
     let mut x: Vec<f64> = responses[2 * gaps.len()].iter().map(|x| factor * x).collect();
-    for (by, gap) in responses.iter().zip(gaps.iter().flatten()) {
+    for (by, gap) in responses.iter().zip(gaps.as_flattened()) {
         x.iter_mut().zip(by).for_each(|(x, by)| *x += gap * by);
     }
-    x.push(factor * direction);
     x
 }
 

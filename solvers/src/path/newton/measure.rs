@@ -5,7 +5,6 @@ use super::monitors::monitored;
 use super::response::dissipated_by_tractions;
 use super::state::{State, Tangent};
 use super::system::StepSystem;
-use crate::path::energy;
 use voussoir_core::path::Increment;
 
 /// Greatest rate of a body's displacement \[m\]: of its pole, or by its rotation over the scene's size.
@@ -17,7 +16,7 @@ pub(super) fn fastest(system: &StepSystem, motion: &[[f64; 3]]) -> f64 {
 /// Work-conjugate displacement of the growing load, or how far supports have moved \[m\].
 pub(super) fn load_displacement(system: &StepSystem, motion: &[[f64; 3]], factor: f64) -> f64 {
     let rigid = |body, point| system.geometry.rigid(body, point, motion);
-    energy::load_displacement(system.problem, (system.loads.growing, factor), motion, rigid)
+    system.problem.load_displacement((system.loads.growing, factor), motion, rigid)
 }
 
 /// Increment between two states in units, and the weights of its derivative: by gaps and directly.

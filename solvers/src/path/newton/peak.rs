@@ -9,7 +9,6 @@ use super::step::solve_step;
 use super::tangent::tangent_at;
 use super::tracer::{Peak, Tracer, foreseen, moved_along};
 use super::witness::none_rises;
-use crate::path::energy::load_size;
 use voussoir_core::path::ProvenPeak;
 
 /// Relative differences of the loads and displacements of two limit points that are one.
@@ -102,7 +101,7 @@ pub(super) fn note_peak(tracer: &mut Tracer, beyond: Option<&Tangent>, direction
 /// to 1e-8 of their size, so less work than a hundred times that proves nothing.
 pub(super) fn scaled_motion(tracer: &Tracer, state: &State, rate: &Tangent) -> Option<Vec<[f64; 3]>> {
     let u = tracer.system.units();
-    let load = load_size(tracer.system.problem, tracer.system.loads.growing);
+    let load = tracer.system.problem.load_size(tracer.system.loads.growing);
     let power = increment_along(&tracer.system, state, rate).displacement * u.displacement * load;
     let size = motion_size(&tracer.system, rate) * u.displacement * u.force / u.factor;
     let by = if load == 0.0 && tracer.system.finite() {

@@ -13,7 +13,6 @@ use super::tractions::{Responses, TractionUpdates};
 use crate::contact::mode::ContactMode;
 use crate::contact::yield_polygon::YieldPolygon;
 use crate::linear::condensed::Elimination;
-use crate::path::energy::load_size;
 use crate::path::system::{Load, System, Units};
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -168,7 +167,7 @@ impl<'a> StepSystem<'a> {
 
     /// Returns true if the present load step moves supports and adds no load.
     pub fn settles(&self) -> bool {
-        load_size(self.problem, self.loads.growing) == 0.0
+        self.problem.load_size(self.loads.growing) == 0.0
     }
 
     /// Whether factors may serve equations that are near theirs: those of a chain of elastic blocks with laws of facets.

@@ -1,15 +1,10 @@
 //! Witnesses of limit points for the certificate: proofs at a state that no rate raises the load.
 
-use super::limit_point_test::{active_set, rate_problem, responses_of};
+use super::limit_point_test::{active_set, rate_problem, responses_of, without_factor};
 use super::state::{State, Tangent};
 use super::system::StepSystem;
-use crate::path::dual_vector::dual_vector;
-use crate::rate::answer::Budget;
-use crate::rate::tree::search;
+use crate::path::dual_vector::{self, MOST_FACETS};
 use voussoir_core::path::{FarkasVector, ModeTree, PathState, RateClaim, Witness};
-
-/// Facets of the active set up to which the search is tried: its program is dense.
-const MOST_FACETS: usize = 160;
 
 /// Proofs that no rate raises the load at a state that an observer has `seen`: by the rate along which the load stands still, which
 /// is a dual vector if flow is associated, and by a search over the modes.
@@ -19,17 +14,16 @@ pub(super) fn none_rises(
     rate: &Tangent,
     direction: f64,
 ) -> Vec<Witness> {
-    let trees = by_rate(rate).into_iter().chain(by_search(system, state, direction));
+    let trees = std::iter::once(by_rate(rate)).chain(by_search(system, state, direction));
     trees.map(|tree| Witness { state: seen.clone(), claim: RateClaim::NoneRises(tree) }).collect()
 }
 
 /// The negative rate as multipliers.
-fn by_rate(rate: &Tangent) -> Option<ModeTree> {
-    let vector = FarkasVector {
+fn by_rate(rate: &Tangent) -> ModeTree {
+    ModeTree::Leaf(FarkasVector {
         equilibrium: rate.motion.iter().map(|own| own.map(|v| -v)).collect(),
         gap: rate.force.iter().map(|own| own.map(|r| -r)).collect(),
-    };
-    Some(ModeTree::Leaf(vector))
+    })
 }
 
 fn by_search(system: &mut StepSystem, state: &State, direction: f64) -> Option<ModeTree> {
@@ -42,13 +36,6 @@ fn by_search(system: &mut StepSystem, state: &State, direction: f64) -> Option<M
     let responses = responses_of(system, &active, &equations, direction)?;
     let problem = rate_problem(system, &active, &responses);
     let mut programs = 0;
-    let proof = search(&problem, 1.0, Budget::default().leaves, &mut programs).proof?;
-    let vector = |alpha: &[[f64; 2]]| {
-        let mut x = vec![0.0; system.size() - 1];
-        for (by, gap) in responses.iter().zip(alpha.as_flattened()) {
-            x.iter_mut().zip(by).for_each(|(x, by)| *x += gap * by);
-        }
-        dual_vector(&system.scaled, &x, alpha)
-    };
-    proof.certified(&problem, &active.contacts, &vector)
+    let response = |gaps: &[[f64; 2]]| Some(without_factor(&responses, gaps, 0.0));
+    dual_vector::none_rises((&problem, &system.scaled), &active.contacts, &mut programs, response)
 }

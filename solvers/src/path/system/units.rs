@@ -1,6 +1,5 @@
 //! The units in which the unknowns are of comparable size, so that the units of a study do not matter.
 
-use crate::path::energy::load_size;
 use voussoir_core::path::{Loading, PathProblem};
 
 /// Units of the unknowns.
@@ -26,7 +25,7 @@ impl Units {
     /// Of a problem whose contact points have a `mean` compliance \[m/N\].
     pub fn new(problem: &PathProblem, mean: f64) -> Self {
         let loadings = || problem.load_steps.iter().map(|step| &step.loading);
-        let size = loadings().map(|loading| load_size(problem, loading)).find(|s| *s > 0.0);
+        let size = loadings().map(|loading| problem.load_size(loading)).find(|s| *s > 0.0);
         let settlement = loadings().map(|loading| settled(loading, problem.length)).fold(0.0, f64::max);
         let force = size.unwrap_or(if mean > 0.0 { settlement / mean } else { 0.0 });
         let force = if force > 0.0 { force } else { 1.0 };
@@ -36,7 +35,7 @@ impl Units {
 
     /// Unit of the factor of a loading that grows.
     pub fn of_factor(&self, problem: &PathProblem, loading: &Loading) -> f64 {
-        match (load_size(problem, loading), settled(loading, self.length)) {
+        match (problem.load_size(loading), settled(loading, self.length)) {
             (size, _) if size > 0.0 => self.force / size,
             (_, settlement) if settlement > 0.0 => self.displacement / settlement,
             _ => 1.0,

@@ -1,6 +1,6 @@
 //! Sizes of loads, their displacements, work and its balance.
 
-use crate::path::energy::{EnergyBalance, StageBalance, WorkState, load_displacement, load_size, settlement_size};
+use crate::path::energy::{EnergyBalance, StageBalance, WorkState};
 use crate::path::event::EventPath;
 use crate::path::two_blocks::{assert_close, block, force, forces, pushed_at, settings, settlement, stack, v};
 use voussoir_core::model::geometry::Vec2;
@@ -30,19 +30,19 @@ fn pushed(factor: f64, at: Vec2) -> WorkState {
 fn the_size_of_a_load_sums_its_forces() {
     let problem = problem();
     let both = forces(&[(1, v(0.0, 0.0), v(3.0, 4.0)), (1, v(1.0, 0.0), v(-1.0, 0.0))]);
-    assert_close(load_size(&problem, &both), 6.0, 1e-15);
+    assert_close(problem.load_size(&both), 6.0, 1e-15);
     // The ground has a mass of 2 kg, too, but is held.
     let weight = Loading { acceleration: v(0.0, -10.0), ..Loading::default() };
-    assert_close(load_size(&problem, &weight), 20.0, 1e-14);
+    assert_close(problem.load_size(&weight), 20.0, 1e-14);
 }
 
 /// A support that turns by θ about the origin moves its farthest point, at 1 m, by θ.
 #[test]
 fn the_size_of_a_settlement_is_that_of_its_fastest_point() {
     let problem = problem();
-    assert_close(settlement_size(&problem, &settlement(0, [0.0, 0.0, 0.02])), 0.02, 1e-16);
-    assert_close(settlement_size(&problem, &settlement(0, [0.0, 3e-3, 0.02])), 0.023, 1e-16);
-    assert_eq!(settlement_size(&problem, &pushed_at(0.1)), 0.0);
+    assert_close(problem.settlement_size(&settlement(0, [0.0, 0.0, 0.02])), 0.02, 1e-16);
+    assert_close(problem.settlement_size(&settlement(0, [0.0, 3e-3, 0.02])), 0.023, 1e-16);
+    assert_eq!(problem.settlement_size(&pushed_at(0.1)), 0.0);
 }
 
 /// u = Σ F·u/Σ|F|: forces of 3 N and 1 N whose points move along them by 1 and 5 have the displacement 2.
@@ -51,14 +51,14 @@ fn the_displacement_of_a_load_is_a_weighted_mean() {
     let problem = problem();
     let both = forces(&[(1, v(0.0, 0.0), v(3.0, 0.0)), (1, v(1.0, 0.0), v(0.0, -1.0))]);
     let moves = |_: usize, point: Vec2| if point.x == 0.0 { v(1.0, 9.0) } else { v(7.0, -5.0) };
-    assert_close(load_displacement(&problem, (&both, 1.0), &[[0.0; 3]; 2], moves), 2.0, 1e-15);
+    assert_close(problem.load_displacement((&both, 1.0), &[[0.0; 3]; 2], moves), 2.0, 1e-15);
 }
 
 /// The displacement of a settlement is its factor times its size.
 #[test]
 fn the_displacement_of_a_settlement_is_its_movement() {
     let loading = settlement(0, [0.0, 3e-3, 0.0]);
-    let found = load_displacement(&problem(), (&loading, 2.5), &[[0.0; 3]; 2], |_, _| Vec2::zeros());
+    let found = problem().load_displacement((&loading, 2.5), &[[0.0; 3]; 2], |_, _| Vec2::zeros());
     assert_close(found, 7.5e-3, 1e-17);
 }
 
