@@ -1,4 +1,4 @@
-//! What the states and the witnesses of a path prove, without trust in its solver.
+//! The end of a path, proved by its states and witnesses without trust in its solver.
 //!
 //! The states are a chain: each follows from the one before. A witness is a proof about rates at one of them. So a limit point is proved
 //! by a witness that no rate raises the load there, a plateau by the same and a mechanism, a target by a chain that reaches it.
@@ -15,8 +15,11 @@ const RANGE: f64 = 0.5;
 /// Relative difference of two loads that is rounding.
 const SAME: f64 = 1e-12;
 
-/// Relative difference of the loads of two limit points that are one.
-const SAME_LIMIT_POINT: f64 = 1e-6;
+/// Relative change of a load that stands still.
+const STANDS_STILL: f64 = 1e-6;
+
+/// Least dissipation of sliding, relative to the work of contact forces and of the load.
+const DISSIPATES: f64 = 1e-6;
 
 /// The chain of a path with the answer of its solver.
 pub(super) struct PathProof<'a> {
@@ -46,12 +49,13 @@ impl PathProof<'_> {
         let Self { solved, .. } = self;
         if matches!(solved.status, Status::Collapse | Status::LimitPoint) && solved.factor != Some(solved.state.factor)
         {
-            return Err("the factor is not that of the state".into());
+            return Err("the factor and the state of the answer differ".into());
         }
         match solved.status {
             Status::Stands if self.chain.reaches_end() => Ok(()),
             Status::Stands => Err("the states do not reach the target without a limit point".into()),
-            Status::Collapse | Status::NoEquilibrium => self.collapse(),
+            Status::Collapse => self.collapse(),
+            Status::NoEquilibrium => self.no_equilibrium(),
             Status::Unbounded => self.ray(),
             Status::LimitPoint => self.ends_at_limit_point(),
             _ => Err("no check of this status exists".into()),
@@ -60,7 +64,7 @@ impl PathProof<'_> {
 
     /// A mechanism at the last state, or a limit point below which the load stays up to the end of the range.
     fn collapse(&self) -> Result<(), String> {
-        self.check_maxima()?;
+        self.check_falls()?;
         let state = &self.solved.state;
         if self.settings.finite {
             self.limit_point(state)?;
@@ -72,6 +76,12 @@ impl PathProof<'_> {
         if self.is_greatest(state) { Ok(()) } else { Err("the load is greater at an earlier state".into()) }
     }
 
+    /// A mechanism that refutes equilibrium by itself. On another path friction that is not associated may carry the dead load.
+    fn no_equilibrium(&self) -> Result<(), String> {
+        let motion = self.solved.motion.as_deref().ok_or("no mechanism")?;
+        self.chain.check_collapse(&self.solved.state, motion, &[])
+    }
+
     /// The ray that carries any load.
     fn ray(&self) -> Result<(), String> {
         let state = &self.solved.state;
@@ -81,7 +91,7 @@ impl PathProof<'_> {
         if residual.is_nan() || residual > tolerance("path_ray").result {
             return Err("the ray does not carry the load".into());
         }
-        self.check_maxima()?;
+        self.check_falls()?;
         self.chain.check_ray(self.witnesses(state).next().ok_or("no witness of the ray")?)
     }
 
@@ -123,37 +133,71 @@ impl PathProof<'_> {
         self.of_step(state.load_step).all(|own| (own.factor - state.factor) * sense <= SAME * state.factor.abs())
     }
 
-    /// States of the chain behind which the load falls after it has risen.
+    /// States of the chain behind which the load falls after it has risen, each by more than a load that stands still.
     fn maxima(&self) -> Vec<&PathState> {
         let mut found: Vec<&PathState> = Vec::new();
-        let (mut last, mut rises): (Option<&PathState>, bool) = (None, false);
+        // The greatest load since the last trough, or the least one since the last limit point.
+        let mut turn: Option<(&PathState, bool)> = None;
         for state in self.chain.states() {
-            let sense = sense(&self.problem.load_steps[state.load_step]);
-            let before = last.replace(state).filter(|before| before.load_step == state.load_step);
-            let change = before.map_or(0.0, |before| (state.factor - before.factor) * sense);
-            let rounding = SAME * state.factor.abs();
-            if change < -rounding && rises {
-                found.extend(before);
+            let Some((last, rises)) = turn.filter(|(last, _)| last.load_step == state.load_step) else {
+                turn = Some((state, false));
+                continue;
+            };
+            let change = (state.factor - last.factor) * sense(&self.problem.load_steps[state.load_step]);
+            let still = STANDS_STILL * last.factor.abs();
+            match rises {
+                true if change < -still => {
+                    found.push(last);
+                    turn = Some((state, false));
+                }
+                false if change > still => turn = Some((state, true)),
+                true if change > 0.0 => turn = Some((state, true)),
+                false if change < 0.0 => turn = Some((state, false)),
+                _ => {}
             }
-            rises = change > rounding || (rises && before.is_some() && change >= -rounding);
         }
         found
     }
 
-    /// Every state behind which the load falls is a limit point of the answer.
-    fn check_maxima(&self) -> Result<(), String> {
-        for state in self.maxima() {
-            let same = |factor: f64| (factor - state.factor).abs() <= SAME_LIMIT_POINT * state.factor.abs();
-            let is_listed = |peak: &ProvenPeak| peak.load_step == state.load_step && same(peak.factor);
-            if !self.solved.limit_points.iter().any(is_listed) {
-                return Err(format!("a limit point at the factor {} is left out", state.factor));
+    /// Every state behind which the load falls is a limit point, and the load never falls by mere unloading.
+    fn check_falls(&self) -> Result<(), String> {
+        self.maxima().into_iter().try_for_each(|state| self.limit_point(state))?;
+        let states: Vec<&PathState> = self.chain.states().collect();
+        let mut was_elastic = false;
+        for pair in states.windows(2) {
+            let [before, after] = [pair[0], pair[1]];
+            let change = (after.factor - before.factor) * sense(&self.problem.load_steps[after.load_step]);
+            let falls = before.load_step == after.load_step && change < -SAME * before.factor.abs();
+            let goes_on = !falls || self.goes_on(before, after);
+            if !goes_on && !was_elastic {
+                return Err(format!("behind the factor {} the structure may only unload", before.factor));
             }
+            was_elastic = falls && self.dissipation(before, after) <= DISSIPATES;
         }
         Ok(())
     }
 
-    /// After a state the load never exceeds it up to the end of the range: what the stage asks for, else half of this load, counted from
-    /// the start of its load step, or a displacement of one span.
+    /// True if the load does not fall by unloading: friction dissipates, or the load moves on. If all that slid has stopped and the
+    /// structure is stable, its load moves back as it falls, and nothing dissipates. An elastic branch on which the load falls can
+    /// be followed no other way than on.
+    fn goes_on(&self, before: &PathState, after: &PathState) -> bool {
+        let moved = (after.displacement - before.displacement) * sense(&self.problem.load_steps[after.load_step]);
+        moved > 0.0 || self.dissipation(before, after) > DISSIPATES
+    }
+
+    /// Dissipation between two states, relative to the work of contact forces and of the load.
+    fn dissipation(&self, before: &PathState, after: &PathState) -> f64 {
+        let forces = before.force.as_flattened().iter().zip(after.force.as_flattened()).map(|(a, b)| 0.5 * (a + b));
+        let gaps = before.gap.as_flattened().iter().zip(after.gap.as_flattened()).map(|(a, b)| b - a);
+        let terms = forces.zip(gaps).map(|(force, gap)| -force * gap);
+        let (dissipated, size) = terms.fold((0.0, 0.0), |(sum, size), term: f64| (sum + term, size + term.abs()));
+        let load = after.factor * self.problem.load_size(&self.problem.load_steps[after.load_step].loading);
+        let work = (load * (after.displacement - before.displacement)).abs();
+        dissipated / size.max(work).max(f64::MIN_POSITIVE)
+    }
+
+    /// After a state the load never exceeds it up to the end of the range: the end that the stage asks for, else half of this load, counted
+    /// from the start of its load step, or a displacement of one span.
     fn falls_after(&self, state: &PathState) -> Result<(), String> {
         let step = &self.problem.load_steps[state.load_step];
         let of_step = || self.of_step(state.load_step);

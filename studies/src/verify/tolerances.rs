@@ -143,7 +143,7 @@ pub const SEARCHED: Tolerance = row(
 pub const TOLERANCES: [&Tolerance; 10] =
     [&GEOMETRY, &FACTOR, &STATE, &RATE, &PEAK, &CURVE, &BEYOND, &ESTIMATE, &DERIVATIVE, &SEARCHED];
 
-/// Keys of a case that are not compared with a second run: they cost, or are free words.
+/// Keys of a case that are not compared with a second run: they measure effort, are free words, or depend on rounding.
 pub const FREE: [&str; 5] = ["counters", "seconds", "notes", "certificate.failures", "end_is_checked"];
 
 /// The table in Markdown, as docs/verifying.md shows it.

@@ -3,6 +3,7 @@
 use super::plug_ins::told;
 use std::sync::Once;
 use voussoir::conformance::lies::{KnownScene, Lie, reference, scenes};
+use voussoir::core::limit::Status;
 use voussoir::core::plugin::PluginKind;
 use voussoir::results::CaseResult;
 use voussoir::solve_case;
@@ -106,6 +107,22 @@ fn no_lie_of_a_path_solver_is_believed() {
 fn no_lie_of_a_strategy_is_believed() {
     let believed = believed(PluginKind::Continuation, &["arc_length"]);
     assert!(believed.is_empty(), "{} are believed:\n{}", believed.len(), believed.join("\n"));
+}
+
+/// A path that goes back from its proved limit point down the curve that it came is no collapse, though the load has fallen to half.
+#[test]
+fn unloading_is_no_fall() {
+    let lie = "unloads_behind_its_limit_point";
+    let mut told_of = 0;
+    for scene in scenes(PluginKind::PathSolver) {
+        let before = told(PluginKind::PathSolver, lie);
+        let Some((result, _)) = told_in(scene, PluginKind::PathSolver, "newton_path", lie, None) else { continue };
+        if told(PluginKind::PathSolver, lie) > before {
+            told_of += 1;
+            assert_ne!(result.status, Status::Collapse, "{}: {:?}", scene.name, result.notes);
+        }
+    }
+    assert!(told_of > 0);
 }
 
 /// A solver from outside this project that tells the truth is believed where its states and witnesses prove the end.

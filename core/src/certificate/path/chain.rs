@@ -23,7 +23,6 @@ const SAME_FACTOR: f64 = 1e-9;
 const DISPLACEMENT: f64 = 1e-9;
 /// With finite displacements, unbalanced forces of the state midway, as a share of all forces.
 const MIDWAY: f64 = 1e-3;
-
 /// Change of load and forces, relative to them, along a mechanism of finite displacements.
 const STANDS_STILL: f64 = 1e-8;
 /// Least motion along it, as a share of the scene's size.
@@ -167,7 +166,7 @@ impl PathChain {
         if off.fold(0.0, f64::max) > 0.0 { Err("a support has not moved by its settlement".into()) } else { Ok(()) }
     }
 
-    /// The displacement of the load is that of the motions.
+    /// The displacement of the load follows from the motions.
     fn check_displacement(&self, state: &PathState) -> Result<(), String> {
         let problem = &*self.structure;
         let growing = (&problem.load_steps[state.load_step].loading, state.factor);
@@ -176,7 +175,7 @@ impl PathChain {
         let moves = state.motion.iter().flat_map(|u| [u[0], u[1], u[2] * problem.length]);
         let size = moves.fold(right.abs(), |a: f64, v| a.max(v.abs()));
         let is_right = (state.displacement - right).abs() <= DISPLACEMENT * size;
-        if is_right { Ok(()) } else { Err("the displacement of the load is not that of the motions".into()) }
+        if is_right { Ok(()) } else { Err("the displacement of the load does not follow from the motions".into()) }
     }
 
     /// The mean of two neighbours is nearly in equilibrium.
@@ -228,20 +227,7 @@ impl PathChain {
         Ok((link, equations, modes))
     }
 
-    /// Checks a witness at a state of the chain.
-    ///
-    /// # Errors
-    /// The first part that is wrong, in words.
-    pub fn check(&self, witness: &Witness) -> Result<(), String> {
-        let (_, equations, modes) = self.at(&witness.state)?;
-        let rates = RateProblem { equations: &equations, modes: &modes };
-        match &witness.claim {
-            RateClaim::Rate(rate) => rates.check_rate(rate).map(|_| ()),
-            RateClaim::NoneRises(tree) => rates.check_none_rises(tree).map(|_| ()),
-        }
-    }
-
-    /// Checks that no rate rises at a state, and that a mechanism moves on there at constant load. If flow is associated the
+    /// Checks that no rate raises the load at a state, and that a mechanism moves on there at constant load. If flow is associated the
     /// mechanism proves both. Small displacements only.
     ///
     /// # Errors
@@ -281,7 +267,7 @@ impl PathChain {
         Ok(())
     }
 
-    /// Checks that the rates of a witness are admissible for ever, so that any load is carried. Small displacements only.
+    /// Checks that the rates of a witness stay admissible however far they go, so that any load is carried. Small displacements only.
     ///
     /// # Errors
     /// The first part that is wrong, in words.

@@ -104,7 +104,7 @@ impl RateProblem<'_> {
         self.check_closing(problem, &rate)
     }
 
-    /// Checks that rates are admissible for ever: contact forces grow within their facets, and no open point closes.
+    /// Checks that rates stay admissible however far they go: contact forces grow within their facets, and no open point closes.
     ///
     /// # Errors
     /// The first part that is wrong, in words.

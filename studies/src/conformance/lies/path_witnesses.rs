@@ -2,7 +2,7 @@
 
 use super::path_lie::{PathAsked, PathLie, Story};
 use voussoir_core::limit::Status;
-use voussoir_core::path::{FarkasVector, ModeTree, ProvenPeak, RateClaim, Witness};
+use voussoir_core::path::{FarkasVector, ModeTree, PathState, ProvenPeak, RateClaim, Witness};
 
 /// The path ends at a share of its greatest factor, with the witnesses that `forge` makes of the true ones.
 fn witnessed_early(
@@ -87,6 +87,24 @@ pub const LIES: &[PathLie] = &[
     PathLie {
         name: "witness_without_branches",
         tell: |asked, story| witnessed_early(asked, story, Status::Collapse, without_branches),
+    },
+    PathLie {
+        name: "unloads_behind_its_limit_point",
+        tell: |_, story| {
+            story.falls()?;
+            let peak = *story.answer.limit_points.first()?;
+            let at_peak = |state: &PathState| state.load_step == peak.load_step && state.factor == peak.factor;
+            let index = story.states.iter().position(at_peak)?;
+            let motion = story.answer.motion.take();
+            story.stop_at(index);
+            let of_step = story.states[..index].iter().rev().filter(|state| state.load_step == peak.load_step);
+            let back: Vec<PathState> = of_step.cloned().collect();
+            story.answer.last = back.last().cloned();
+            story.states.extend(back);
+            (story.answer.status, story.answer.motion) = (Status::Collapse, motion);
+            story.answer.limit_points = vec![ProvenPeak { lowest: story.answer.last.as_ref()?.factor, ..peak }];
+            Some(())
+        },
     },
     PathLie {
         name: "states_left_out_before_the_witness",

@@ -44,7 +44,7 @@ fn with_displacement(problem: &PathProblem, state: &PathState) -> PathState {
 
 /// A state whose load has moved otherwise than its motions say breaks the chain.
 #[test]
-fn the_displacement_of_the_load_is_that_of_the_motions() {
+fn the_displacement_of_the_load_follows_from_the_motions() {
     let problem = sliding_block(0.0);
     let state = with_displacement(&problem, &weight());
     let mut chain = PathChain::new(Arc::new(problem), false);
@@ -68,7 +68,7 @@ fn the_collapse_of_a_sliding_block_is_proved() {
         let states = [weight(), stuck(3.0), end.clone(), slipped(1e-3, dilatancy)];
         let chain = chain(&problem, &states);
         assert_eq!(chain.broken(), None);
-        assert_eq!(chain.check(&proof(&end)), Ok(()));
+        assert_eq!(chain.check_none_rises(&end, &[&proof(&end)]), Ok(()));
         assert_eq!(chain.check_collapse(&end, &motion, &[&proof(&end)]), Ok(()));
         assert_eq!(chain.check_collapse(&states[3], &motion, &[&proof(&states[3])]), Ok(()));
         // With associated flow the mechanism proves by itself that no rate rises.
@@ -80,8 +80,12 @@ fn the_collapse_of_a_sliding_block_is_proved() {
             assert!(chain.check_collapse(&end, &[[0.0; 3], forged], &[&proof(&end)]).is_err(), "{forged:?}");
         }
         // Before the limit the proof is refused.
-        assert!(chain.check(&proof(&states[1])).is_err());
-        assert!(chain.check(&proof(&stuck(2.0))).is_err_and(|why| why.contains("not on the path")));
+        assert!(chain.check_none_rises(&states[1], &[&proof(&states[1])]).is_err());
+        assert!(
+            chain
+                .check_none_rises(&stuck(2.0), &[&proof(&stuck(2.0))])
+                .is_err_and(|why| why.contains("not on the path"))
+        );
     }
 }
 
