@@ -88,6 +88,30 @@ pub struct Mechanism {
     /// Every joint that crushes over more than [`CRUSHES`] of its height, and every joint next to which a block
     /// of a material that yields has crushed, over whatever share; the kind counts shares above [`CRUSHES`].
     pub crushing: Vec<Crushing>,
+    /// Where on a path it moves; `None` for limit analysis.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at: Option<MechanismPlace>,
+}
+
+/// Where on a path a mechanism moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MechanismPlace {
+    /// At a constant load: forces rest.
+    Plateau,
+    /// Just behind a limit point: the load falls and forces change.
+    Peak,
+}
+
+impl MechanismPlace {
+    /// Relative change of a load that stands still.
+    const STANDS_STILL: f64 = 1e-6;
+
+    /// The place of the mechanism at a load factor behind which the path is followed to another factor.
+    pub fn of(factor: f64, followed_to: f64) -> Self {
+        let still = (followed_to - factor).abs() <= Self::STANDS_STILL * factor.abs();
+        if still { MechanismPlace::Plateau } else { MechanismPlace::Peak }
+    }
 }
 
 /// Velocity of a body: \[v_x, v_y\] at its centroid and ω.
@@ -192,6 +216,7 @@ pub fn mechanism_of_deforming(
         hinges: Vec::new(),
         sliding: Vec::new(),
         crushing: Vec::new(),
+        at: None,
     };
     for (index, (joint, jump)) in assembly.joints.iter().zip(&jumps).enumerate() {
         let Bond::Law(law) = joint.bond else { continue };

@@ -13,8 +13,8 @@ pub use self::limit::{
 };
 pub use self::magnitude::{GREATEST_NUMBER, in_range};
 pub use self::mechanism::{
-    CRUSHES, CentroidVelocity, Crushing, Deforming, Hinge, Jump, Mechanism, MechanismKind, Side, Sliding, jumps,
-    mechanism, mechanism_of_deforming, velocity_at,
+    CRUSHES, CentroidVelocity, Crushing, Deforming, Hinge, Jump, Mechanism, MechanismKind, MechanismPlace, Side,
+    Sliding, jumps, mechanism, mechanism_of_deforming, velocity_at,
 };
 pub use self::path::{
     Displaced, PathChain, PathChecker, TOLERANCES, Tolerance, flow_residual, leaves_forces, path_structure,

@@ -166,7 +166,7 @@ impl Shown {
         let entry = |at: &DisplacementEntry| MotionEntry { body: at.body.clone(), velocity: at.displacement };
         let (kind, hinge_count) = (MechanismKind::Rocking, named.len());
         let (sliding, crushing) = (Vec::new(), Vec::new());
-        let mechanism = Mechanism { kind, hinge_count, unique: None, hinges, sliding, crushing };
+        let mechanism = Mechanism { kind, hinge_count, unique: None, hinges, sliding, crushing, at: None };
         Some(Shown { mechanism, motion: displaced.iter().map(entry).collect(), moved_on: false, stands: true })
     }
 }

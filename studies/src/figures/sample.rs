@@ -208,6 +208,7 @@ impl FourHinges {
             hinges: hinges.collect(),
             sliding: vec![],
             crushing: vec![],
+            at: None,
         };
         (motion.collect(), mechanism)
     }
@@ -364,6 +365,7 @@ fn wall_answer(assembly: &Assembly, top: f64, pole: Vec2) -> CaseResult {
             .collect(),
         sliding: slide.map(|(k, j)| Sliding { joint: k, between: between(j), slip: -1e-3 }).into_iter().collect(),
         crushing: vec![],
+        at: None,
     };
     CaseResult {
         load_factor: Some(1.234567890),

@@ -24,8 +24,8 @@ use crate::results::{
 };
 use std::collections::BTreeMap;
 use voussoir_core::certificate::{
-    CentroidVelocity, Certificate, ContactForce, Hinge, PathChain, PathChecker, flow_residual, jumps, largest_jump,
-    tolerance,
+    CentroidVelocity, Certificate, ContactForce, Hinge, Mechanism, MechanismPlace, PathChain, PathChecker,
+    flow_residual, jumps, largest_jump, tolerance,
 };
 use voussoir_core::limit::Status;
 use voussoir_core::model::geometry::{Vec2, turned};
@@ -61,8 +61,14 @@ pub(super) fn path_result(
     if let (Some(load), Some(structure)) = (&associated, checker.structure()) {
         end_in_limit_mechanism(assembly, &structure, load, &mut solved);
     }
-    prefer_symmetric(assembly, &checker, finite, &mut solved);
-    let mut certificate = certificate(&solved, &checker, finite, energy);
+    let place =
+        solved.factor.zip(progress.history.last()).map(|(factor, last)| MechanismPlace::of(factor, last.factor));
+    // At a peak, and with finite displacements, forces change along the mechanism.
+    let at_rest = !finite && place == Some(MechanismPlace::Plateau);
+    if at_rest {
+        prefer_symmetric(assembly, &checker, &mut solved);
+    }
+    let mut certificate = certificate(&solved, &checker, at_rest, energy);
     let proof = PathProof { chain: &chain, problem, solved: &solved, settings: input.settings };
     let end = proof.end();
     let end_is_checked = end.is_ok();
@@ -112,7 +118,8 @@ pub(super) fn path_result(
     // The mechanism is read at the undeformed place, velocities are those at the displaced one.
     let mechanism = motion
         .as_deref()
-        .and_then(|motion| mechanism_of((assembly, problem), &solved.state, motion, solved.unique, finite));
+        .and_then(|motion| mechanism_of((assembly, problem), &solved.state, motion, solved.unique, finite))
+        .map(|mechanism| Mechanism { at: place, ..mechanism });
     let reached = match (status, input.stages[load_step.stage].target) {
         (Status::Stands, Target::Factor(factor)) => Some(factor),
         (Status::Stands, Target::Collapse) => solved.factor,
@@ -189,10 +196,8 @@ fn keep_proved(solved: &mut PathAnswer, progress: &Progress, problem: &PathProbl
 }
 
 /// Replaces the mechanism of a symmetric scene by the symmetric one of its load.
-fn prefer_symmetric(assembly: &Assembly, checker: &PathChecker, finite: bool, solved: &mut PathAnswer) {
-    let (Status::Collapse, false, Some(structure), Some(rates)) =
-        (solved.status, finite, checker.structure(), &solved.motion)
-    else {
+fn prefer_symmetric(assembly: &Assembly, checker: &PathChecker, solved: &mut PathAnswer) {
+    let (Status::Collapse, Some(structure), Some(rates)) = (solved.status, checker.structure(), &solved.motion) else {
         return;
     };
     let loading = &structure.load_steps[solved.load_step].loading;
@@ -266,8 +271,8 @@ fn with_stability(mut results: Vec<StageResult>, found: &[StageStability]) -> Ve
     results
 }
 
-/// Residuals of all states and of the mechanism's flow, against their bounds.
-fn certificate(solved: &PathAnswer, checker: &PathChecker, finite: bool, energy: f64) -> Certificate {
+/// Residuals of all states and, if forces are `at_rest` along the mechanism, of its flow, against their bounds.
+fn certificate(solved: &PathAnswer, checker: &PathChecker, at_rest: bool, energy: f64) -> Certificate {
     let mut certificate = Certificate { passed: true, residuals: BTreeMap::new(), failures: Vec::new() };
     for (name, value) in &checker.worst {
         certificate.residuals.insert((*name).into(), *value);
@@ -277,7 +282,7 @@ fn certificate(solved: &PathAnswer, checker: &PathChecker, finite: bool, energy:
             certificate.failures.push(format!("{name} is {value:.2e}"));
         }
     }
-    if let (Some(structure), Some(motion), false) = (checker.structure(), &solved.motion, finite) {
+    if let (Some(structure), Some(motion), true) = (checker.structure(), &solved.motion, at_rest) {
         let flow = flow_residual(&structure, &solved.state.force, motion);
         certificate.residuals.insert("path_flow".into(), flow);
         if !small("path_flow", flow) {

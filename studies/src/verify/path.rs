@@ -14,7 +14,8 @@ use crate::solve::path_status::{ELSEWHERE, meeting_bounds, ordered};
 use crate::solve::safe_theorem::safe_theorem_holds;
 use crate::study::Case;
 use voussoir_core::certificate::{
-    CentroidVelocity, Displaced, Mechanism, PathChecker, flow_residual, path_structure, power_residual, ray_residual,
+    CentroidVelocity, Displaced, Mechanism, MechanismPlace, PathChecker, flow_residual, path_structure, power_residual,
+    ray_residual,
 };
 use voussoir_core::limit::{Greatest, Status};
 use voussoir_core::model::Assembly;
@@ -39,11 +40,17 @@ pub(super) fn verify(case: &Case, result: &CaseResult, findings: &mut Findings) 
     }
     verify_status(case, &problem, &state, result, findings);
     verify_range(case, &problem, &state, result, findings);
-    // At a peak of finite displacements forces change with every motion: there may be none to report.
-    if result.status == Status::Collapse && !finite {
+    // At a peak, and with finite displacements, forces change along the mechanism.
+    let followed_to = result.path.followed_to.as_ref().map(|end| end.factor);
+    let place = result.load_factor.zip(followed_to).map(|(factor, end)| MechanismPlace::of(factor, end));
+    let at_rest = !finite && place == Some(MechanismPlace::Plateau);
+    if let Some(mechanism) = &result.mechanism {
+        findings.expect(mechanism.at == place, "the place of the mechanism does not fit the end of the path");
+    }
+    if result.status == Status::Collapse && at_rest {
         findings.expect(result.proof.motion.is_some(), "a collapse without a mechanism");
     }
-    if let (Some(motion), false) = (&result.proof.motion, finite) {
+    if let (Some(motion), true) = (&result.proof.motion, at_rest) {
         let velocities = velocities(assembly, motion)?;
         verify_motion((assembly, &problem), &state, &velocities, result, findings);
     }

@@ -33,7 +33,7 @@ fn by_search(system: &mut StepSystem, state: &State, direction: f64) -> Option<M
     }
     system.count("factorisations", 1);
     let equations = system.equations(state);
-    let responses = responses_of(system, &active, &equations, direction)?;
+    let responses = responses_of(system, state, &active, &equations, direction)?;
     let problem = rate_problem(system, &active, &responses);
     let mut programs = 0;
     let response = |gaps: &[[f64; 2]]| Some(without_factor(&responses, gaps, 0.0));

@@ -24,6 +24,8 @@ const SAMPLES: usize = 16;
 const MOST_TRIALS: usize = 100;
 /// Width of a bracket, relative to the step, at which an event is located whatever its monitor reads.
 const NARROW: f64 = 1e-13;
+/// Length that is left to the end of a branch, relative to the step, up to which the step goes on to it.
+const NEAR: f64 = 0.02;
 /// Change of the factor in a step, relative to it, below which it is not looked at.
 const FLAT: f64 = 1e-7;
 /// Rate of the factor, relative to that at the start, at which it turns.
@@ -90,9 +92,9 @@ struct Step<'a, 's> {
 
 impl Step<'_, '_> {
     fn readings(&self, state: &State, rate: &Tangent) -> Vec<Reading> {
-        let mut all = self.piece.read(self.system, state, rate);
+        let mut all = self.piece.read(self.system, self.start, state, rate);
         let unit = self.system.units().factor;
-        let never = Reading { value: 1.0, rate: None, tolerance: 0.0, rate_tolerance: 0.0 };
+        let never = Reading::NEVER;
         let at_start = (self.piece.tangent.factor / unit).abs();
         all.push(self.watched.sense.map_or(never, |sense| Reading {
             value: sense * rate.factor / unit,
@@ -103,9 +105,14 @@ impl Step<'_, '_> {
             value: (target - state.factor) * direction / unit,
             rate: Some(-rate.factor * direction / unit),
             tolerance: 1e-14 * (target / unit).abs().max(1e-3),
-            rate_tolerance: 0.0,
+            ..never
         }));
         all
+    }
+
+    /// Length at which the first branch of a law of tractions ends if its rate stays.
+    fn branch_crossing(&self, readings: &[Reading]) -> f64 {
+        readings.iter().filter(|reading| reading.of_branch).map(|reading| reading.value).fold(f64::INFINITY, f64::min)
     }
 
     /// The state at a length, from one nearer to the start.
@@ -117,7 +124,7 @@ impl Step<'_, '_> {
     fn controlled(&mut self, from: &StepEnd, length: f64, control: &Control) -> Option<Trial> {
         let guess = moved(&from.state, &from.rate, length - from.length);
         let state = correct(self.system, self.start, guess, control)?;
-        let rate = self.piece.rate_at(self.system, self.start, &state)?;
+        let rate = self.piece.rate_at(self.system, &state)?;
         let step = Tangent {
             force: Vec::new(),
             gap: Vec::new(),
@@ -172,7 +179,10 @@ pub(super) fn advance(system: &mut StepSystem, start: &State, piece: &Piece, len
     let readings = step.readings(start, &piece.tangent);
     let end = StepEnd { state: start.clone(), rate: piece.tangent.clone(), length: 0.0, error: 0.0, unexplained: 0.0 };
     let low = Trial { end, readings };
-    let length = length.min(BEYOND * first_crossing(&low.readings));
+    let crossing = first_crossing(&low.readings);
+    // Beyond the end of a branch of a law of tractions there may be no state along the present tangent.
+    let of_branch = step.branch_crossing(&low.readings);
+    let length = length.min(if of_branch <= crossing { of_branch } else { BEYOND * crossing });
     if let Some(end) = step.reaching_target(&low.end, length) {
         return Advance::Target(end);
     }
@@ -187,8 +197,30 @@ pub(super) fn advance(system: &mut StepSystem, start: &State, piece: &Piece, len
             Some(middle) => Advance::Whole(middle.end),
             None => Advance::Failed,
         },
+        None if length == of_branch => at_branch_end(&mut step, low, high),
         None => Advance::Whole(high.end),
     }
+}
+
+/// Goes on from a state next to the end of a law's branch up to this end.
+fn at_branch_end(step: &mut Step, low: Trial, mut high: Trial) -> Advance {
+    for _ in 0..MOST_TRIALS {
+        let left = step.branch_crossing(&high.readings);
+        if high.readings.iter().any(|own| own.of_branch && own.value <= own.tolerance) {
+            let monitors = high.readings.len() - 2;
+            let hits = (0..monitors).filter(|i| high.readings[*i].is_active()).collect();
+            return Advance::Event(high.end, hits);
+        }
+        if left > NEAR * high.end.length {
+            break;
+        }
+        let Some(next) = step.trial(&high.end, high.end.length + left) else { return Advance::Failed };
+        if next.readings.iter().any(Reading::is_violated) {
+            return locate(step, low, next);
+        }
+        high = next;
+    }
+    Advance::Whole(high.end)
 }
 
 /// Length at which the first monitor would be zero if all rates stayed.

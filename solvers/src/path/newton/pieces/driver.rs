@@ -5,7 +5,7 @@ use super::super::commit::{commit, end_at_lost_joint, lost_joint};
 use super::super::control::Control;
 use super::super::events::events;
 use super::super::measure::{increment_along, motion_size};
-use super::super::peak::{note_peak, peak_at};
+use super::super::peak::{note_peak, peak_at, scaled_motion};
 use super::super::second_order::{instability, second_order_work};
 use super::super::stable_branch::{Departure, leave_unstable};
 use super::super::state::{State, Tangent};
@@ -15,11 +15,14 @@ use super::advance::{Advance, StepEnd, Watched, advance, state_at};
 use super::begin::begin;
 use super::corrector::correct;
 use super::end::end_of_range;
+use super::loading_set::{LoadingRate, loading_rate};
 use super::monitors::{Monitor, What};
 use super::piece::Piece;
 use super::plateau::{Plateau, plateau, stands_still};
+use super::ray::ray;
 use super::switch::{NextPiece, after_event};
 use crate::contact::mode::ContactMode;
+use crate::linear::inner;
 use crate::path::continuation::LARGEST_FINITE_STEP;
 use crate::path::stability::SecondOrderWork;
 use voussoir_core::limit::Status;
@@ -33,8 +36,6 @@ const MOST_ITERATIONS: u64 = 20_000;
 const WANTED_ERROR: f64 = 0.02;
 /// The same above which the step is repeated.
 const MOST_ERROR: f64 = 0.1;
-/// Length, relative to the first step, at which tangents of materials just ahead of a state are taken.
-const AHEAD: f64 = 1e-5;
 /// Share of the change of the factor in a step that its rates may leave unexplained.
 const MOST_UNEXPLAINED: f64 = 0.1;
 /// Length of a step, relative to that wanted, from which on its error tells how long the next one may be.
@@ -47,6 +48,8 @@ const SAME_LOAD: f64 = 1e-6;
 const SHORTEST: f64 = 1e-10;
 /// Pieces of next to no length one after the other at which the path is lost.
 const MOST_SHORT_PIECES: u32 = 50;
+/// Difference from 1 of the cosine of two tangents between which the path has a corner.
+const CORNER: f64 = 1e-6;
 /// Rate of the factor, in units, relative to that of motions, at which it stands still.
 const STILL: f64 = 1e-13;
 /// Width, relative to a step, of the bracket of the first unstable state.
@@ -195,10 +198,35 @@ impl<'d> Run<'d> {
     fn shorten(&mut self, tracer: &mut Tracer, length: f64) -> Option<LoadStepEnding> {
         tracer.system.count("cutbacks", 1);
         self.length = length;
-        (length < SHORTEST * self.first).then(|| {
-            let why = format!("no state of the piece was found beyond factor {}", tracer.state.factor);
-            end_path(tracer, Status::Stalled, why)
-        })
+        if length >= SHORTEST * self.first {
+            return None;
+        }
+        if let Some(found) = self.around_corner(tracer) {
+            self.length = 0.1 * self.first;
+            let modes = found.state.mode.clone();
+            return self.go_on(tracer, found, modes, None);
+        }
+        let failure = tracer.system.failure.take().map_or(String::new(), |why| format!(": {why}"));
+        let why = format!("no state of the piece was found beyond factor {}{failure}", tracer.state.factor);
+        Some(end_path(tracer, Status::Stalled, why))
+    }
+
+    /// The rate that leads on from a state beyond which the piece has none, since blocks or bonds begin to yield there.
+    fn around_corner(&mut self, tracer: &mut Tracer) -> Option<LoadingRate> {
+        if tracer.system.piecewise_linear() || self.crowded() {
+            return None;
+        }
+        let here = tracer.state.clone();
+        let found = loading_rate(&mut tracer.system, &here, &self.piece)?;
+        let piece = Piece::new(&tracer.system, &found.state, &found.rate)?;
+        let cosine = inner(&piece.row, &self.piece.row);
+        (cosine < 1.0 - CORNER).then_some(found)
+    }
+
+    /// Counts a piece of next to no length; returns true if there are too many of them.
+    fn crowded(&mut self) -> bool {
+        self.cluster.pieces += 1;
+        self.cluster.pieces > MOST_SHORT_PIECES
     }
 
     /// Takes a state of the piece over. `None` if the step is to be repeated or the path ends.
@@ -260,9 +288,18 @@ impl<'d> Run<'d> {
         Some(self.end_at_plateau(tracer, found))
     }
 
-    /// What is looked at behind each step.
+    /// The end of the range or of the path behind a step.
     fn after(&mut self, tracer: &mut Tracer) -> Option<LoadStepEnding> {
-        end_of_range(tracer, self.load_step, self.direction, self.from)
+        if self.target.is_infinite()
+            && let Some(ending) = ray(tracer, &self.piece, self.direction)
+        {
+            return Some(ending);
+        }
+        let ending = end_of_range(tracer, self.load_step, self.direction, self.from);
+        if ending.is_some() {
+            tracer.ending.motion = scaled_motion(tracer, &tracer.state, &self.piece.tangent);
+        }
+        ending
     }
 
     /// The state at the target.
@@ -444,43 +481,62 @@ impl<'d> Run<'d> {
             return Some(self.lose_joint(tracer, lost.contact));
         }
         if moved {
-            self.cluster = Cluster { pieces: self.cluster.pieces, ..Cluster::default() };
-        } else {
-            self.cluster.pieces += 1;
-        }
-        if self.cluster.pieces > MOST_SHORT_PIECES {
+            self.cluster = Cluster::default();
+        } else if self.crowded() {
             let why = format!("at factor {} events follow each other without end", tracer.state.factor);
             return Some(end_path(tracer, Status::Stalled, why));
         }
         let hits = self.all_hits(tracer, hits);
+        let points: Vec<Monitor> = hits.iter().filter(|hit| !matches!(hit.what, What::Branch(_))).copied().collect();
         let here = tracer.state.clone();
-        let length = AHEAD * self.first;
-        let state = facing_ahead(&mut tracer.system, &here, &self.piece.tangent, length).unwrap_or(here);
-        let was = self.rises;
-        let found = after_event(&mut tracer.system, &state, &self.piece, &hits, (self.direction, was));
-        let (piece, modes, open) = match found {
-            NextPiece::Piece { piece, modes, twins, open } => {
+        let state = facing_ahead(&mut tracer.system, &here, &self.piece.tangent).unwrap_or(here);
+        if points.is_empty() {
+            let rate = self.piece.tangent.clone();
+            let modes = state.mode.clone();
+            return self.go_on(tracer, LoadingRate { state, rate }, modes, None);
+        }
+        match after_event(&mut tracer.system, &state, &self.piece, &points, (self.direction, self.rises)) {
+            NextPiece::Goes { rate, modes, twins, open } => {
                 self.note_twins(tracer, twins);
-                (piece, modes, open)
+                self.go_on(tracer, LoadingRate { state, rate }, modes, open)
             }
-            NextPiece::Nothing { why, none_rises, proved } => {
-                return Some(self.end_at_event(tracer, &why, none_rises, proved));
-            }
+            NextPiece::Nothing { why, none_rises, proved } => Some(self.end_at_event(tracer, &why, none_rises, proved)),
+        }
+    }
+
+    /// Goes on along a rate from the present state, with blocks and bonds that yield as the rate asks for.
+    fn go_on(
+        &mut self,
+        tracer: &mut Tracer,
+        found: LoadingRate,
+        modes: Vec<ContactMode>,
+        open: Option<String>,
+    ) -> Option<LoadStepEnding> {
+        let was = self.rises;
+        let LoadingRate { mut state, rate } = found;
+        state.mode = modes;
+        let Some(mut piece) = Piece::new(&tracer.system, &state, &rate) else {
+            return Some(self.end_at_event(tracer, "the rate that leads on does not move", false, false));
         };
-        self.enter(tracer, piece, modes);
+        if !tracer.system.laws.responses.is_empty() {
+            let here = State { mode: state.mode.clone(), ..tracer.state.clone() };
+            if let Some(found) = loading_rate(&mut tracer.system, &here, &piece) {
+                state = found.state;
+                piece = Piece::new(&tracer.system, &state, &found.rate)?;
+            }
+        }
+        self.enter(tracer, piece, &state);
         self.rises = self.goes_up(tracer, &self.piece.tangent.clone());
         if let Some(ending) = self.plateau(tracer) {
             return Some(ending);
         }
-        match was == self.rises {
-            true => self.after(tracer),
-            false => {
-                if was {
-                    tracer.limit.unproven = open.or(tracer.limit.unproven.take());
-                }
-                self.at_turn(tracer, was)
-            }
+        if was == self.rises {
+            return self.after(tracer);
         }
+        if was {
+            tracer.limit.unproven = open.or(tracer.limit.unproven.take());
+        }
+        self.at_turn(tracer, was)
     }
 
     /// The monitors that end at the present state. After a piece of no length a point was missing from the event: the path is
@@ -536,12 +592,14 @@ impl<'d> Run<'d> {
         end_path(tracer, if proved { Status::LimitPoint } else { Status::Stalled }, why)
     }
 
-    /// Takes the modes of the next piece over.
-    fn enter(&mut self, tracer: &mut Tracer, piece: Piece, modes: Vec<ContactMode>) {
+    /// Takes the modes of the next piece over, and the tangents of its bonds.
+    fn enter(&mut self, tracer: &mut Tracer, piece: Piece, next: &State) {
         let before = tracer.state.clone();
-        let after = State { mode: modes, ..before.clone() };
-        tracer.record.events.extend(events(&tracer.system, tracer.load_step, &before, &after));
-        tracer.state = after;
+        tracer.state.mode.clone_from(&next.mode);
+        for (own, next) in tracer.state.updates.points.iter_mut().zip(&next.updates.points) {
+            (own.tangent, own.branch) = (next.tangent, next.branch);
+        }
+        tracer.record.events.extend(events(&tracer.system, tracer.load_step, &before, &tracer.state));
         self.piece = piece;
     }
 
