@@ -50,7 +50,7 @@ pub fn solve_into_journal(
     cases.solve(&rest, useful_jobs(options.jobs), &progress, &mut |case| {
         // Those of the study are in the journal since they were answered.
         if case.label.id >= cases.count() {
-            let line = sealed(&CaseWithPath::of(&case)).map_err(std::io::Error::from);
+            let line = sealed(&CaseWithPath(&case)).map_err(std::io::Error::from);
             failed = line.and_then(|line| own.write_all(&line)).err().or(failed.take());
         }
     });

@@ -103,7 +103,7 @@ impl Observer for Progress {
 
     fn answered(&self, case: &CaseResult) {
         self.bar.inc(1);
-        let line = sealed(&CaseWithPath::of(case)).unwrap_or_default();
+        let line = sealed(&CaseWithPath(case)).unwrap_or_default();
         self.keep(|journal| journal.add(&line));
         interrupt::finished();
         if self.shown_as == Shown::Lines {

@@ -37,7 +37,7 @@ fn with_path(case: &str, proofs: Option<&mut PathProofLines>) -> serde_json::Res
         None => serde_json::from_str::<IgnoredAny>(case).map(|_| case.as_bytes().to_vec()),
         Some(proofs) => {
             let case = proofs.attached_to(serde_json::from_str::<CaseResult>(case)?);
-            serde_json::to_vec(&CaseWithPath::of(&case))
+            serde_json::to_vec(&CaseWithPath(&case))
         }
     }
 }

@@ -302,7 +302,7 @@ fn found(own: &Map<String, Json>, keys: &SweptKeys) -> String {
 
 /// What `verify` has done with each case.
 pub(super) const HOW: &str = "checked: what the stored forces and motions prove, from the scene and without a solver (nothing where [output] fields = false has left them out); then every number \
-and word against solving the case again (the histories of paths are not stored); tables and figures against results.json. \
+and word against solving the case again, unless the states in path_proofs.jsonl prove its path; tables and figures against results.json. \
 Not checked: counters, seconds, version";
 
 /// What a run of one case says of the others.

@@ -173,8 +173,8 @@ pub struct RunRequest {
     pub resume: bool,
     /// Whether stored cases that are not wanted stay in the results.
     pub keep: bool,
-    /// What an earlier run has left: results.json, path_proofs.jsonl, and a line of JSON for each case that was finished
-    /// later. Only cases of this very study count, whatever the folder held.
+    /// The texts that an earlier run has left: results.json, path_proofs.jsonl, and a line of JSON for each case that was finished
+    /// after them. Only cases of this very study count, whatever the folder held.
     pub stored: Option<[String; 3]>,
     /// Version of the program, for results.json.
     pub version: String,

@@ -167,8 +167,8 @@ impl Check<'_> {
     }
 }
 
-/// What is wrong with a stored case, by itself and against its stored path or solving again; and 1 for a case that is proved, and for
-/// one that need not be solved again for that.
+/// Checks a stored case by itself and against its stored path or solving again. Returns the findings; 1 if its path is proved, and 1 if
+/// it was not solved again for that.
 fn differs(
     (sweep, observer): (&Sweep, &dyn Observer),
     (agreement, origin): (Agreement, &Origin),

@@ -2,22 +2,24 @@
 
 use super::case_result::CaseResult;
 use super::stored_path::StoredPath;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 use std::sync::Arc;
 
 /// A case with its stored path, as journals and parts have it.
-#[derive(Serialize)]
-pub struct CaseWithPath<'a> {
-    #[serde(flatten)]
-    case: &'a CaseResult,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    stored_path: Option<&'a StoredPath>,
-}
+pub struct CaseWithPath<'a>(pub &'a CaseResult);
 
-impl<'a> CaseWithPath<'a> {
-    /// A case with the path that it holds.
-    pub fn of(case: &'a CaseResult) -> Self {
-        CaseWithPath { case, stored_path: case.stored_path.as_deref() }
+impl Serialize for CaseWithPath<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Both<'a> {
+            #[serde(flatten)]
+            case: &'a CaseResult,
+            stored_path: &'a StoredPath,
+        }
+        match self.0.stored_path.as_deref() {
+            None => self.0.serialize(serializer),
+            Some(stored_path) => Both { case: self.0, stored_path }.serialize(serializer),
+        }
     }
 }
 

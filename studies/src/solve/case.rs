@@ -90,7 +90,7 @@ fn solve_observed(case: &Case, observer: &mut dyn PathObserver) -> CaseResult {
     result
 }
 
-/// Adds the parts of a result that say which case it is.
+/// Adds the label of a case, its loads and its partial factors.
 fn add_label(case: &Case, result: &mut CaseResult) {
     result.label = label_of(case);
     result.loads = load_entries(case);

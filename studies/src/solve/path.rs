@@ -1,4 +1,4 @@
-//! Solving a case along its path, while the certificate looks on; and a path that is read back in place of a solver.
+//! Solves a case along its path and checks every state. A stored path can take the place of the solver.
 
 use super::auto::{TaggedPathSolver, path_solvers, willing};
 use super::case_input::CaseInput;

@@ -84,7 +84,7 @@ impl StudyFile {
         let mut cases = Vec::new();
         let few = self.expansion.count() <= MOST_WITH_PATH_PROOFS;
         make_cases(&self.expansion, &self.checked, &mut self.diagnostics, |mut case| {
-            if few && case.resolved["output"]["path_proofs"].is_null() {
+            if few && case.output_fields && case.resolved["output"]["path_proofs"].is_null() {
                 case.output_path_proofs = SMALL_PATH_PROOF;
             }
             cases.push(case);

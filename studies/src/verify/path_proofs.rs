@@ -26,7 +26,7 @@ pub struct PathProofLines<'a> {
     line: usize,
     last: Option<usize>,
     next: Option<NumberedLine>,
-    /// What is wrong with lines that belong to no case.
+    /// Findings about lines that belong to no case.
     pub findings: Vec<String>,
 }
 
@@ -151,7 +151,7 @@ impl NumberedLine {
     pub fn check(&self, case: &Case, result: &CaseResult) -> Result<ProvedCase, String> {
         let checked = || {
             if self.line.case_hash != result.label.case_hash {
-                return Err("case_hash is that of another case".into());
+                return Err("another case has this case_hash".into());
             }
             check_stored_path(case, result, &self.line.path)
         };
@@ -211,9 +211,9 @@ pub struct PathProofs {
     pub again: Vec<CaseResult>,
     /// Number of cases whose end is proved.
     pub proved: usize,
-    /// What is wrong, by case.
+    /// Findings by case.
     pub findings: Vec<(usize, String)>,
-    /// What is wrong with lines that belong to no case.
+    /// Findings about lines that belong to no case.
     pub lines: Vec<String>,
 }
 

@@ -9,6 +9,7 @@ use voussoir::results::CaseResult;
 use voussoir::results::sealed_line::{case_in, sealed_text};
 use voussoir::results::stored_path::PATH_PROOFS;
 use voussoir::solve::{Observer, Unobserved};
+use voussoir::study::{StudyFile, StudySource};
 use voussoir_tests::changed;
 
 /// Two rings of elastic voussoirs with associated friction: collapse by a mechanism, without a tree of decisions.
@@ -211,21 +212,21 @@ fn the_study_decides() {
 fn forged_states_and_witnesses_are_found() {
     type Forgery = (&'static str, fn(&mut Value));
     const ALL: &[Forgery] = &[
-        ("a force", |path| times(&mut path["states"][2]["force"][0][0], 1.0 + 1e-6)),
-        ("a motion", |path| times(&mut path["states"][2]["motion"][3][0], 1.001)),
-        ("a factor", |path| times(&mut path["states"][2]["factor"], 1.0 + 1e-6)),
-        ("a displacement", |path| times(&mut path["states"][2]["displacement"], 1.0 + 1e-6)),
-        ("dissipation", |path| path["states"][2]["energies"][1] = json!(1e9)),
-        ("a load step", |path| path["states"][2]["load_step"] = json!(1_000_000)),
-        ("a dropped state", |path| drop(list(path, "states").remove(2))),
-        ("swapped states", |path| list(path, "states").swap(1, 2)),
+        ("a force", |path| times(greatest(&mut middle(path)["force"]), 1.0 + 1e-6)),
+        ("a motion", |path| times(greatest(&mut middle(path)["motion"]), 1.001)),
+        ("a factor", |path| times(&mut middle(path)["factor"], 1.0 + 1e-6)),
+        ("a displacement", |path| times(&mut middle(path)["displacement"], 1.0 + 1e-6)),
+        ("dissipation", |path| middle(path)["energies"][1] = json!(1e9)),
+        ("a load step", |path| middle(path)["load_step"] = json!(1_000_000)),
+        ("the first half dropped", |path| drop(first_half(path))),
+        ("swapped states", |path| swap_middle(path)),
         ("no states", |path| list(path, "states").clear()),
         ("another end", |path| path["end"] = json!(1)),
         ("no end", |path| path["end"] = json!(u32::MAX)),
         ("another status", |path| path["status"] = json!("stands")),
         ("unbounded", |path| path["status"] = json!("unbounded")),
-        ("a short list", |path| drop(list(&mut path["states"][2], "force").pop())),
-        ("a great number", |path| path["states"][2]["motion"][1][2] = json!(1e200)),
+        ("a short list", |path| drop(list(middle(path), "force").pop())),
+        ("a great number", |path| middle(path)["motion"][1][2] = json!(1e200)),
         ("an unknown key", |path| path["more"] = json!(1)),
     ];
     for text in [RINGS, SNAPS] {
@@ -237,6 +238,20 @@ fn forged_states_and_witnesses_are_found() {
             assert!(named && found[0].contains("case 0"), "{}: {name}: {found:?}", study.name());
         }
     }
+    // A state on a straight piece between two others may be missing; no state at which a point changes its mode.
+    let (study, files) = run(RINGS);
+    let count = lines(&files)[0]["path"]["states"].as_array().expect("states").len();
+    let dropped = (0..count).filter(|place| {
+        let forged = forged(&elsewhere(&files), |path| {
+            let end = path["end"].as_u64().expect("an index") as usize;
+            path["end"] = json!(end - usize::from(*place < end));
+            drop(list(path, "states").remove(*place));
+        });
+        !findings(study.as_ref(), &forged).is_empty()
+    });
+    let found = dropped.count();
+    assert!(10 * found >= 9 * count, "{found} of {count} states that are dropped are found");
+    println!("{found} of {count} states that are dropped are found");
     // The mechanism of associated flow is its own witness.
     let (study, files) = run(RINGS);
     for by in [0.5, -1.0] {
@@ -263,6 +278,33 @@ fn forged_states_and_witnesses_are_found() {
     ] {
         assert!(!findings(study.as_ref(), &forged).is_empty(), "witnesses: {name}");
     }
+}
+
+/// The state in the middle of a path.
+fn middle(path: &mut Value) -> &mut Value {
+    let states = list(path, "states");
+    let place = states.len() / 2;
+    &mut states[place]
+}
+
+fn first_half(path: &mut Value) -> Vec<Value> {
+    let states = list(path, "states");
+    let half = states.len() / 2;
+    path["end"] = json!(path["end"].as_u64().expect("an index") as usize - half);
+    list(path, "states").drain(..half).collect()
+}
+
+/// The greatest number of a list of lists.
+fn greatest(lists: &mut Value) -> &mut Value {
+    let numbers = lists.as_array_mut().expect("a list").iter_mut().flat_map(|own| own.as_array_mut().expect("a list"));
+    let size = |number: &&mut Value| number.as_f64().expect("a number").abs();
+    numbers.max_by(|a, b| size(a).total_cmp(&size(b))).expect("a number")
+}
+
+fn swap_middle(path: &mut Value) {
+    let states = list(path, "states");
+    let place = states.len() / 2;
+    states.swap(place, place - 1);
 }
 
 fn list<'a>(value: &'a mut Value, key: &str) -> &'a mut Vec<Value> {
@@ -347,6 +389,24 @@ fn claims_beyond_the_states_are_found() {
         results["cases"][0]["stages"][last]["status"] = json!("stands");
         assert!(!findings(study.as_ref(), &with_results(&files, &results)).is_empty());
     }
+}
+
+/// Cases that are streamed have the file if the study asks for it, and its lines are checked alike.
+#[test]
+fn streamed_cases_have_their_lines() {
+    let source = StudySource::parse(&changed(RINGS, "curve = true", "path_proofs = true"), "paths.toml", &[]);
+    let sweep = StudyFile::read(source.expect("a study")).and_then(StudyFile::sweep).expect("a sweep");
+    let request = RunRequest { wanted: vec![0, 1], jobs: 1, ..RunRequest::default() };
+    let files: Files = sweep.run(&request, &Unobserved).files.into_iter().collect();
+    let there = elsewhere(&files);
+    assert_eq!(findings(&sweep, &there), Vec::<String>::new());
+    let (found, solved) = verified(&sweep, &there);
+    assert_eq!((found.paths, solved), ([2, 2], 0));
+    assert_eq!(verified(&sweep, &files).0.paths, [2, 0]);
+    let found = findings(&sweep, &forged(&there, |path| list(path, "states").swap(3, 4)));
+    assert!(found[0].starts_with("case 0: path_proofs.jsonl, line 1: "), "{found:?}");
+    let found = findings(&sweep, &with_lines(&there, &[lines(&files), lines(&files)].concat()));
+    assert!(found.iter().any(|why| why.starts_with("path_proofs.jsonl, line 3, case 0")), "{found:?}");
 }
 
 /// A run that goes on, one whose results are finished, and parts that are put together write the same file.
