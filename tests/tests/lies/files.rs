@@ -161,7 +161,7 @@ fn exit_codes_tell_a_lie() {
     std::fs::remove_dir_all(&folder).expect("removed");
 }
 
-/// The result of a solver from another project is verified by its stored states alone: nothing is solved again, not even by the same program.
+/// The result of a solver from another project is verified by its stored states alone: the same program does not solve it again either.
 #[test]
 fn the_path_of_a_stranger_is_verified_without_its_solver() {
     let mut proved = 0;
@@ -177,7 +177,11 @@ fn the_path_of_a_stranger_is_verified_without_its_solver() {
         }
         let file = |name: &str| files.get(name).map(|bytes| Box::new(Cursor::new(bytes.clone())) as Box<dyn Read>);
         let found = study.verify_stored(&StoredResults { jobs: 1, file: &file }, &Unobserved).expect("results");
-        assert_eq!((found.findings, found.files, found.paths), (vec![], vec![], [1, 1]), "{}", scene.name);
+        let results: StudyResults = serde_json::from_slice(&files["results.json"]).expect("results");
+        // No state proves that a mechanism is not the only one.
+        let more = results.cases[0].mechanism.as_ref().is_some_and(|mechanism| mechanism.unique.is_some());
+        let paths = [1, usize::from(!more)];
+        assert_eq!((found.findings, found.files, found.paths), (vec![], vec![], paths), "{}", scene.name);
         proved += 1;
     }
     assert!(proved >= 5, "{proved} paths of a stranger");
