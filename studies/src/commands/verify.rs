@@ -142,8 +142,8 @@ fn path_words([proved, not_solved]: [usize; 2]) -> Option<String> {
     let unproved = match not_solved {
         0 => String::new(),
         count => format!(
-            "; {count} of them were not solved again for that: their events, branches, stability, and rates behind limit points of \
-             finite displacements are not checked"
+            "; {count} of them were not solved again: if they have events, branches, stability or rates behind limit points of finite \
+             displacements, these are not checked"
         ),
     };
     (proved > 0).then(|| format!("{proved} path(s) proved by the states and witnesses in {PATH_PROOFS}{unproved}"))

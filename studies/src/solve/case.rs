@@ -112,7 +112,8 @@ fn leave_out(case: &Case, result: &mut CaseResult) {
 /// # Errors
 /// The first reason why its states do not prove the end.
 pub(crate) fn proved_case(case: &Case, tag: &str, path: &StoredPath) -> Result<CaseResult, String> {
-    let mut result = path::proved_by_stored_path(&CaseInput::of(case), tag, path)?;
+    let input = CaseInput { stored_numbers: 0, ..CaseInput::of(case) };
+    let mut result = path::proved_by_stored_path(&input, tag, path)?;
     add_label(case, &mut result);
     leave_out(case, &mut result);
     Ok(result)

@@ -48,8 +48,7 @@ impl ProvedCase {
     /// Returns true if the case need not be solved again. The same program on the same kind of processor would repeat every bit, so that
     /// solving again also checks the unproved parts.
     pub fn is_enough(&self, case: &Case, agreement: Agreement) -> bool {
-        let asks_for_more = !case.output_sensitivities.is_empty() || case.output_accuracy;
-        !asks_for_more && (self.whole || agreement != Agreement::Bits)
+        !asks_for_more(case) && (self.whole || agreement != Agreement::Bits)
     }
 }
 
@@ -159,6 +158,11 @@ impl NumberedLine {
     }
 }
 
+/// Returns true if a case asks for numbers that only solving again can give.
+fn asks_for_more(case: &Case) -> bool {
+    !case.output_sensitivities.is_empty() || case.output_accuracy
+}
+
 /// Checks that a stored path proves the result of its case.
 ///
 /// # Errors
@@ -172,6 +176,10 @@ pub fn check_stored_path(case: &Case, result: &CaseResult, path: &StoredPath) ->
     again.notes.clone_from(&result.notes);
     let proved = value(&again)?;
     take_unproved(&mut again, result, case.solver.settings.finite);
+    if asks_for_more(case) {
+        again.load_factor_error.clone_from(&result.load_factor_error);
+        again.sensitivities.clone_from(&result.sensitivities);
+    }
     let (all, stored) = (value(&again)?, value(result)?);
     match meaning::differences(&stored, &all).first() {
         Some(why) => Err(why.replace("solving again gives", "the states give")),
@@ -185,8 +193,6 @@ fn take_unproved(again: &mut CaseResult, stored: &CaseResult, finite: bool) {
     again.counters.clone_from(&stored.counters);
     again.path.events.clone_from(&stored.path.events);
     again.path.branches.clone_from(&stored.path.branches);
-    again.load_factor_error.clone_from(&stored.load_factor_error);
-    again.sensitivities.clone_from(&stored.sensitivities);
     for (own, stored) in again.path.limit_points.iter_mut().zip(&stored.path.limit_points) {
         own.next_state.clone_from(&stored.next_state);
     }

@@ -50,9 +50,9 @@ curve = true
 "scene.thickness" = { list = [0.6, 0.7] }
 "#;
 
-/// Two thick blocks that snap through: a limit point of finite displacements, proved by a witness.
-const SNAPS: &str = r#"
-name = "snaps"
+/// A block that is pushed over its edge: a limit point of finite displacements, proved by a witness.
+const TIPS: &str = r#"
+name = "tips"
 [scene]
 scene = "blocks"
 width = 1.0
@@ -167,7 +167,7 @@ fn times(value: &mut Value, by: f64) {
 /// The states of both paths prove their results. On another processor nothing is solved again; on this one the unproved parts are.
 #[test]
 fn stored_states_prove_a_path_without_its_solver() {
-    for (text, cases) in [(RINGS, 2), (SNAPS, 1)] {
+    for (text, cases) in [(RINGS, 2), (TIPS, 1)] {
         let (study, files) = run(text);
         let head = &results(&files)["files"];
         assert!(head.as_array().expect("a list").contains(&json!(PATH_PROOFS)), "{head}");
@@ -229,10 +229,10 @@ fn forged_states_and_witnesses_are_found() {
         ("a great number", |path| middle(path)["motion"][1][2] = json!(1e200)),
         ("an unknown key", |path| path["more"] = json!(1)),
     ];
-    for text in [RINGS, SNAPS] {
+    for text in [RINGS, TIPS] {
         let (study, files) = run(text);
         for (name, forge) in ALL {
-            let forged = forged(&elsewhere(&files), |path| forge(path));
+            let forged = forged(&elsewhere(&files), forge);
             let found = findings(study.as_ref(), &forged);
             let named = found.iter().any(|why| why.contains("path_proofs.jsonl, line 1"));
             assert!(named && found[0].contains("case 0"), "{}: {name}: {found:?}", study.name());
@@ -261,7 +261,7 @@ fn forged_states_and_witnesses_are_found() {
         });
         assert!(!findings(study.as_ref(), &forged).is_empty(), "a mechanism times {by}");
     }
-    let (study, files) = run(SNAPS);
+    let (study, files) = run(TIPS);
     let witnesses = |change: fn(&mut Value)| {
         forged(&files, |path| list(path, "witnesses").iter_mut().for_each(|own| change(&mut own["claim"])))
     };
@@ -373,7 +373,7 @@ fn claims_beyond_the_states_are_found() {
                 "/motion/3/velocity/0",
             ][..],
         ),
-        (SNAPS, &["/load_factor", "/first_limit_point", "/limit_points/0/factor", "/followed_to/factor"]),
+        (TIPS, &["/load_factor", "/first_limit_point", "/limit_points/0/factor", "/followed_to/factor"]),
     ] {
         let (study, files) = run(text);
         for path in paths {
@@ -383,6 +383,10 @@ fn claims_beyond_the_states_are_found() {
             let found = findings(study.as_ref(), &with_results(&files, &results));
             assert!(found.iter().any(|why| why.contains("path_proofs.jsonl, line 1")), "{path}: {found:?}");
         }
+        let mut added = results(&elsewhere(&files));
+        added["cases"][0]["sensitivities"] =
+            json!([{ "key": "scene.width", "value": 1.0, "left": 1.0, "right": 1.0, "kink": false }]);
+        assert!(!findings(study.as_ref(), &with_results(&files, &added)).is_empty());
         let mut results = results(&elsewhere(&files));
         results["cases"][0]["status"] = json!("stands");
         let last = results["cases"][0]["stages"].as_array().expect("stages").len() - 1;
