@@ -11,6 +11,7 @@
 //! The certificate derives E, K, p, C, G and g_p from the assembly, and checks a witness without any search.
 
 use super::state::PathState;
+use serde::{Deserialize, Serialize};
 
 /// A statement about the rates at a state of a path.
 #[derive(Debug, Clone)]
@@ -31,7 +32,7 @@ pub enum RateClaim {
 }
 
 /// Rates of everything at a state.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PathRate {
     /// λ̇.
     pub factor: f64,
@@ -44,7 +45,8 @@ pub struct PathRate {
 }
 
 /// The mode of a contact point in a rate.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum PointMode {
     /// ġ = 0, and no active facet is left outwards.
     Stick,
@@ -79,7 +81,7 @@ pub enum ModeTree {
 ///
 /// If the left side is ≥ 0 in all modes that are left and the factor of λ̇ is negative, then λ̇ > 0 is impossible. A
 /// mechanism q̇ with p·q̇ = 1 gives y = −q̇, β = 0, and α is the rate of its gaps.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct FarkasVector {
     /// y of every body (those of held bodies are not read).
     pub equilibrium: Vec<[f64; 3]>,

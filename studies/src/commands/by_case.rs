@@ -5,9 +5,9 @@ use super::codes::{NO_ACCESS, complain, say};
 use super::folder::{JOURNAL, ResultFolder};
 use super::options::{Options, useful_jobs};
 use super::progress::Progress;
-use super::sealed_line::sealed;
 use crate::kinds::{Backing, BackingCount, CasesOf, kind, resumed};
-use crate::results::CaseResult;
+use crate::results::case_with_path::{CaseWithPath, read_case};
+use crate::results::sealed_line::sealed;
 use crate::side_by_side::{in_order, side_by_side, threads};
 use std::collections::BTreeSet;
 use std::io::Write;
@@ -50,7 +50,7 @@ pub fn solve_into_journal(
     cases.solve(&rest, useful_jobs(options.jobs), &progress, &mut |case| {
         // Those of the study are in the journal since they were answered.
         if case.label.id >= cases.count() {
-            let line = sealed(&case).map_err(std::io::Error::from);
+            let line = sealed(&CaseWithPath(&case)).map_err(std::io::Error::from);
             failed = line.and_then(|line| own.write_all(&line)).err().or(failed.take());
         }
     });
@@ -77,11 +77,9 @@ pub fn backings(
         let mut found = Vec::with_capacity(count);
         for from in (0..count).step_by(AT_ONCE * threads()) {
             let texts = (from..count.min(from + AT_ONCE * threads())).map(|index| lines.line(index));
-            found.extend(in_order(&texts.collect::<std::io::Result<Vec<_>>>()?, |text| {
-                match serde_json::from_slice::<CaseResult>(text) {
-                    Ok(case) => cases.backing(&case),
-                    Err(error) => Err(vec![error.to_string()]),
-                }
+            found.extend(in_order(&texts.collect::<std::io::Result<Vec<_>>>()?, |text| match read_case(text) {
+                Ok(case) => cases.backing(&case),
+                Err(error) => Err(vec![error.to_string()]),
             }));
         }
         Ok(found)

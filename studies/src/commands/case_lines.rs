@@ -1,8 +1,9 @@
 //! Finished cases as lines of files: found by id, none of them held.
 
-use super::sealed_line::case_in;
 use crate::regular_file::open_regular;
 use crate::results::CaseResult;
+use crate::results::case_with_path::read_case;
+use crate::results::sealed_line::case_in;
 use serde::Deserialize;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
@@ -120,7 +121,7 @@ impl CaseLines {
 
     /// The case of a line.
     pub fn case(&self, index: usize) -> io::Result<CaseResult> {
-        Ok(serde_json::from_slice(&self.line(index)?)?)
+        Ok(read_case(&self.line(index)?)?)
     }
 
     /// The cases in order, each read when it is asked for.
@@ -136,8 +137,8 @@ fn frames_a_part(line: &[u8]) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::sealed_line::sealed_text;
     use super::*;
+    use crate::results::sealed_line::sealed_text;
 
     #[test]
     fn the_last_whole_line_of_a_case_counts() {

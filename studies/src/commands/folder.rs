@@ -2,6 +2,7 @@
 
 use super::codes::{NO_ACCESS, complain};
 use crate::regular_file::open_regular;
+use crate::results::stored_path::PATH_PROOFS;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{BufWriter, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
@@ -178,7 +179,15 @@ impl ResultFolder {
 
 /// Files of a folder that have names which writers give, but for results.json.
 pub fn named_by_writers(path: &Path) -> Vec<String> {
-    let top = ["results.csv", "results.parquet", "curve.csv", "comparison.csv", "sensitivities.csv", "report.html"];
+    let top = [
+        "results.csv",
+        "results.parquet",
+        "curve.csv",
+        "comparison.csv",
+        "sensitivities.csv",
+        "report.html",
+        PATH_PROOFS,
+    ];
     let top = top.map(String::from);
     let filled = FILLED.into_iter().flat_map(|folder| {
         let names = entries(&path.join(folder)).into_iter().map(move |name| format!("{folder}/{name}"));

@@ -22,7 +22,6 @@ pub mod pages;
 mod progress;
 mod refill;
 pub mod run;
-mod sealed_line;
 pub mod serve;
 pub mod shard;
 mod stream;

@@ -3,8 +3,9 @@
 use super::codes::say_data;
 use super::interrupt;
 use super::journal::{Journal, say_unwritten};
-use super::sealed_line::{case_in, sealed};
 use crate::results::CaseResult;
+use crate::results::case_with_path::CaseWithPath;
+use crate::results::sealed_line::sealed;
 use crate::solve::{Observer, PathProgress};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::Value as Json;
@@ -102,7 +103,7 @@ impl Observer for Progress {
 
     fn answered(&self, case: &CaseResult) {
         self.bar.inc(1);
-        let line = sealed(case).unwrap_or_default();
+        let line = sealed(&CaseWithPath(case)).unwrap_or_default();
         self.keep(|journal| journal.add(&line));
         interrupt::finished();
         if self.shown_as == Shown::Lines {
@@ -111,8 +112,7 @@ impl Observer for Progress {
             if let Ok(mut said) = self.said.lock() {
                 said.insert(case.label.id);
             }
-            let line = line.trim_ascii();
-            say_data(&String::from_utf8_lossy(case_in(line).map_or(&[], |case| &line[case])));
+            say_data(&serde_json::to_string(case).unwrap_or_default());
         }
     }
 

@@ -1,9 +1,14 @@
-//! From results.json back to a journal, so that `--resume` of a finished run finds its cases finished.
+//! From results.json and path_proofs.jsonl back to a journal, so that `--resume` of a finished run finds its cases finished.
 
 use super::by_case::no_access;
 use super::folder::{JOURNAL, ResultFolder};
-use super::sealed_line::sealed_text;
 use crate::regular_file::open_regular;
+use crate::results::CaseResult;
+use crate::results::case_with_path::CaseWithPath;
+use crate::results::sealed_line::sealed_text;
+use crate::results::stored_path::PATH_PROOFS;
+use crate::verify::path_proofs::PathProofLines;
+use serde::de::IgnoredAny;
 use std::io::{self, BufRead, BufReader, Read, Write};
 
 /// Greatest length of a results.json.
@@ -19,12 +24,29 @@ pub fn refill(folder: &ResultFolder) -> Result<(), u8> {
         return Ok(());
     }
     let file = open_regular(&results, MAX_RESULTS_BYTES).map_err(|error| no_access(&results, error))?;
+    let proofs = open_regular(&folder.path().join(PATH_PROOFS), MAX_RESULTS_BYTES).ok();
+    let mut proofs = proofs.map(|file| PathProofLines::new(Some(Box::new(file))));
     let mut aside = folder.aside(JOURNAL)?;
-    let copied = lines_of_cases(&mut BufReader::with_capacity(1 << 16, file), &mut aside);
+    let copied = lines_of_cases(&mut BufReader::with_capacity(1 << 16, file), proofs.as_mut(), &mut aside);
     aside.done(copied)
 }
 
-fn lines_of_cases(from: &mut dyn BufRead, to: &mut dyn Write) -> io::Result<()> {
+/// The text of a case, with its stored path if there is one.
+fn with_path(case: &str, proofs: Option<&mut PathProofLines>) -> serde_json::Result<Vec<u8>> {
+    match proofs {
+        None => serde_json::from_str::<IgnoredAny>(case).map(|_| case.as_bytes().to_vec()),
+        Some(proofs) => {
+            let case = proofs.attached_to(serde_json::from_str::<CaseResult>(case)?);
+            serde_json::to_vec(&CaseWithPath(&case))
+        }
+    }
+}
+
+fn lines_of_cases(
+    from: &mut dyn BufRead,
+    mut proofs: Option<&mut PathProofLines>,
+    to: &mut dyn Write,
+) -> io::Result<()> {
     let (mut bytes, mut case) = (Vec::new(), String::new());
     let mut within = false;
     while Read::take(&mut *from, MAX_CASE_BYTES).read_until(b'\n', &mut bytes)? > 0 {
@@ -40,8 +62,8 @@ fn lines_of_cases(from: &mut dyn BufRead, to: &mut dyn Write) -> io::Result<()> 
                 within = false;
                 case.push('}');
                 // Texts hold no line ends, so that a case is one line without its indentation.
-                if serde_json::from_str::<serde::de::IgnoredAny>(&case).is_ok() {
-                    to.write_all(&sealed_text(case.as_bytes()))?;
+                if let Ok(case) = with_path(&case, proofs.as_deref_mut()) {
+                    to.write_all(&sealed_text(&case))?;
                 }
             }
             own if within => case.push_str(own.trim_start()),
@@ -67,7 +89,7 @@ mod tests {
         let whole = json!({ "study": "s", "only_cases": [{ "id": 7 }], "cases": cases });
         let journal = |text: String| {
             let mut out = Vec::new();
-            lines_of_cases(&mut text.as_bytes(), &mut out).expect("written");
+            lines_of_cases(&mut text.as_bytes(), None, &mut out).expect("written");
             String::from_utf8(out).expect("text")
         };
         let lines = journal(serde_json::to_string_pretty(&json!({ "study": "s", "cases": cases })).expect("JSON"));

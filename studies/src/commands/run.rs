@@ -12,6 +12,7 @@ use super::today::today;
 use super::{interrupt, shard, stream};
 use crate::kinds::{CasesOf, LoadedStudy, RunRequest};
 use crate::regular_file::open_regular;
+use crate::results::stored_path::PATH_PROOFS;
 use crate::side_by_side::side_by_side;
 use crate::solve::label_of;
 use crate::writers::results_json::write_results;
@@ -192,7 +193,7 @@ fn run_held(
     let stored = (options.resume || keep).then(|| {
         let (lines, found) = finished_cases(&folder);
         damaged = found;
-        [folder.read("results.json"), lines]
+        [folder.read("results.json"), folder.read(PATH_PROOFS), lines]
     });
     let progress = Progress::new(study.name(), options.shown(), folder.journal(options.resume || keep));
     let request = RunRequest {

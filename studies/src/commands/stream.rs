@@ -10,6 +10,7 @@ use super::tables::Tables;
 use super::today::today;
 use crate::figures::format::{format_number, format_value, status_word};
 use crate::kinds::CasesOf;
+use crate::results::case_with_path::read_case;
 use crate::results::{CaseResult, Origin, words};
 use crate::side_by_side::in_order;
 use crate::study::Sweep;
@@ -97,7 +98,7 @@ fn write(
     for from in (0..count).step_by(AT_ONCE) {
         let chunk = (from..count.min(from + AT_ONCE)).map(|index| lines.line(index)).collect::<io::Result<Vec<_>>>()?;
         let made = in_order(&chunk, |line| {
-            let case: CaseResult = serde_json::from_slice(line)?;
+            let case = read_case(line)?;
             let text = case_text(&case)?;
             Ok((case, text))
         });

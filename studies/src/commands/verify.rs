@@ -8,6 +8,7 @@ use super::progress::{Progress, Shown};
 use crate::caught::{caught, silence_caught_panics};
 use crate::kinds::{CasesOf, LoadedStudy, StoredResults, Verification};
 use crate::regular_file::open_regular;
+use crate::results::stored_path::PATH_PROOFS;
 use crate::verify::first_difference;
 use std::fs::File;
 use std::io::{ErrorKind, Read};
@@ -136,6 +137,18 @@ fn compared(dir: &Path, study: &dyn LoadedStudy, jobs: usize) -> Result<Verifica
     Ok(found)
 }
 
+/// The number of cases that stored paths prove, in words.
+fn path_words([proved, not_solved]: [usize; 2]) -> Option<String> {
+    let unproved = match not_solved {
+        0 => String::new(),
+        count => format!(
+            "; {count} of them were not solved again: if they have events, branches, stability or rates behind limit points of finite \
+             displacements, these are not checked"
+        ),
+    };
+    (proved > 0).then(|| format!("{proved} path(s) proved by the states and witnesses in {PATH_PROOFS}{unproved}"))
+}
+
 /// Prints the findings, or the number of confirmed cases.
 fn told(path: &Path, findings: &[String], found: &Verification, code: u8) -> Checked {
     findings.iter().take(LISTED).for_each(say);
@@ -147,6 +160,7 @@ fn told(path: &Path, findings: &[String], found: &Verification, code: u8) -> Che
         let confirmed = found.cases - found.stalled;
         let of = if found.own < found.of { format!(" of the study's {}", found.of) } else { String::new() };
         say(format!("{}: {confirmed} case(s){of} confirmed, {} stalled", path.display(), found.stalled));
+        path_words(found.paths).iter().for_each(say);
         say(found.how);
         say(found.agreement.words());
     } else {

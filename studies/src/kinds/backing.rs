@@ -5,6 +5,7 @@ use crate::caught::caught;
 use crate::results::CaseResult;
 use crate::study::Case;
 use crate::verify::case::verify_case;
+use crate::verify::path_proofs::check_stored_path;
 use std::fmt;
 use voussoir_core::limit::{LowerProofKind, Status};
 use voussoir_core::plugin::{PluginKind, card};
@@ -34,7 +35,12 @@ impl CasesOf<'_> {
             None => Err(vec!["the study has no such case".into()]),
             Some(case) if case.hash() != result.label.case_hash => Err(vec!["it is not this study's".into()]),
             Some(case) => match verify_case(&case, result) {
-                findings if findings.is_empty() => Ok(backing_of(&case, result)),
+                findings if findings.is_empty() => match &result.stored_path {
+                    Some(path) => {
+                        check_stored_path(&case, result, path).map(|_| Backing::Proved).map_err(|why| vec![why])
+                    }
+                    None => Ok(backing_of(&case, result)),
+                },
                 findings => Err(findings),
             },
         };

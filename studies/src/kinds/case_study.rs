@@ -9,13 +9,16 @@ use crate::figures::envelope::envelope_chart;
 use crate::figures::format::{format_number, snap_words};
 use crate::figures::sweep::study_chart;
 use crate::figures::{curve_svg, mechanism_svg, scene_svg};
+use crate::results::case_with_path::read_case;
+use crate::results::stored_path::PATH_PROOFS;
 use crate::results::{CaseLabel, CaseResult, Origin, StudyResults, words};
 use crate::side_by_side::{in_order, side_by_side};
 use crate::solve::Observer;
 use crate::solve::explain::explain;
 use crate::study::{Case, Study, SweptKeys, as_blocks};
+use crate::verify::path_proofs::{PathProofLines, check_path_proofs};
 use crate::verify::repeat::differences;
-use crate::verify::{Agreement, StoredCheck, misfits, solve_again};
+use crate::verify::{Agreement, StoredCheck, misfits, solve_others_again};
 use crate::writers::comparison::comparison_table;
 use crate::writers::record::record;
 use crate::writers::results_json::write_results;
@@ -23,7 +26,7 @@ use crate::writers::table::results_table;
 use crate::writers::{StudyOutput, written};
 use serde_json::{Map, Value as Json};
 use std::borrow::Cow;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::BufReader;
 use voussoir_core::limit::Status;
 
@@ -72,15 +75,17 @@ impl Study {
     /// Stored cases by id, the last of each, that `kept` wants and that hold by their own proof; and a remark about them.
     fn own_cases(
         &self,
-        [results, journal]: &[String; 2],
+        [results, proofs, journal]: &[String; 3],
         kept: impl Fn(&CaseResult) -> bool,
         jobs: usize,
     ) -> (BTreeMap<usize, CaseResult>, Vec<String>) {
         let whole = serde_json::from_str::<StudyResults>(results).map(|results| results.cases).unwrap_or_default();
+        let mut paths = PathProofLines::new(Some(Box::new(proofs.as_bytes())));
+        let whole = whole.into_iter().map(|case| paths.attached_to(case));
         // The last line of a killed run may be cut short: it does not parse and is done again.
-        let lines = journal.lines().filter_map(|line| serde_json::from_str::<CaseResult>(line).ok());
+        let lines = journal.lines().filter_map(|line| read_case(line.as_bytes()).ok());
         let own: BTreeMap<usize, CaseResult> =
-            whole.into_iter().chain(lines).filter(kept).map(|case| (case.label.id, case)).collect();
+            whole.chain(lines).filter(kept).map(|case| (case.label.id, case)).collect();
         let own: Vec<CaseResult> = own.into_values().collect();
         let backings = side_by_side(jobs, || in_order(&own, |case| CasesOf::Held(self).backing(case)));
         let mut count = BackingCount::default();
@@ -180,20 +185,23 @@ impl LoadedStudy for Study {
     fn verify_stored(&self, stored: &StoredResults, observer: &dyn Observer) -> Result<Verification, String> {
         let file = BufReader::with_capacity(1 << 16, stored.results()?);
         let results: StudyResults = serde_json::from_reader(file).map_err(|error| error.to_string())?;
-        let again = solve_again(self, &results, stored.jobs, observer);
+        let agreement = Agreement::of(&results.origin, &self.resolved);
+        let paths = check_path_proofs(self, &results, (stored.file)(PATH_PROOFS), agreement, stored.jobs);
+        let proved: BTreeSet<usize> = paths.again.iter().map(|case| case.label.id).collect();
+        let again = solve_others_again(self, &results, paths.again, stored.jobs, observer);
         if observer.cancelled() {
             return Err("the check was cancelled".into());
         }
         // Read once more, entry by entry: as a tree of values all of them take more space than everything else here.
-        let mut check = StoredCheck::new(self, &results, &again);
+        let mut check = StoredCheck::with_proved(self, &results, &again, proved.clone());
         let beside = read_cases(stored.results()?, &mut |_, entry| check.entry(&entry))?;
         let mut findings = check.findings()?;
+        findings.extend(paths.findings);
         // Keys that no one reads.
         let read = serde_json::to_value(&results.comparison).unwrap_or_default();
         let foreign = beside.get("comparison").map(|stored| differences(stored, &read)).unwrap_or_default();
         findings.extend(foreign.into_iter().map(|why| (0, format!("comparison: {why}"))));
-        let agreement = Agreement::of(&results.origin, &self.resolved);
-        let (format, listed) = (results.origin.format, results.files.clone());
+        let (format, mut listed) = (results.origin.format, results.files.clone());
         let (count, stalled) = (results.cases.len(), stalled(&results));
         let own = results.cases.iter().filter(|case| case.label.id < self.count()).count();
         // Stored results are drawn only if they are confirmed: then each number was solved again.
@@ -204,12 +212,17 @@ impl LoadedStudy for Study {
                 StudyResults { date: results.date, ..self.results(&results.version, again) }
             }
         };
-        let (made, unmade) = match caught(|| self.made(&drawn, stored.jobs)) {
+        let (mut made, unmade) = match caught(|| self.made(&drawn, stored.jobs)) {
             Ok(made) => (made, None),
             Err(why) => (Vec::new(), Some(format!("tables and figures cannot be made: {why}"))),
         };
+        // Its lines are checked above, not made from results.json.
+        made.retain(|(name, _)| name != PATH_PROOFS);
         let mut files = stored.altered(made.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())), agreement);
         files.extend(unmade);
+        files.extend(paths.lines);
+        let lists_paths =
+            listed.iter().position(|name| name == PATH_PROOFS).map(|place| listed.remove(place)).is_some();
         if format > 0 && !made.is_empty() && listed != names(&made) {
             files.push(format!("the list of files in {RESULTS} does not match the study"));
         }
@@ -218,7 +231,13 @@ impl LoadedStudy for Study {
             stalled,
             findings,
             files,
-            made: made.into_iter().map(|(name, _)| name).chain([RESULTS.into()]).collect(),
+            made: made
+                .into_iter()
+                .map(|(name, _)| name)
+                .chain([RESULTS.into()])
+                .chain(lists_paths.then(|| PATH_PROOFS.into()))
+                .collect(),
+            paths: [paths.proved, proved.len()],
             own,
             of: self.count(),
             agreement,
@@ -283,7 +302,7 @@ fn found(own: &Map<String, Json>, keys: &SweptKeys) -> String {
 
 /// What `verify` has done with each case.
 pub(super) const HOW: &str = "checked: what the stored forces and motions prove, from the scene and without a solver (nothing where [output] fields = false has left them out); then every number \
-and word against solving the case again (the histories of paths are not stored); tables and figures against results.json. \
+and word against solving the case again, unless the states in path_proofs.jsonl prove its path; tables and figures against results.json. \
 Not checked: counters, seconds, version";
 
 /// What a run of one case says of the others.

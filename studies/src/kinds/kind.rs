@@ -173,9 +173,9 @@ pub struct RunRequest {
     pub resume: bool,
     /// Whether stored cases that are not wanted stay in the results.
     pub keep: bool,
-    /// What an earlier run has left: results.json, and a line of JSON for each case that was finished later. Only
-    /// cases of this very study count, whatever the folder held.
-    pub stored: Option<[String; 2]>,
+    /// The texts that an earlier run has left: results.json, path_proofs.jsonl, and a line of JSON for each case that was finished
+    /// after them. Only cases of this very study count, whatever the folder held.
+    pub stored: Option<[String; 3]>,
     /// Version of the program, for results.json.
     pub version: String,
     /// The day of the run, for results.json.
@@ -275,6 +275,8 @@ pub struct Verification {
     pub own: usize,
     /// Number of cases of the study.
     pub of: usize,
+    /// Number of cases whose ends are proved by stored paths, and of those that were not solved again for that.
+    pub paths: [usize; 2],
     /// The comparison with a second run.
     pub agreement: Agreement,
     /// What was checked how.

@@ -6,6 +6,7 @@ use super::kind::{CasesOf, StoredResults, Verification, not_made};
 use super::same_bytes::SameBytes;
 use super::stored_cases::read_cases;
 use crate::caught::caught;
+use crate::results::stored_path::PATH_PROOFS;
 use crate::results::{CaseResult, HEAD, Origin};
 use crate::side_by_side::side_by_side;
 use crate::solve::{Observer, solve_followed};
@@ -13,6 +14,7 @@ use crate::study::Sweep;
 use crate::verify::Agreement;
 use crate::verify::case::verify_case;
 use crate::verify::hash_finding;
+use crate::verify::path_proofs::{NumberedLine, PathProofLines};
 use crate::writers::streamed_tables::{StreamedTable, wanted};
 use rayon::prelude::*;
 use serde::Deserialize;
@@ -31,6 +33,7 @@ struct Check<'a> {
     observer: &'a dyn Observer,
     jobs: usize,
     waiting: Vec<Json>,
+    paths: PathProofLines<'a>,
     agreement: Option<Agreement>,
     origin: Origin,
     found: Verification,
@@ -49,6 +52,7 @@ pub(super) fn verify(sweep: &Sweep, stored: &StoredResults, observer: &dyn Obser
         observer,
         jobs: stored.jobs,
         waiting: Vec::new(),
+        paths: PathProofLines::new((stored.file)(PATH_PROOFS)),
         agreement: None,
         origin: Origin::default(),
         found: Verification { of: sweep.count(), how: HOW, made, ..Verification::default() },
@@ -56,7 +60,7 @@ pub(super) fn verify(sweep: &Sweep, stored: &StoredResults, observer: &dyn Obser
         missing: Vec::new(),
         tables: Vec::new(),
     };
-    for name in wanted(sweep) {
+    for name in wanted(sweep).into_iter().filter(|name| *name != PATH_PROOFS) {
         match (stored.file)(name).map(|file| StreamedTable::new(name, SameBytes::new(file), sweep)) {
             Some(Ok(table)) => check.tables.push((name, table)),
             Some(Err(_)) => check.found.files.push(not_made(name)),
@@ -95,12 +99,15 @@ impl Check<'_> {
         let results = entries.iter().map(read).collect::<Result<Vec<_>, _>>()?;
         let (sweep, observer) = (self.sweep, self.observer);
         let how = (self.agreement.unwrap_or_default(), &self.origin);
-        let pairs = entries.par_iter().zip(&results);
-        let check = |(entry, result): (&Json, &CaseResult)| {
-            caught(|| differs((sweep, observer), how, entry, result)).unwrap_or_else(|why| vec![why])
+        let lines: Vec<_> = results.iter().map(|result| self.paths.of(result.label.id)).collect();
+        let triples = entries.par_iter().zip(&results).zip(&lines);
+        let check = |((entry, result), line): ((&Json, &CaseResult), &Option<NumberedLine>)| {
+            let found = caught(|| differs((sweep, observer), how, (entry, result), line.as_ref()));
+            found.unwrap_or_else(|why| (vec![why], [0, 0]))
         };
-        let wrong: Vec<Vec<String>> = side_by_side(self.jobs, || pairs.map(check).collect());
-        for (case, wrong) in results.iter().zip(wrong) {
+        let wrong: Vec<(Vec<String>, [usize; 2])> = side_by_side(self.jobs, || triples.map(check).collect());
+        for (case, (wrong, proved)) in results.iter().zip(wrong) {
+            (0..2).for_each(|i| self.found.paths[i] += proved[i]);
             self.found.findings.extend(wrong.into_iter().map(|why| (case.label.id, why)));
             self.place(case.label.id);
             self.found.cases += 1;
@@ -154,29 +161,41 @@ impl Check<'_> {
             (!same).then(|| not_made(name))
         });
         self.found.files.extend(others);
+        self.found.files.extend(self.paths.finish());
         self.found.own = self.ids.len();
         self.found
     }
 }
 
-/// What is wrong with a stored case, by itself and against solving again.
+/// Checks a stored case by itself and against its stored path or solving again. Returns the findings; 1 if its path is proved, and 1 if
+/// it was not solved again for that.
 fn differs(
     (sweep, observer): (&Sweep, &dyn Observer),
     (agreement, origin): (Agreement, &Origin),
-    entry: &Json,
-    result: &CaseResult,
-) -> Vec<String> {
+    (entry, result): (&Json, &CaseResult),
+    line: Option<&NumberedLine>,
+) -> (Vec<String>, [usize; 2]) {
     let Some(case) = CasesOf::Streamed(sweep).case(result.label.id) else {
-        return vec!["the study has no such case".into()];
+        return (vec!["the study has no such case".into()], [0, 0]);
     };
-    let Some(again) = solve_followed(&case, observer) else { return vec!["the check was cancelled".into()] };
-    match serde_json::to_value(again) {
-        Ok(again) => {
-            let mut found = verify_case(&case, result);
-            found.extend(hash_finding(&case, result, origin));
-            found.extend(agreement.differences(entry, &again));
-            found
-        }
-        Err(why) => vec![why.to_string()],
+    let mut found = verify_case(&case, result);
+    found.extend(hash_finding(&case, result, origin));
+    let proved = line.map(|line| line.check(&case, result)).transpose();
+    let proved = proved.unwrap_or_else(|why| {
+        found.push(why);
+        None
+    });
+    let count = usize::from(proved.is_some());
+    let enough = proved.filter(|proved| proved.is_enough(&case, agreement));
+    let counts = [count, usize::from(enough.is_some())];
+    let (again, agreement) = match enough {
+        Some(proved) => (Some(proved.result), Agreement::Processor),
+        None => (solve_followed(&case, observer), agreement),
+    };
+    match again.map(serde_json::to_value) {
+        Some(Ok(again)) => found.extend(agreement.differences(entry, &again)),
+        Some(Err(why)) => found.push(why.to_string()),
+        None => found.push("the check was cancelled".into()),
     }
+    (found, counts)
 }

@@ -6,8 +6,10 @@ use super::entries::{
 use super::limit_points::{BranchEntry, FollowedTo, LimitPointEntry, StabilityEntry};
 use super::load_factor_error::LoadFactorError;
 use super::sensitivity::SensitivityEntry;
+use super::stored_path::StoredPath;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
+use std::sync::Arc;
 use voussoir_core::certificate::{Certificate, Hinge, Mechanism};
 use voussoir_core::limit::{BracketPoint, Counters, Greatest, LowerProof, Status};
 use voussoir_core::path::LimitPointEnd;
@@ -199,6 +201,9 @@ pub struct CaseResult {
     /// On bridges, what stands on which block.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub loads: Vec<LoadEntry>,
+    /// The states and witnesses that prove the end of its path, if they are stored. They are not in results.json.
+    #[serde(skip)]
+    pub stored_path: Option<Arc<StoredPath>>,
 }
 
 impl CaseResult {
@@ -274,6 +279,7 @@ impl CaseResult {
             sensitivities: Vec::new(),
             partial_factors: None,
             loads: Vec::new(),
+            stored_path: None,
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Results: what is written of each case, of a study, and how forces and motions become entries.
 
 mod case_result;
+pub mod case_with_path;
 mod comparison;
 pub mod convert;
 mod entries;
@@ -11,8 +12,10 @@ mod load_factor_error;
 mod origin;
 pub mod path_state;
 mod rank;
+pub mod sealed_line;
 mod sensitivity;
 pub mod stage_start;
+pub mod stored_path;
 mod study_results;
 pub mod thrust_line;
 

@@ -8,6 +8,7 @@ use super::sensitivity::sensitivities;
 use super::statics::{falls_by_statics, stands_by_statics, stands_without_a_path};
 use super::{limit, path};
 use crate::results::load_entries::load_entries;
+use crate::results::stored_path::StoredPath;
 use crate::results::{CaseLabel, CaseResult};
 use crate::side_by_side::{in_order, side_by_side};
 use crate::study::{Case, Study};
@@ -58,9 +59,7 @@ fn caught(solve: impl FnOnce() -> CaseResult) -> CaseResult {
 fn solve_observed(case: &Case, observer: &mut dyn PathObserver) -> CaseResult {
     let started = Instant::now();
     let mut result = caught(|| solve_input(&CaseInput::of(case), observer));
-    result.label = label_of(case);
-    result.loads = load_entries(case);
-    result.partial_factors = case.resolved.get("factors").cloned();
+    add_label(case, &mut result);
     if result.status != Status::Stalled && card(PluginKind::PathSolver, &result.solver).is_some() {
         let checked = catch_unwind(AssertUnwindSafe(|| verify_case(case, &result)));
         let wrong = checked.unwrap_or_else(|_| vec!["a panic ended its check".into()]);
@@ -85,15 +84,39 @@ fn solve_observed(case: &Case, observer: &mut dyn PathObserver) -> CaseResult {
             Err(why) => result.notes.push(format!("no estimate of the load factor's error: {why}")),
         }
     }
+    // Last: everything above reads them.
+    leave_out(case, &mut result);
+    result.seconds = started.elapsed().as_secs_f64();
+    result
+}
+
+/// Adds the label of a case, its loads and its partial factors.
+fn add_label(case: &Case, result: &mut CaseResult) {
+    result.label = label_of(case);
+    result.loads = load_entries(case);
+    result.partial_factors = case.resolved.get("factors").cloned();
+}
+
+/// Leaves out the parts of a result that the study does not ask for.
+fn leave_out(case: &Case, result: &mut CaseResult) {
     if !case.output_curve {
         result.path.curve = None;
     }
-    // Last: everything above reads them.
     if !case.output_fields {
         result.leave_out_fields();
     }
-    result.seconds = started.elapsed().as_secs_f64();
-    result
+}
+
+/// The result of a case that a stored path proves, without solving; the answer of the solver with this tag.
+///
+/// # Errors
+/// The first reason why its states do not prove the end.
+pub(crate) fn proved_case(case: &Case, tag: &str, path: &StoredPath) -> Result<CaseResult, String> {
+    let input = CaseInput { stored_numbers: 0, ..CaseInput::of(case) };
+    let mut result = path::proved_by_stored_path(&input, tag, path)?;
+    add_label(case, &mut result);
+    leave_out(case, &mut result);
+    Ok(result)
 }
 
 /// An answer in which `verify` finds something wrong is no answer: what decides there decides here.
@@ -101,6 +124,7 @@ fn withdraw(result: &mut CaseResult, wrong: Vec<String>) {
     if wrong.is_empty() {
         return;
     }
+    result.stored_path = None;
     result.status = Status::Stalled;
     result.greatest = Greatest::Open;
     (result.load_factor, result.bounds, result.proved_by) = (None, None, None);

@@ -19,6 +19,8 @@ pub struct CaseInput<'a> {
     pub curve: bool,
     /// How many states of a path are kept.
     pub states: usize,
+    /// Most numbers in the states of a path for which they are kept with the witnesses that prove its end; 0 keeps none.
+    pub stored_numbers: usize,
     /// What a path solver is told; its tolerance is the greatest relative gap between bounds too.
     pub settings: &'a PathSettings,
 }
@@ -33,6 +35,7 @@ impl<'a> CaseInput<'a> {
             of_stages: &case.solver.of_stages,
             curve: case.output_curve,
             states: case.output_states,
+            stored_numbers: case.output_path_proofs,
             settings: &case.solver.settings,
         }
     }

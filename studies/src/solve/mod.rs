@@ -29,8 +29,10 @@ pub(crate) mod safe_theorem;
 pub mod sensitivity;
 mod settlement;
 mod statics;
+mod stored_path;
 mod symmetric;
 
+pub(crate) use case::proved_case;
 pub use case::{label_of, solve_case, solve_cases, solve_followed, solve_input, solve_unless_cancelled};
 pub use case_input::CaseInput;
 pub use observer::{Observer, PathProgress, RunEvent, Unobserved, Watch};

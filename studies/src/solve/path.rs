@@ -1,16 +1,22 @@
-//! Solving a case along its path, while the certificate looks on.
+//! Solves a case along its path and checks every state. A stored path can take the place of the solver.
 
-use super::auto::{TaggedPathSolver, willing};
+use super::auto::{TaggedPathSolver, path_solvers, willing};
 use super::case_input::CaseInput;
+use super::ours::path_is_ours;
 use super::path_result::{Seen, path_result};
-use super::path_status::Progress;
+use super::path_status::{ELSEWHERE, Progress};
 use super::recorded::Recorder;
+use super::stored_path;
 use crate::results::CaseResult;
-use voussoir_core::certificate::{PathChain, PathChecker, tolerance};
-use voussoir_core::path::{PathObserver, PathProblem, PathState};
+use crate::results::stored_path::StoredPath;
+use std::sync::Arc;
+use voussoir_core::certificate::{Displaced, PathChain, PathChecker, tolerance};
+use voussoir_core::path::{PathAnswer, PathObserver, PathProblem, PathSolver, PathState, Unobserved};
 
 /// A path's certificate, with somebody else who looks on.
 struct Watched<'a> {
+    input: &'a CaseInput<'a>,
+    structure: Arc<PathProblem>,
     checker: PathChecker,
     chain: PathChain,
     observer: &'a mut dyn PathObserver,
@@ -33,9 +39,51 @@ impl PathObserver for Watched<'_> {
         self.ends[problem.load_steps[state.load_step].stage] = Some(state.clone());
         self.progress.add(problem, state);
         self.recorder.state(problem, state);
-        self.chain.add(state);
+        if self.chain.broken().is_none() {
+            // Gaps are not stored. The chain takes those that follow from forces and motions, now and when it is read back.
+            let gap = Displaced::new(&self.structure, state, self.input.settings.finite).gaps();
+            self.chain.add(&PathState { gap, ..state.clone() });
+        }
         self.ended |= !self.observer.state(problem, state);
         self.checker.state(problem, state) && !self.ended
+    }
+}
+
+impl<'a> Watched<'a> {
+    fn new(input: &'a CaseInput<'a>, observer: &'a mut dyn PathObserver) -> Result<Self, String> {
+        let finite = input.settings.finite;
+        let checker = PathChecker::certifying(input.assembly, input.stages, finite)?;
+        let structure = checker.structure().ok_or("no structure")?;
+        Ok(Watched {
+            input,
+            chain: PathChain::new(structure.clone(), finite),
+            structure,
+            checker,
+            observer,
+            ended: false,
+            ends: vec![None; input.stages.len()],
+            progress: Progress::default(),
+            recorder: Recorder::new(input),
+            malformed: Ok(()),
+        })
+    }
+
+    /// The result of a path whose states have been seen. If it is `believed`, parts that no check proves are kept.
+    fn result(
+        self,
+        problem: &PathProblem,
+        (tag, solver): (&str, &dyn PathSolver),
+        solved: PathAnswer,
+        believed: bool,
+    ) -> CaseResult {
+        let Watched { input, checker, chain, ends, progress, recorder, malformed, .. } = self;
+        if let Err(why) = malformed.and_then(|()| solved.check_form(problem)) {
+            return failed(tag, format!("{tag}: {why}"));
+        }
+        // A solver may ask for less, never for more.
+        let energy = solver.energy_tolerance().min(tolerance("path_energy").result);
+        let seen = Seen { checker, chain, ends, progress, energy, states: recorder.chosen(), believed };
+        path_result(input, tag, problem, solved, seen)
     }
 }
 
@@ -62,31 +110,41 @@ fn traced(
     (tag, solver): &TaggedPathSolver,
     observer: &mut dyn PathObserver,
 ) -> CaseResult {
-    let checker = match PathChecker::certifying(input.assembly, input.stages, input.settings.finite) {
-        Ok(checker) => checker,
+    let mut watched = match Watched::new(input, observer) {
+        Ok(watched) => watched,
         Err(why) => return failed(tag, why),
     };
-    let Some(structure) = checker.structure() else { return failed(tag, "no structure".into()) };
-    let recorder = Recorder::new(input);
-    let mut watched = Watched {
-        chain: PathChain::new(structure, input.settings.finite),
-        checker,
-        observer,
-        ended: false,
-        ends: vec![None; input.stages.len()],
-        progress: Progress::default(),
-        recorder,
-        malformed: Ok(()),
-    };
     let solved = solver.trace(problem, input.settings, &mut watched);
-    // A solver may ask for less, never for more.
-    let energy = solver.energy_tolerance().min(tolerance("path_energy").result);
-    let Watched { checker, chain, ends, progress, recorder, malformed, .. } = watched;
-    if let Err(why) = malformed.and_then(|()| solved.check_form(problem)) {
-        return failed(tag, format!("{tag}: {why}"));
+    watched.result(problem, (tag, solver.as_ref()), solved, path_is_ours(tag, input.settings))
+}
+
+/// The result that the states and witnesses of a stored path prove, without solving and without trust in who has stored them.
+/// The answer is said to come from the solver `tag`.
+///
+/// # Errors
+/// The first reason why they do not prove the end of the path.
+pub(crate) fn proved_by_stored_path(input: &CaseInput, tag: &str, path: &StoredPath) -> Result<CaseResult, String> {
+    let solvers = path_solvers(input);
+    let (_, solver) =
+        solvers.iter().find(|(own, _)| own == tag).ok_or_else(|| format!("\"{tag}\" does not solve this case"))?;
+    let problem = PathProblem::new(input.assembly, input.stages)?;
+    let mut unobserved = Unobserved;
+    let mut watched = Watched::new(input, &mut unobserved)?;
+    let mut states = stored_path::states(path, problem.contacts.len())?;
+    for (index, state) in states.iter_mut().enumerate() {
+        state.check_form(&problem).map_err(|why| format!("state {index}: {why}"))?;
+        state.gap = Displaced::new(&watched.structure, state, input.settings.finite).gaps();
+        watched.state(&problem, state);
     }
-    let seen = Seen { checker, chain, ends, progress, energy, states: recorder.chosen() };
-    path_result(input, tag, problem, solved, seen)
+    let solved = stored_path::answer(path, &states)?;
+    solved.check_form(&problem)?;
+    let result = watched.result(&problem, (tag, solver.as_ref()), solved, false);
+    if result.path.end_is_checked == Some(true) {
+        return Ok(result);
+    }
+    let why = result.certificate.failures.join("; ");
+    let why = why.strip_prefix(ELSEWHERE).map_or(why.as_str(), |why| why.trim_start_matches(": "));
+    Err(if why.is_empty() { "the states do not prove the end".into() } else { why.into() })
 }
 
 fn failed(tag: &str, why: String) -> CaseResult {

@@ -222,14 +222,18 @@ impl PathProof<'_> {
 
     /// The limit points that are proved, as the states give them.
     pub fn limit_points(&self) -> Vec<ProvenPeak> {
-        let mut states = self.maxima();
+        let maxima = self.maxima();
+        let mut states = maxima.clone();
         let end = &self.solved.state;
         let is_end = |state: &&PathState| state.load_step == end.load_step && state.factor == end.factor;
         if self.solved.status == Status::LimitPoint || self.settings.finite && !states.iter().any(is_end) {
             states.extend(self.of_step(end.load_step).find(is_end));
         }
         let peak = |state: &PathState| {
+            let is_next =
+                |own: &PathState| !std::ptr::eq(own, state) && maxima.iter().any(|next| std::ptr::eq(*next, own));
             let after = self.of_step(state.load_step).skip_while(|own| !std::ptr::eq(*own, state));
+            let after = after.take_while(|own| !is_next(own));
             let sense = sense(&self.problem.load_steps[state.load_step]);
             let lower = |a: f64, own: &PathState| if (own.factor - a) * sense < 0.0 { own.factor } else { a };
             let lowest = after.fold(state.factor, lower);

@@ -8,10 +8,10 @@ use super::limit_points::{
     add_last_limit_point, first_limit_point, followed_to, limit_point_end, limit_points, search_range,
 };
 use super::load_history::LoadHistory;
-use super::ours::path_is_ours;
 use super::path_proof::PathProof;
 use super::path_status::{Evidence, PathVerdict, Progress};
 use super::safe_theorem::safe_theorem_holds;
+use super::stored_path::stored;
 use super::symmetric::symmetric;
 use crate::results::convert::{field_entries, motion_entries};
 use crate::results::inelastic_state;
@@ -23,6 +23,7 @@ use crate::results::{
     StageResult, StateEntry,
 };
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use voussoir_core::certificate::{
     CentroidVelocity, Certificate, ContactForce, Hinge, Mechanism, MechanismPlace, PathChain, PathChecker,
     flow_residual, jumps, largest_jump, tolerance,
@@ -46,6 +47,8 @@ pub(super) struct Seen {
     pub energy: f64,
     /// States that are kept.
     pub states: Vec<StateEntry>,
+    /// True if parts of the answer that no check proves are kept.
+    pub believed: bool,
 }
 
 /// The result of a path.
@@ -54,7 +57,7 @@ pub(super) fn path_result(
     tag: &str,
     problem: &PathProblem,
     mut solved: PathAnswer,
-    Seen { checker, chain, ends, mut progress, energy, states }: Seen,
+    Seen { checker, chain, ends, mut progress, energy, states, believed }: Seen,
 ) -> CaseResult {
     let (assembly, finite) = (input.assembly, input.settings.finite);
     let associated = associated_load(input);
@@ -72,8 +75,8 @@ pub(super) fn path_result(
     let proof = PathProof { chain: &chain, problem, solved: &solved, settings: input.settings };
     let end = proof.end();
     let end_is_checked = end.is_ok();
-    let ours = path_is_ours(tag, input.settings);
-    if ours {
+    let stored = if end_is_checked { stored(&chain, &solved, input.stored_numbers) } else { None };
+    if believed {
         progress.add_peak(&solved.state);
     } else {
         let limit_points = proof.limit_points();
@@ -90,7 +93,7 @@ pub(super) fn path_result(
         hint: (solved.status, solved.load_step, solved.factor),
         range: search_range(input, problem, &solved),
         certificate: &certificate,
-        end: if ours { Ok(()) } else { end },
+        end: if believed { Ok(()) } else { end },
         field_is_proof: !finite && safe_theorem_holds(assembly),
         associated: associated.as_ref(),
     };
@@ -167,6 +170,7 @@ pub(super) fn path_result(
             end_is_checked: Some(end_is_checked && status.is_answer()),
             ..path_record(input, problem, solved, checker, &progress.history)
         },
+        stored_path: stored.filter(|_| end_is_checked && status.is_answer()).map(Arc::new),
         ..CaseResult::empty()
     }
 }

@@ -59,6 +59,7 @@ pub(super) fn build_case(id: usize, expanded: Expanded, known: &KnownKeys<'_>) -
             let differentiated = output["sensitivities"] == true;
             let output_accuracy = output["accuracy"] == "estimate";
             let output_fields = output["fields"] != false;
+            let output_path_proofs = if output["path_proofs"] == true { usize::MAX } else { 0 };
             if !output_fields && output["vtu"] == true {
                 notes.push("output.vtu is not used: output.fields = false leaves nothing to write there".into());
             }
@@ -80,6 +81,7 @@ pub(super) fn build_case(id: usize, expanded: Expanded, known: &KnownKeys<'_>) -
                 output_sensitivities,
                 output_accuracy,
                 output_fields,
+                output_path_proofs,
                 notes,
                 brief,
                 resolved,

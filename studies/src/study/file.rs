@@ -20,6 +20,10 @@ use serde_json::{Map, Value as Json};
 use std::collections::HashMap;
 use voussoir_core::plugin::{Parameter, Shape};
 
+/// Greatest number of cases of a study whose path proofs are written unless it asks for them or refuses them.
+const MOST_WITH_PATH_PROOFS: usize = 20;
+/// Greatest number of numbers in the states of a path that are then written: 4 MB.
+const SMALL_PATH_PROOF: usize = 200_000;
 /// Greatest number of different mistakes reported.
 const MAX_MISTAKES: usize = 100;
 /// Cases that are made before they are handed over.
@@ -78,7 +82,13 @@ impl StudyFile {
     /// The study with all its cases; every mistake at once.
     pub fn study(mut self) -> Result<Study, StudyError> {
         let mut cases = Vec::new();
-        make_cases(&self.expansion, &self.checked, &mut self.diagnostics, |case| cases.push(case));
+        let few = self.expansion.count() <= MOST_WITH_PATH_PROOFS;
+        make_cases(&self.expansion, &self.checked, &mut self.diagnostics, |mut case| {
+            if few && case.output_fields && case.resolved["output"]["path_proofs"].is_null() {
+                case.output_path_proofs = SMALL_PATH_PROOF;
+            }
+            cases.push(case);
+        });
         let Sweep { name, kind, outline, output, resolved, expansion, checked, .. } = self.sweep_of(cases.first())?;
         Ok(Study { name, kind, outline, output, cases, resolved, expansion, checked })
     }
@@ -138,6 +148,7 @@ fn output(table: &Json, cases: usize) -> Output {
         figures: Drawn::read(&table["figures"], cases),
         animation: flag("animation"),
         vtu: flag("vtu"),
+        path_proofs: table["path_proofs"].as_bool(),
         writers: table["writers"].as_array().map(tags),
         options: table["options"].as_object().cloned().unwrap_or_default(),
     }

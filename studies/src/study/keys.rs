@@ -138,6 +138,12 @@ static OUTPUT_KEYS: &[Parameter] = &[
         Need::Default("true"),
         "the forces and motions that prove each answer; false: they are checked and not kept, and drawings show the scene alone",
     ),
+    key(
+        "path_proofs",
+        Shape::Boolean,
+        Need::Optional("paths of up to 200,000 numbers of studies of up to 20 cases"),
+        "path_proofs.jsonl: the states and witnesses of each path that prove its end without a solver; true: of all paths, false: of none",
+    ),
 ];
 
 /// `[output]` of studies without writers.

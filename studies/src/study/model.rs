@@ -63,6 +63,8 @@ pub struct Case {
     pub output_accuracy: bool,
     /// Whether results keep the forces and motions that prove them.
     pub output_fields: bool,
+    /// Most numbers in the states of a path for which they are kept with the witnesses that prove its end; 0 keeps none.
+    pub output_path_proofs: usize,
     /// Keys that were given and have no influence.
     pub notes: Vec<String>,
     /// One of many made from another case, which has the weights that both have: its results leave them out.
@@ -132,6 +134,8 @@ pub struct Output {
     pub animation: bool,
     /// Files for ParaView.
     pub vtu: bool,
+    /// True if path_proofs.jsonl is asked for, false if it is not wanted; `None` leaves it to the number of cases.
+    pub path_proofs: Option<bool>,
     /// Tags of the writers that are wanted; all where there is no list.
     pub writers: Option<Vec<String>>,
     /// Options of writers by tag, defaults filled in.

@@ -1,9 +1,10 @@
 //! Checking results against the study that they claim to answer.
 //!
-//! Reads only `results.json` and `resolved.toml`. First what the stored numbers prove by themselves, without a
-//! solver: certificate, bounds, mechanism, thrust line, stages, equilibrium of the last state of a path. Then every
-//! number and word against solving the case again, because a path's history is not stored: bit by bit if the same program
-//! on the same kind of processor has written them, else by their claims. Counters, seconds and the version are not compared.
+//! Reads `results.json`, `resolved.toml` and `path_proofs.jsonl`. First what the stored numbers prove by themselves, without a
+//! solver: certificate, bounds, mechanism, thrust line, stages, equilibrium of the last state of a path. If the states of a path are
+//! stored, they must prove its end and every number that follows from them. Else every number and word is compared with solving the
+//! case again: bit by bit if the same program on the same kind of processor has written them, else by their claims. Counters, seconds
+//! and the version are not compared.
 
 mod agreement;
 pub mod case;
@@ -16,6 +17,7 @@ mod limit;
 mod meaning;
 mod mechanism;
 mod path;
+pub mod path_proofs;
 pub mod repeat;
 mod same_study;
 mod study;
@@ -25,4 +27,4 @@ pub mod tolerances;
 pub use agreement::Agreement;
 pub use fit::misfits;
 pub use same_study::first_difference;
-pub use study::{StoredCheck, hash_finding, solve_again, verify, verify_against};
+pub use study::{StoredCheck, hash_finding, solve_again, solve_others_again, verify, verify_against};

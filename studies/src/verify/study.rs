@@ -22,14 +22,35 @@ pub fn verify(study: &Study, results: &StudyResults) -> Vec<(usize, String)> {
 
 /// The cases that a set of results must hold, solved again.
 pub fn solve_again(study: &Study, results: &StudyResults, jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {
+    solve_others_again(study, results, Vec::new(), jobs, observer)
+}
+
+/// The same, if some of the cases are `proved` already: their results take the place of solving again.
+pub fn solve_others_again(
+    study: &Study,
+    results: &StudyResults,
+    mut proved: Vec<CaseResult>,
+    jobs: usize,
+    observer: &dyn Observer,
+) -> Vec<CaseResult> {
+    let kind = kind(&study.kind);
+    if kind.is_some_and(|kind| kind.makes_cases()) {
+        // Its search starts from all cases.
+        proved.clear();
+    }
     let wanted = match &results.only_cases {
         // Each once, however long the list.
         Some(ids) => ids.iter().copied().filter(|id| *id < study.cases.len()).collect::<BTreeSet<_>>(),
         None => (0..study.cases.len()).collect(),
     };
-    let wanted: Vec<usize> = wanted.into_iter().collect();
-    observer.begins(wanted.len());
-    kind(&study.kind).map(|kind| kind.solve(study, &wanted, jobs, observer)).unwrap_or_default()
+    proved.retain(|case| wanted.contains(&case.label.id));
+    let done: BTreeSet<usize> = proved.iter().map(|case| case.label.id).collect();
+    let rest: Vec<usize> = wanted.difference(&done).copied().collect();
+    observer.begins(rest.len());
+    let mut again = kind.map(|kind| kind.solve(study, &rest, jobs, observer)).unwrap_or_default();
+    again.extend(proved);
+    again.sort_by_key(|case| case.label.id);
+    again
 }
 
 /// What is wrong with results as they are stored, against the same cases solved `again`; an error where they are
@@ -49,6 +70,8 @@ pub struct StoredCheck<'a> {
     results: &'a StudyResults,
     agreement: Agreement,
     again: BTreeMap<usize, &'a CaseResult>,
+    /// Cases whose results were proved, not solved again.
+    proved: BTreeSet<usize>,
     wrong: Vec<(usize, String)>,
     seen: usize,
 }
@@ -56,11 +79,21 @@ pub struct StoredCheck<'a> {
 impl<'a> StoredCheck<'a> {
     /// Of these results, against the same cases solved `again`.
     pub fn new(study: &'a Study, results: &'a StudyResults, again: &'a [CaseResult]) -> Self {
+        Self::with_proved(study, results, again, BTreeSet::new())
+    }
+
+    /// The same, if some of the results `again` were proved by stored paths.
+    pub fn with_proved(
+        study: &'a Study,
+        results: &'a StudyResults,
+        again: &'a [CaseResult],
+        proved: BTreeSet<usize>,
+    ) -> Self {
         let agreement = Agreement::of(&results.origin, &study.resolved);
         let mut wrong = study_findings(study, results, agreement);
         wrong.extend(id_findings(study, results, again));
         let again = again.iter().map(|case| (case.label.id, case)).collect();
-        StoredCheck { study, results, agreement, again, wrong, seen: 0 }
+        StoredCheck { study, results, agreement, again, proved, wrong, seen: 0 }
     }
 
     /// The next entry of the list of cases.
@@ -85,6 +118,10 @@ impl<'a> StoredCheck<'a> {
     /// The differences of an entry from its case solved again.
     fn against(&self, case: &Case, (entry, result): (&Json, &CaseResult), again: &CaseResult) -> Vec<String> {
         let mut found = Vec::new();
+        let agreement = match self.proved.contains(&result.label.id) {
+            true => Agreement::Processor,
+            false => self.agreement,
+        };
         let mut at_stored_values = None;
         // Searches of two processors choose values that differ by rounding: the stored ones are solved again.
         if self.agreement != Agreement::Bits && result.label.parameters != again.label.parameters {
@@ -95,7 +132,7 @@ impl<'a> StoredCheck<'a> {
             at_stored_values = Some(solve_case(case));
         }
         match serde_json::to_value(at_stored_values.as_ref().unwrap_or(again)) {
-            Ok(again) => found.extend(self.agreement.differences(entry, &again)),
+            Ok(again) => found.extend(agreement.differences(entry, &again)),
             Err(why) => found.push(why.to_string()),
         }
         found

@@ -15,6 +15,7 @@ pub(crate) mod live;
 pub mod markdown;
 pub(crate) mod page;
 pub mod parquet;
+pub mod path_proofs;
 #[cfg(feature = "png")]
 pub mod png;
 pub mod record;

@@ -1,8 +1,10 @@
-//! The tables beside results.json of very many cases, row by row: those that a study asks for, by their file's name.
+//! The files beside results.json of very many cases, row by row: those that a study asks for, by their name.
 
+use super::path_proofs::write_path_proof;
 use super::results_parquet::{FILE, ParquetRows, SweptColumn, TAG};
 use super::stream::CsvStream;
 use crate::results::CaseResult;
+use crate::results::stored_path::PATH_PROOFS;
 use crate::study::Sweep;
 use std::io::{self, Write};
 
@@ -14,6 +16,8 @@ pub enum StreamedTable<W: Write> {
     Csv(Box<CsvStream<W>>),
     /// results.parquet.
     Parquet(Box<ParquetRows<W>>),
+    /// path_proofs.jsonl.
+    PathProofs(W),
 }
 
 /// Names of the tables that a sweep asks for.
@@ -21,17 +25,19 @@ pub fn wanted(sweep: &Sweep) -> Vec<&'static str> {
     let wants = |tag: &str, by_default| {
         sweep.output.writers.as_ref().map_or(by_default, |tags| tags.iter().any(|wanted| wanted == tag))
     };
-    let tables = [(CSV, wants("results_csv", true)), (FILE, wants(TAG, false))];
+    let proofs = sweep.output.path_proofs == Some(true);
+    let tables = [(PATH_PROOFS, proofs), (CSV, wants("results_csv", true)), (FILE, wants(TAG, false))];
     tables.into_iter().filter(|(_, wanted)| *wanted).map(|(name, _)| name).collect()
 }
 
 /// Names of all tables.
-pub const TABLES: [&str; 2] = [CSV, FILE];
+pub const TABLES: [&str; 3] = [PATH_PROOFS, CSV, FILE];
 
 impl<W: Write> StreamedTable<W> {
     /// Begins the table of this name.
     pub fn new(name: &str, out: W, sweep: &Sweep) -> io::Result<Self> {
         Ok(match name {
+            PATH_PROOFS => StreamedTable::PathProofs(out),
             FILE => {
                 let meanings = sweep.swept_keys();
                 let key = |(key, numeric): (String, bool)| SweptColumn { name: meanings.column(&key), key, numeric };
@@ -48,6 +54,7 @@ impl<W: Write> StreamedTable<W> {
         match self {
             StreamedTable::Csv(rows) => rows.add(case),
             StreamedTable::Parquet(rows) => rows.add(case),
+            StreamedTable::PathProofs(out) => write_path_proof(out, case),
         }
     }
 
@@ -56,6 +63,7 @@ impl<W: Write> StreamedTable<W> {
         match self {
             StreamedTable::Csv(rows) => rows.finish(),
             StreamedTable::Parquet(rows) => rows.finish(),
+            StreamedTable::PathProofs(out) => Ok(out),
         }
     }
 }

@@ -1,5 +1,6 @@
 //! What a writer is.
 
+use super::path_proofs::path_proofs;
 use super::study_output::StudyOutput;
 use crate::config::default_table::default_table;
 use serde_json::Value as Json;
@@ -43,5 +44,6 @@ pub fn written(study: &StudyOutput) -> Vec<(String, Vec<u8>)> {
         None => card(PluginKind::Writer, tag).map(default_table).unwrap_or_default(),
     };
     let chosen = writers().into_iter().filter(|entry| wanted(entry.tag));
-    chosen.flat_map(|entry| entry.writer.files(study, &options(entry.tag))).collect()
+    let files = chosen.flat_map(|entry| entry.writer.files(study, &options(entry.tag)));
+    files.chain(path_proofs(study.results)).collect()
 }

@@ -10,6 +10,7 @@ mod labels;
 mod left_out;
 mod lower_bound;
 mod pages;
+mod path_proofs;
 mod report;
 mod round_trip;
 mod snaps;

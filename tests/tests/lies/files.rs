@@ -2,11 +2,16 @@
 
 use super::run::{liar, quiet};
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::io::{Cursor, Read};
 use std::path::{Path, PathBuf};
 use voussoir::cli::main_from;
 use voussoir::conformance::lies::{KnownScene, Lie, scenes, solver_keys};
 use voussoir::core::plugin::PluginKind;
+use voussoir::kinds::{RunRequest, StoredResults, read_study};
+use voussoir::results::stored_path::PATH_PROOFS;
 use voussoir::results::{CaseResult, StudyResults};
+use voussoir::solve::Unobserved;
 use voussoir::solve_case;
 use voussoir::study::load;
 use voussoir::verify::{solve_again, verify_against};
@@ -154,4 +159,30 @@ fn exit_codes_tell_a_lie() {
         assert_eq!(voussoir(&["verify", out.to_str().expect("text")]), 1, "{name} {lie}, forged");
     }
     std::fs::remove_dir_all(&folder).expect("removed");
+}
+
+/// The result of a solver from another project is verified by its stored states alone: the same program does not solve it again either.
+#[test]
+fn the_path_of_a_stranger_is_verified_without_its_solver() {
+    let mut proved = 0;
+    for scene in scenes(PluginKind::PathSolver) {
+        let Ok(study) = read_study(&scene.study(&liar(PluginKind::PathSolver, "event_path", "no lie")), "a.toml", &[])
+        else {
+            continue;
+        };
+        let request = RunRequest { wanted: vec![0], jobs: 1, ..RunRequest::default() };
+        let files: BTreeMap<String, Vec<u8>> = study.run(&request, &Unobserved).files.into_iter().collect();
+        if !files.contains_key(PATH_PROOFS) {
+            continue;
+        }
+        let file = |name: &str| files.get(name).map(|bytes| Box::new(Cursor::new(bytes.clone())) as Box<dyn Read>);
+        let found = study.verify_stored(&StoredResults { jobs: 1, file: &file }, &Unobserved).expect("results");
+        let results: StudyResults = serde_json::from_slice(&files["results.json"]).expect("results");
+        // No state proves that a mechanism is not the only one.
+        let more = results.cases[0].mechanism.as_ref().is_some_and(|mechanism| mechanism.unique.is_some());
+        let paths = [1, usize::from(!more)];
+        assert_eq!((found.findings, found.files, found.paths), (vec![], vec![], paths), "{}", scene.name);
+        proved += 1;
+    }
+    assert!(proved >= 5, "{proved} paths of a stranger");
 }

@@ -46,7 +46,7 @@ impl LoadedStudy for PointStudy {
 
     fn run(&self, request: &RunRequest, observer: &dyn Observer) -> RunOutput {
         let stored = match &request.stored {
-            Some([results, _]) if request.keep => stored_ids(&serde_json::from_str(results).unwrap_or_default()),
+            Some([results, ..]) if request.keep => stored_ids(&serde_json::from_str(results).unwrap_or_default()),
             _ => Vec::new(),
         };
         let others: Vec<usize> = stored.into_iter().filter(|id| !request.wanted.contains(id)).collect();
@@ -100,6 +100,7 @@ impl LoadedStudy for PointStudy {
             findings,
             files: stored.altered(made.iter().map(|(name, text)| (name.as_str(), text.as_bytes())), agreement),
             agreement,
+            paths: [0, 0],
             made: made.into_iter().map(|(name, _)| name).collect(),
             own: driven.len(),
             of: self.cases.len(),

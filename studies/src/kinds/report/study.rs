@@ -208,6 +208,7 @@ impl LoadedStudy for ReportStudy {
             findings,
             files: stored.altered(made.files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())), agreement),
             agreement,
+            paths: [0, 0],
             made: made.files.into_iter().map(|(name, _)| name).collect(),
             own: self.contents.claims.len(),
             of: self.contents.claims.len(),

@@ -1,0 +1,90 @@
+//! The states and witnesses of a path as they are stored: a line of `path_proofs.jsonl`, and an entry of journals and parts.
+//!
+//! Everything that follows from these numbers and the study is left out: gaps, openings, modes, residuals.
+
+use serde::{Deserialize, Serialize};
+use voussoir_core::limit::Status;
+use voussoir_core::path::{FarkasVector, PathRate, PointMode};
+
+/// The file of a result folder with a line for each path whose end is proved.
+pub const PATH_PROOFS: &str = "path_proofs.jsonl";
+
+/// A line of the file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PathLine<P> {
+    /// Id of the case.
+    pub id: usize,
+    /// The hash of the case, as in results.json.
+    pub case_hash: String,
+    /// Its path: a [`StoredPath`].
+    pub path: P,
+}
+
+/// The states of a path and the proof of its end.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StoredPath {
+    /// The status that they prove.
+    pub status: Status,
+    /// Index of the state that the status is about.
+    pub end: usize,
+    /// Velocity of every body about its pole, of a mechanism.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub motion: Option<Vec<[f64; 3]>>,
+    /// Contact forces of a ray \[N\].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ray: Option<Vec<[f64; 2]>>,
+    /// All states in order, without the unloaded structure.
+    pub states: Vec<StoredState>,
+    /// Statements about rates.
+    pub witnesses: Vec<StoredWitness>,
+}
+
+/// A state in equilibrium.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StoredState {
+    /// Index of the load step: stages in order, in each first gravity, then settlements and loads.
+    pub load_step: usize,
+    /// λ of that load step.
+    pub factor: f64,
+    /// Work-conjugate displacement of the load \[m\].
+    pub displacement: f64,
+    /// Elastic energy, energy dissipated so far, and work of loads so far \[J\].
+    pub energies: [f64; 3],
+    /// \[r_n, r_t\] of every contact point \[N\].
+    pub force: Vec<[f64; 2]>,
+    /// \[u_x, u_y, θ\] of every body about its pole.
+    pub motion: Vec<[f64; 3]>,
+}
+
+/// A statement about the rates at a state.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StoredWitness {
+    /// Index of the state.
+    pub state: usize,
+    /// The statement.
+    pub claim: StoredClaim,
+}
+
+/// What a witness states.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StoredClaim {
+    /// These rates solve the rate problem.
+    Rate(PathRate),
+    /// No rate raises the load: the nodes of a tree of decisions, each before its branches.
+    NoneRises(Vec<StoredNode>),
+}
+
+/// A node of a tree of decisions. A list of nodes has no depth that a reader could exceed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StoredNode {
+    /// A leaf with its multipliers.
+    Leaf(FarkasVector),
+    /// A contact point, and the mode of each of the branches that follow.
+    Split(usize, Vec<PointMode>),
+}

@@ -1,0 +1,147 @@
+//! Paths to and from the form in which they are stored.
+
+use crate::results::stored_path::{StoredClaim, StoredNode, StoredPath, StoredState, StoredWitness};
+use voussoir_core::certificate::{PathChain, in_range};
+use voussoir_core::limit::Counters;
+use voussoir_core::path::{ModeTree, PathAnswer, PathState, RateClaim, Witness};
+
+/// Most decisions one below another in a tree.
+const MAX_DEPTH: usize = 1_000;
+
+/// The states of a chain with the proof of its end; `None` if the end is not one of the states, or if they have more than `most` numbers.
+pub(super) fn stored(chain: &PathChain, solved: &PathAnswer, most: usize) -> Option<StoredPath> {
+    let states: Vec<&PathState> = chain.states().skip(1).collect();
+    let numbers = |state: &&PathState| state.force.as_flattened().len() + state.motion.as_flattened().len();
+    if states.iter().map(numbers).sum::<usize>() > most {
+        return None;
+    }
+    let place = |wanted: &PathState| {
+        let same = |own: &&PathState| {
+            own.load_step == wanted.load_step
+                && own.factor == wanted.factor
+                && own.force == wanted.force
+                && own.motion == wanted.motion
+        };
+        states.iter().rposition(same)
+    };
+    let witness = |own: &Witness| Some(StoredWitness { state: place(&own.state)?, claim: stored_claim(&own.claim) });
+    Some(StoredPath {
+        status: solved.status,
+        end: place(&solved.state)?,
+        motion: solved.motion.clone(),
+        ray: solved.ray.clone(),
+        witnesses: solved.witnesses.iter().filter_map(witness).collect(),
+        states: states.iter().map(|state| stored_state(state)).collect(),
+    })
+}
+
+fn stored_state(state: &PathState) -> StoredState {
+    StoredState {
+        load_step: state.load_step,
+        factor: state.factor,
+        displacement: state.displacement,
+        energies: [state.stored, state.dissipated, state.work],
+        force: state.force.clone(),
+        motion: state.motion.clone(),
+    }
+}
+
+fn stored_claim(claim: &RateClaim) -> StoredClaim {
+    let tree = match claim {
+        RateClaim::Rate(rate) => return StoredClaim::Rate(rate.clone()),
+        RateClaim::NoneRises(tree) => tree,
+    };
+    let (mut nodes, mut left) = (Vec::new(), vec![tree]);
+    while let Some(tree) = left.pop() {
+        nodes.push(match tree {
+            ModeTree::Leaf(vector) => StoredNode::Leaf(vector.clone()),
+            ModeTree::Split { contact, branches } => {
+                left.extend(branches.iter().rev().map(|(_, branch)| branch));
+                StoredNode::Split(*contact, branches.iter().map(|(mode, _)| *mode).collect())
+            }
+        });
+    }
+    StoredClaim::NoneRises(nodes)
+}
+
+/// The states of a stored path. Gaps are left out: they follow from forces and motions.
+///
+/// # Errors
+/// If a number is too great to be checked.
+pub(super) fn states(path: &StoredPath, points: usize) -> Result<Vec<PathState>, String> {
+    let state = |(index, own): (usize, &StoredState)| {
+        let mut numbers = own.force.as_flattened().iter().chain(own.motion.as_flattened()).chain(&own.energies);
+        if !numbers.all(|number| in_range(*number)) || !in_range(own.factor) || !in_range(own.displacement) {
+            return Err(format!("state {index}: a number is not finite, or too great to be checked"));
+        }
+        let [stored, dissipated, work] = own.energies;
+        Ok(PathState {
+            load_step: own.load_step,
+            factor: own.factor,
+            force: own.force.clone(),
+            gap: vec![[0.0; 2]; points],
+            motion: own.motion.clone(),
+            stored,
+            dissipated,
+            work,
+            displacement: own.displacement,
+            ..PathState::default()
+        })
+    };
+    path.states.iter().enumerate().map(state).collect()
+}
+
+/// The answer that the states of a stored path prove.
+///
+/// # Errors
+/// If an index or a tree of decisions has no meaning.
+pub(super) fn answer(path: &StoredPath, states: &[PathState]) -> Result<PathAnswer, String> {
+    let at = |index: usize| states.get(index).cloned().ok_or(format!("there is no state {index}"));
+    let witness = |own: &StoredWitness| {
+        let claim = match &own.claim {
+            StoredClaim::Rate(rate) => RateClaim::Rate(rate.clone()),
+            StoredClaim::NoneRises(nodes) => {
+                let mut left = nodes.iter();
+                let tree = tree(&mut left, 0)?;
+                if left.next().is_some() {
+                    return Err("a tree of decisions has more nodes than branches".to_string());
+                }
+                RateClaim::NoneRises(tree)
+            }
+        };
+        Ok(Witness { state: at(own.state)?, claim })
+    };
+    let state = at(path.end)?;
+    Ok(PathAnswer {
+        status: path.status,
+        load_step: state.load_step,
+        factor: Some(state.factor),
+        state,
+        last: None,
+        motion: path.motion.clone(),
+        unique: None,
+        limit_points: Vec::new(),
+        limit_point_end: None,
+        stability: Vec::new(),
+        branchings: Vec::new(),
+        ray: path.ray.clone(),
+        events: Vec::new(),
+        witnesses: path.witnesses.iter().map(witness).collect::<Result<_, _>>()?,
+        counters: Counters::new(),
+        notes: Vec::new(),
+    })
+}
+
+fn tree<'a>(left: &mut impl Iterator<Item = &'a StoredNode>, depth: usize) -> Result<ModeTree, String> {
+    if depth > MAX_DEPTH {
+        return Err(format!("a tree of decisions is deeper than {MAX_DEPTH}"));
+    }
+    match left.next().ok_or("a tree of decisions has fewer nodes than branches")? {
+        StoredNode::Leaf(vector) => Ok(ModeTree::Leaf(vector.clone())),
+        StoredNode::Split(contact, modes) => {
+            let mut branch = |mode: &_| Ok((*mode, tree(left, depth + 1)?));
+            let branches = modes.iter().map(&mut branch).collect::<Result<_, String>>()?;
+            Ok(ModeTree::Split { contact: *contact, branches })
+        }
+    }
+}
