@@ -65,6 +65,10 @@ pub(super) fn plateau(tracer: &mut Tracer, piece: &Piece, direction: f64) -> Opt
     }
     match limit_point_test(&mut tracer.system, &start, direction) {
         LimitPointTest::None => Some(Plateau { moved: state, unproved: None }),
+        // The tangents of a loading set are linear: their one rate has a constant factor.
+        LimitPointTest::Unknown(_) if !tracer.system.laws.responses.is_empty() || start.yields() => {
+            Some(Plateau { moved: state, unproved: None })
+        }
         LimitPointTest::Unknown(why) => Some(Plateau { moved: state, unproved: Some(why) }),
         LimitPointTest::Tangent(..) => None,
     }
