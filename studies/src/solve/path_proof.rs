@@ -7,7 +7,7 @@ use super::limit_points::asked_end;
 use voussoir_core::certificate::{PathChain, ray_residual, tolerance};
 use voussoir_core::limit::Status;
 use voussoir_core::path::{
-    LoadStep, LoadStepEnd, PathAnswer, PathProblem, PathSettings, PathState, ProvenPeak, Witness,
+    LimitPointEnd, LoadStep, LoadStepEnd, PathAnswer, PathProblem, PathSettings, PathState, ProvenPeak, Witness,
 };
 
 /// Share of the greatest limit point to which the load has fallen at the end of the range.
@@ -73,7 +73,7 @@ impl PathProof<'_> {
         let motion = self.solved.motion.as_deref().ok_or("no mechanism")?;
         let witnesses: Vec<&Witness> = self.witnesses(state).collect();
         self.chain.check_collapse(state, motion, &witnesses)?;
-        if self.is_greatest(state) { Ok(()) } else { Err("the load is greater at an earlier state".into()) }
+        self.is_greatest(state)
     }
 
     /// A mechanism that refutes equilibrium by itself. On another path friction that is not associated may carry the dead load.
@@ -95,20 +95,31 @@ impl PathProof<'_> {
         self.chain.check_ray(self.witnesses(state).next().ok_or("no witness of the ray")?)
     }
 
-    /// The first limit point of a stage that ends there.
+    /// A limit point with the reason why the path ends at it: the question, a joint that is lost, or that no rate leads on.
     fn ends_at_limit_point(&self) -> Result<(), String> {
         let state = &self.solved.state;
-        if self.solved.limit_point_end.is_some() {
-            return Err("the reason why the path ends at its limit point is not checked".into());
-        }
-        if asked_end(self.settings, &self.problem.load_steps[state.load_step]).is_none() {
-            return Err("the stage does not end at its first limit point".into());
-        }
+        let asked = asked_end(self.settings, &self.problem.load_steps[state.load_step]);
         let earlier = |own: &&PathState| own.load_step == state.load_step && own.factor != state.factor;
-        if self.maxima().iter().any(earlier) {
+        if asked.is_some() && self.maxima().iter().any(earlier) {
             return Err("another limit point comes first".into());
         }
-        self.limit_point(state)
+        match self.solved.limit_point_end {
+            Some(LimitPointEnd::JointLost) => {
+                self.chain.check_joint_lost()?;
+                self.is_last(state)?;
+                self.is_greatest(state)?;
+                self.check_falls()
+            }
+            Some(LimitPointEnd::None) => {
+                self.chain.check_none_continues(&self.solved.witnesses)?;
+                self.is_greatest(state)?;
+                self.limit_point(state)?;
+                self.check_falls()
+            }
+            None if asked.is_none() => Err("the stage does not end at its first limit point".into()),
+            end if end.is_some() && end != asked => Err("the path ends at its limit point for another reason".into()),
+            _ => self.limit_point(state),
+        }
     }
 
     /// No rate raises the load at a state of the chain.
@@ -127,10 +138,18 @@ impl PathProof<'_> {
         self.chain.states().filter(move |own| own.load_step == load_step)
     }
 
-    /// True if no state of its load step has a greater load, in the sense of the step.
-    fn is_greatest(&self, state: &PathState) -> bool {
+    /// No state of its load step has a greater load, in the sense of the step.
+    fn is_greatest(&self, state: &PathState) -> Result<(), String> {
         let sense = sense(&self.problem.load_steps[state.load_step]);
-        self.of_step(state.load_step).all(|own| (own.factor - state.factor) * sense <= SAME * state.factor.abs())
+        let lower = |own: &PathState| (own.factor - state.factor) * sense <= SAME * state.factor.abs();
+        if self.of_step(state.load_step).all(lower) { Ok(()) } else { Err("the load is greater at another state".into()) }
+    }
+
+    /// The chain ends at a state.
+    fn is_last(&self, state: &PathState) -> Result<(), String> {
+        let last = self.chain.states().last();
+        let ends = last.is_some_and(|last| last.load_step == state.load_step && last.factor == state.factor);
+        if ends { Ok(()) } else { Err("the path goes on behind its limit point".into()) }
     }
 
     /// States of the chain behind which the load falls after it has risen, each by more than a load that stands still.
@@ -197,15 +216,16 @@ impl PathProof<'_> {
     }
 
     /// After a state the load never exceeds it up to the end of the range: the end that the stage asks for, else half of this load, counted
-    /// from the start of its load step, or a displacement of one span.
+    /// from the start of its load step, or a displacement of one span. A joint that is lost ends the range too.
     fn falls_after(&self, state: &PathState) -> Result<(), String> {
         let step = &self.problem.load_steps[state.load_step];
         let of_step = || self.of_step(state.load_step);
         let (Some(first), Some(last)) = (of_step().next(), of_step().last()) else {
             return Err("no state of the load step".into());
         };
-        if !self.is_greatest(state) {
-            return Err("the load exceeds the limit point".into());
+        self.is_greatest(state)?;
+        if self.chain.check_joint_lost().is_ok() {
+            return Ok(());
         }
         let ended = match self.settings.stop(step.stage) {
             [None, None] => {

@@ -71,7 +71,7 @@ pub(super) fn path_result(
         progress.add_peak(&solved.state);
     } else {
         let limit_points = proof.limit_points();
-        leave_out_unproved(&mut solved);
+        leave_out_unproved(&mut solved, end_is_checked);
         solved.limit_points = limit_points;
         if finite {
             // The rate just behind a limit point is not checked.
@@ -165,9 +165,9 @@ pub(super) fn path_result(
 }
 
 /// Removes the parts of an answer that no check proves. They are not believed if the solver is from outside this project.
-fn leave_out_unproved(solved: &mut PathAnswer) {
+fn leave_out_unproved(solved: &mut PathAnswer, end_is_checked: bool) {
     solved.limit_points.clear();
-    solved.limit_point_end = None;
+    solved.limit_point_end = solved.limit_point_end.filter(|_| end_is_checked);
     solved.branchings.clear();
     solved.stability.clear();
     solved.events.clear();

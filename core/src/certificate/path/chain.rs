@@ -30,18 +30,18 @@ const MECHANISM: f64 = 1e-3;
 
 /// A state of a chain.
 #[derive(Debug, Clone)]
-struct Link {
-    state: PathState,
+pub(super) struct Link {
+    pub(super) state: PathState,
     /// Opening of every contact point \[m\].
-    openings: Vec<f64>,
+    pub(super) openings: Vec<f64>,
 }
 
 /// A chain of states.
 #[derive(Debug)]
 pub struct PathChain {
-    structure: Arc<PathProblem>,
-    finite: bool,
-    links: Vec<Link>,
+    pub(super) structure: Arc<PathProblem>,
+    pub(super) finite: bool,
+    pub(super) links: Vec<Link>,
     /// Distance of the increments so far from the flow of laws \[m\].
     drift: f64,
     /// Why the chain ends before its last state.
@@ -54,18 +54,37 @@ fn deformation(state: &PathState) -> f64 {
     state.gap.as_flattened().iter().copied().chain(moves).fold(0.0, |a: f64, v| a.max(v.abs()))
 }
 
-fn greatest_force(state: &PathState) -> f64 {
+pub(super) fn greatest_force(state: &PathState) -> f64 {
     state.force.iter().map(|r| r[0].hypot(r[1])).fold(0.0, f64::max)
 }
 
 /// Returns true if two records are of one state.
-fn is_same(a: &PathState, b: &PathState) -> bool {
+pub(super) fn is_same(a: &PathState, b: &PathState) -> bool {
     a.load_step == b.load_step && a.factor == b.factor && a.force == b.force && a.motion == b.motion
 }
 
 /// Returns true if a load step has neither a load nor a settlement, so that its factor means nothing.
 fn is_idle(problem: &PathProblem, step: &LoadStep) -> bool {
     step.loading.settlements.is_empty() && problem.wrenches(&step.loading).iter().all(|w| *w == [0.0; 3])
+}
+
+/// The mean of two neighbours.
+pub(super) fn midway(problem: &PathProblem, last: &PathState, state: &PathState) -> PathState {
+    let mean2 = |a: &[[f64; 2]], b: &[[f64; 2]]| -> Vec<[f64; 2]> {
+        a.iter().zip(b).map(|(a, b)| [0, 1].map(|i| 0.5 * (a[i] + b[i]))).collect()
+    };
+    // Applied loads are linear in the factor, whichever load step the last state is in.
+    let applied = |of: &PathState| problem.applied(of.load_step, of.factor)[state.load_step];
+    let start = problem.load_steps[state.load_step].start;
+    let motion = last.motion.iter().zip(&state.motion);
+    PathState {
+        load_step: state.load_step,
+        factor: start + 0.5 * (applied(last) + applied(state)),
+        force: mean2(&last.force, &state.force),
+        gap: mean2(&last.gap, &state.gap),
+        motion: motion.map(|(a, b)| [0, 1, 2].map(|i| 0.5 * (a[i] + b[i]))).collect(),
+        ..PathState::default()
+    }
 }
 
 impl PathChain {
@@ -181,21 +200,7 @@ impl PathChain {
     /// The mean of two neighbours is nearly in equilibrium.
     fn check_midway(&self, last: &PathState, state: &PathState) -> Result<(), String> {
         let problem = &*self.structure;
-        let mean2 = |a: &[[f64; 2]], b: &[[f64; 2]]| -> Vec<[f64; 2]> {
-            a.iter().zip(b).map(|(a, b)| [0, 1].map(|i| 0.5 * (a[i] + b[i]))).collect()
-        };
-        // Applied loads are linear in the factor, whichever load step the last state is in.
-        let applied = |of: &PathState| problem.applied(of.load_step, of.factor)[state.load_step];
-        let start = problem.load_steps[state.load_step].start;
-        let motion = last.motion.iter().zip(&state.motion);
-        let midway = PathState {
-            load_step: state.load_step,
-            factor: start + 0.5 * (applied(last) + applied(state)),
-            force: mean2(&last.force, &state.force),
-            gap: mean2(&last.gap, &state.gap),
-            motion: motion.map(|(a, b)| [0, 1, 2].map(|i| 0.5 * (a[i] + b[i]))).collect(),
-            ..PathState::default()
-        };
+        let midway = midway(problem, last, state);
         let left = Displaced::new(problem, &midway, true).unbalanced();
         let bodies = left.iter().zip(&problem.bodies).filter(|(_, body)| !body.held);
         let worst = bodies.map(|(w, _)| w[0].hypot(w[1]).max(w[2].abs() / problem.length)).fold(0.0, f64::max);
@@ -214,17 +219,19 @@ impl PathChain {
     }
 
     /// A state of the chain with the equations of its rates and the modes of its points.
-    fn at(&self, own: &PathState) -> Result<(&Link, RateEquations, Vec<Vec<ModeCone>>), String> {
+    pub(super) fn at(&self, own: &PathState) -> Result<(&Link, RateEquations, Vec<Vec<ModeCone>>), String> {
         let link =
             self.links.iter().rev().find(|link| is_same(&link.state, own)).ok_or("the state is not on the path")?;
-        let state = &link.state;
-        let equations = RateEquations::new(&self.structure, state, self.finite)?;
+        let equations = RateEquations::new(&self.structure, &link.state, self.finite)?;
+        Ok((link, equations, self.modes(&link.state, &link.openings)))
+    }
+
+    /// The modes that all points may take at a state.
+    pub(super) fn modes(&self, state: &PathState, openings: &[f64]) -> Vec<Vec<ModeCone>> {
         let rounding = if self.finite { 512.0 * f64::EPSILON * self.structure.length } else { 0.0 };
         let (slack, closed) = (ACTIVE * greatest_force(state), CLOSED * deformation(state) + rounding);
-        let points = self.structure.contacts.iter().zip(&state.force).zip(&link.openings);
-        let modes: Vec<Vec<ModeCone>> =
-            points.map(|((contact, force), opening)| point_modes(contact, *force, *opening > closed, slack)).collect();
-        Ok((link, equations, modes))
+        let points = self.structure.contacts.iter().zip(&state.force).zip(openings);
+        points.map(|((contact, force), opening)| point_modes(contact, *force, *opening > closed, slack)).collect()
     }
 
     /// Checks that no rate raises the load at a state, and that a mechanism moves on there at constant load. If flow is associated the
@@ -242,6 +249,7 @@ impl PathChain {
         let own = ModeTree::Leaf(FarkasVector {
             equilibrium: motion.iter().map(|velocity| velocity.map(|v| -equations.sense * v)).collect(),
             gap: vec![[0.0; 2]; self.structure.contacts.len()],
+            work: 0.0,
         });
         rates.check_none_rises(&own).map(|_| ()).or_else(|_| self.check_none_rises(state, witnesses))
     }

@@ -30,12 +30,14 @@
 //!
 //! The end of a path is proved by a [`PathChain`] of its states, and by a [`Witness`](crate::path::Witness) at one of them.
 
+mod arrival;
 mod chain;
 mod checker;
 mod claims;
 mod displaced;
 mod displaced_rates;
 mod dual;
+mod ends;
 mod energy;
 mod increment;
 mod none_rises;

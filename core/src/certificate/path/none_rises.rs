@@ -1,14 +1,17 @@
-//! The proof that no rate at a state has λ̇ > 0: a complete tree of mode decisions with a Farkas vector at each leaf.
+//! The proof that no rate at a state has a sense of λ̇: a complete tree of mode decisions with a Farkas vector at each leaf.
 //!
-//! A leaf with multipliers (y, β) proves its case if, with α as in [`FarkasVector`],
+//! A leaf with multipliers (y, β) proves that λ̇ > 0 is impossible if, with α as in [`FarkasVector`],
 //!
 //! - Kᵀ y + Gᵀ β = 0 for the motion of every free body,
 //! - α·ṙ + β·ġ ≥ 0 in every mode that is left at every contact point,
 //! - p·y + g_p·β is negative by a margin.
 //!
+//! For λ̇ < 0 it is positive. For λ̇ = 0 it has no influence, and Kᵀ y + Gᵀ β = −κ p with κ > 0 by a margin.
+//!
 //! Sums are compared with the sizes of their terms. So the proof holds for all structures whose coefficients differ from these
 //! by the tolerances. No number is searched for.
 
+use super::arrival::Arrival;
 use super::point_modes::{ModeCone, length};
 use super::rate_equations::{Column, RateEquations};
 use crate::path::{FarkasVector, ModeTree, PointMode};
@@ -31,6 +34,41 @@ pub(super) struct RateProblem<'a> {
     /// The modes that each contact point may take.
     pub modes: &'a [Vec<ModeCone>],
 }
+
+/// The rates that a tree refutes.
+#[derive(Clone, Copy)]
+pub(super) enum Refuted<'a> {
+    /// With λ̇ > 0.
+    Rising,
+    /// With λ̇ = 0 and a load that does work.
+    Standing,
+    /// With λ̇ > 0 on a path that arrives with λ falling: those in modes of the piece before are the way back.
+    RisingNew(&'a Arrival),
+    /// With λ̇ < 0, but those in modes of the piece before.
+    FallingNew(&'a Arrival),
+}
+
+impl<'a> Refuted<'a> {
+    /// The sense of λ̇ in the sense of the load step.
+    fn factor(self) -> f64 {
+        match self {
+            Refuted::Rising | Refuted::RisingNew(_) => 1.0,
+            Refuted::Standing => 0.0,
+            Refuted::FallingNew(_) => -1.0,
+        }
+    }
+
+    /// The piece before, if rates in its modes are left out.
+    fn left_out(self) -> Option<&'a Arrival> {
+        match self {
+            Refuted::RisingNew(arrival) | Refuted::FallingNew(arrival) => Some(arrival),
+            Refuted::Rising | Refuted::Standing => None,
+        }
+    }
+}
+
+/// The modes that are decided on a branch.
+pub(super) type Decided = BTreeMap<usize, PointMode>;
 
 /// A sum with the sum of the sizes of its terms.
 #[derive(Debug, Clone, Copy, Default)]
@@ -68,25 +106,35 @@ fn sums(column: &Column, vector: &FarkasVector) -> [Sum; 2] {
 }
 
 impl<'a> Products<'a> {
-    fn new(equations: &RateEquations, vector: &'a FarkasVector) -> Self {
+    fn new(equations: &RateEquations, vector: &'a FarkasVector, refuted: Refuted) -> Self {
         let both = |column: &Column| {
             let [a, b] = sums(column, vector);
             Sum { value: a.value + b.value, terms: a.terms + b.terms }
         };
-        let alpha = equations.forces.chunks_exact(2).map(|pair| {
-            let [n, t] = [both(&pair[0]), both(&pair[1])];
-            ([-n.value, -t.value], n.terms.max(t.terms))
-        });
-        Products {
-            alpha: alpha.collect(),
-            beta: &vector.gap,
-            motions: equations.motions.iter().map(|column| sums(column, vector)).collect(),
-            load: both(&equations.load),
+        let mut forces: Vec<Sum> = equations.forces.iter().map(both).collect();
+        let mut motions: Vec<[Sum; 2]> = equations.motions.iter().map(|column| sums(column, vector)).collect();
+        let mut load = both(&equations.load);
+        if matches!(refuted, Refuted::Standing) {
+            load = Sum { value: -equations.sense * vector.work, terms: 0.0 };
+            let Column { equilibrium, gap } = &equations.load;
+            equilibrium.iter().for_each(|(row, p)| motions[*row][1].add(vector.work * p));
+            gap.iter().for_each(|(row, g)| forces[*row].add(vector.work * g));
         }
+        let pair = |pair: &[Sum]| ([-pair[0].value, -pair[1].value], pair[0].terms.max(pair[1].terms));
+        Products { alpha: forces.chunks_exact(2).map(pair).collect(), beta: &vector.gap, motions, load }
+    }
+
+    /// The reason why the work of the load is not excluded, with the size of the greatest of the sums over motions.
+    fn excludes_work(&self, equations: &RateEquations, work: f64, largest: f64) -> Result<(), String> {
+        let scale = |row: usize| if row % 3 == 2 { equations.length } else { 1.0 };
+        let share = |(row, p): &(usize, f64)| (work * p / scale(*row)).abs();
+        let size = equations.load.equilibrium.iter().map(share).fold(0.0, f64::max);
+        let proves = self.load.value < 0.0 && size > MARGIN * largest;
+        if proves { Ok(()) } else { Err("the multipliers do not exclude that the load does work".into()) }
     }
 
     /// The first reason why these multipliers prove nothing.
-    fn refutes(&self, problem: &RateProblem, decided: &BTreeMap<usize, PointMode>) -> Result<(), String> {
+    fn refutes(&self, problem: &RateProblem, decided: &Decided, refuted: Refuted, work: f64) -> Result<(), String> {
         let equations = problem.equations;
         let scale = |index: usize| if index % 3 == 2 { equations.length } else { 1.0 };
         let moved = self.motions.iter().enumerate().map(|(i, [k, g])| (k.terms + g.terms) / scale(i));
@@ -97,10 +145,19 @@ impl<'a> Products<'a> {
                 return Err(format!("the multipliers leave a part of the motion of body {}", index / 3));
             }
         }
-        let factor = equations.sense * self.load.value;
-        if factor.is_nan() || factor > -MARGIN * self.load.terms || factor == 0.0 {
-            return Err("the multipliers do not exclude that the load rises".into());
+        if matches!(refuted, Refuted::Standing) {
+            self.excludes_work(equations, work, largest)?;
+        } else {
+            let factor = refuted.factor() * equations.sense * self.load.value;
+            if factor.is_nan() || factor > -MARGIN * self.load.terms || factor == 0.0 {
+                return Err("the multipliers do not exclude this sense of the load".into());
+            }
         }
+        self.admit(problem, decided)
+    }
+
+    /// α·ṙ + β·ġ ≥ 0 in all modes that are left.
+    fn admit(&self, problem: &RateProblem, decided: &Decided) -> Result<(), String> {
         let largest_alpha = self.alpha.iter().map(|own| own.1).fold(0.0, f64::max);
         let largest_beta = self.beta.iter().map(|beta| length(*beta)).fold(0.0, f64::max);
         for (contact, (modes, (alpha, terms))) in problem.modes.iter().zip(&self.alpha).enumerate() {
@@ -123,20 +180,33 @@ impl RateProblem<'_> {
     /// # Errors
     /// The first part that proves nothing, in words.
     pub fn check_none_rises(&self, tree: &ModeTree) -> Result<usize, String> {
+        self.check_none(tree, Refuted::Rising)
+    }
+
+    /// Checks the proof that there are no such rates; returns the number of its leaves.
+    ///
+    /// # Errors
+    /// The first part that proves nothing, in words.
+    pub fn check_none(&self, tree: &ModeTree, refuted: Refuted) -> Result<usize, String> {
         if tree.leaves(MAX_LEAVES) > MAX_LEAVES {
             return Err(format!("the tree has more than {MAX_LEAVES} leaves"));
         }
         if let Some(contact) = self.modes.iter().position(Vec::is_empty) {
             return Err(format!("contact point {contact} has no mode"));
         }
-        self.check_tree(tree, &mut BTreeMap::new())
+        self.check_tree(tree, &mut Decided::new(), refuted)
     }
 
-    fn check_tree(&self, tree: &ModeTree, decided: &mut BTreeMap<usize, PointMode>) -> Result<usize, String> {
+    fn check_tree(&self, tree: &ModeTree, decided: &mut Decided, refuted: Refuted) -> Result<usize, String> {
         let (contact, branches) = match tree {
             ModeTree::Leaf(vector) => {
                 self.check_form(vector)?;
-                return Products::new(self.equations, vector).refutes(self, decided).map(|()| 1);
+                let products = Products::new(self.equations, vector, refuted);
+                return products.refutes(self, decided, refuted, vector.work).map(|()| 1);
+            }
+            ModeTree::Before => {
+                let arrival = refuted.left_out().ok_or("rates in the modes of the piece before are not left out here")?;
+                return arrival.had(self.modes, decided).map(|()| 1);
             }
             ModeTree::Split { contact, branches } => (*contact, branches),
         };
@@ -151,7 +221,7 @@ impl RateProblem<'_> {
         let mut leaves = 0;
         for (mode, branch) in branches {
             decided.insert(contact, *mode);
-            leaves += self.check_tree(branch, decided)?;
+            leaves += self.check_tree(branch, decided, refuted)?;
         }
         decided.remove(&contact);
         Ok(leaves)
@@ -159,7 +229,8 @@ impl RateProblem<'_> {
 
     fn check_form(&self, vector: &FarkasVector) -> Result<(), String> {
         let fits = vector.equilibrium.len() == self.equations.held.len() && vector.gap.len() == self.modes.len();
-        let mut numbers = vector.equilibrium.as_flattened().iter().chain(vector.gap.as_flattened());
+        let numbers = vector.equilibrium.as_flattened().iter().chain(vector.gap.as_flattened());
+        let mut numbers = numbers.chain([&vector.work]);
         if fits && numbers.all(|number| number.is_finite()) { Ok(()) } else { Err("a malformed Farkas vector".into()) }
     }
 }

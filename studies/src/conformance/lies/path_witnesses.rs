@@ -21,11 +21,12 @@ fn witnessed_early(
     story.answer.motion = Some(story.answer.motion.take().unwrap_or(rate));
     let trees = witnesses.into_iter().filter_map(|witness| match witness.claim {
         RateClaim::NoneRises(tree) => Some(forge(tree)),
-        RateClaim::Rate(_) => None,
+        _ => None,
     });
     let by_motion = ModeTree::Leaf(FarkasVector {
         equilibrium: story.answer.motion.iter().flatten().map(|own| own.map(|v| -v)).collect(),
         gap: vec![[0.0; 2]; asked.problem.contacts.len()],
+        work: 0.0,
     });
     let trees: Vec<ModeTree> = trees.chain([forge(by_motion)]).collect();
     let claim = |tree| Witness { state: state.clone(), claim: RateClaim::NoneRises(tree) };
@@ -52,6 +53,7 @@ fn with_leaves(tree: ModeTree, change: fn(f64) -> f64) -> ModeTree {
             let branches = branches.into_iter().map(|(mode, tree)| (mode, with_leaves(tree, change))).collect();
             ModeTree::Split { contact, branches }
         }
+        ModeTree::Before => ModeTree::Before,
     }
 }
 

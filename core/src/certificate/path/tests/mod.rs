@@ -2,5 +2,6 @@
 
 mod chain;
 mod derivatives;
+mod ends;
 mod scenes;
 mod wedge;
