@@ -16,6 +16,9 @@ const REST: f64 = 1e-10;
 /// Motions per greatest motion that are rounding.
 const STILL: f64 = 1e-10;
 
+/// All unknowns for gap rates of the active points, which stick but for these, and a rate of the load.
+pub(super) type Response<'a> = &'a dyn Fn(&[[f64; 2]], f64) -> Option<Vec<f64>>;
+
 /// The multipliers that complete `alpha`, the gap rates of the active points, and `work` by the response `x` to them, in scaled
 /// units. The active points stick in it, so that the structure is symmetric: y = −q̇, β = −ṙ.
 fn dual_vector(system: &System, x: &[f64], alpha: &[[f64; 2]], work: f64) -> FarkasVector {
@@ -31,13 +34,12 @@ fn dual_vector(system: &System, x: &[f64], alpha: &[[f64; 2]], work: f64) -> Far
     }
 }
 
-/// The tree that proves that no rate of a problem over the contact points `contacts` raises the load. `response`: all unknowns for gap
-/// rates of these points and a rate of the load. `None` if the search does not find the proof within its budget.
+/// The tree that proves that no rate of a problem over the contact points `contacts` raises the load. `None` if the search does not find the proof within its budget.
 pub(super) fn none_rises(
     (problem, system): (&RateProblem, &System),
     contacts: &[usize],
     trials: &mut u64,
-    response: impl Fn(&[[f64; 2]], f64) -> Option<Vec<f64>>,
+    response: Response,
 ) -> Option<ModeTree> {
     let found = search(problem, 1.0, Budget::default().leaves, trials);
     let proof = found.proof.filter(|_| found.rates.is_empty())?;
@@ -53,7 +55,7 @@ pub(super) fn none_continues(
     (problem, system): (&RateProblem, &System),
     (contacts, unit): (&[usize], f64),
     trials: &mut u64,
-    response: impl Fn(&[[f64; 2]], f64) -> Option<Vec<f64>>,
+    response: Response,
 ) -> Option<NoneContinues> {
     let vector = |alpha: &[[f64; 2]], work: f64| {
         response(alpha, -work).map(|x| dual_vector(system, &x, alpha, work * unit)).unwrap_or_default()

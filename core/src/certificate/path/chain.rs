@@ -6,11 +6,12 @@
 //! the state midway must nearly be in equilibrium too: states of two branches are not neighbours.
 
 use super::displaced::Displaced;
+use super::history::{History, has_history};
 use super::increment::{Allowed, first_opening, passed};
 use super::none_rises::RateProblem;
 use super::point_modes::{ACTIVE, ModeCone, point_modes};
 use super::rate_equations::RateEquations;
-use crate::path::{FarkasVector, LoadStep, LoadStepEnd, ModeTree, PathProblem, PathState, RateClaim, Witness};
+use crate::path::{FarkasVector, LoadStep, LoadStepEnd, ModeTree, PathProblem, PathState, RateClaim, Witness, Yielded};
 use std::sync::Arc;
 
 /// Most distance of all increments together from the flow of laws, as a share of the greatest displacement.
@@ -34,6 +35,8 @@ pub(super) struct Link {
     pub(super) state: PathState,
     /// Opening of every contact point \[m\].
     pub(super) openings: Vec<f64>,
+    /// What laws with a history remember after it.
+    pub(super) history: History,
 }
 
 /// A chain of states.
@@ -49,7 +52,7 @@ pub struct PathChain {
 }
 
 /// The greatest size of gaps and displacements.
-fn deformation(state: &PathState) -> f64 {
+pub(super) fn deformation(state: &PathState) -> f64 {
     let moves = state.motion.iter().flat_map(|u| [u[0], u[1]]);
     state.gap.as_flattened().iter().copied().chain(moves).fold(0.0, |a: f64, v| a.max(v.abs()))
 }
@@ -77,12 +80,18 @@ pub(super) fn midway(problem: &PathProblem, last: &PathState, state: &PathState)
     let applied = |of: &PathState| problem.applied(of.load_step, of.factor)[state.load_step];
     let start = problem.load_steps[state.load_step].start;
     let motion = last.motion.iter().zip(&state.motion);
+    let deformed = |body: usize| {
+        let (from, to) = (last.inelastic(body)?, state.inelastic(body)?);
+        let mean = from.displacement.iter().zip(to.displacement.iter()).map(|(a, b)| 0.5 * (a + b));
+        Some(Yielded { displacement: Arc::new(mean.collect()), state: to.state.clone() })
+    };
     PathState {
         load_step: state.load_step,
         factor: start + 0.5 * (applied(last) + applied(state)),
         force: mean2(&last.force, &state.force),
         gap: mean2(&last.gap, &state.gap),
         motion: motion.map(|(a, b)| [0, 1, 2].map(|i| 0.5 * (a[i] + b[i]))).collect(),
+        yielded: (0..problem.bodies.len()).map(deformed).collect(),
         ..PathState::default()
     }
 }
@@ -99,9 +108,8 @@ impl PathChain {
             ..PathState::default()
         };
         let openings = contacts.iter().map(first_opening).collect();
-        let history = structure.yields() || contacts.iter().any(|c| c.law.response().is_some());
-        let broken = history.then(|| "blocks that yield and laws of tractions from gaps have no checked chain".into());
-        PathChain { structure, finite, links: vec![Link { state, openings }], drift: 0.0, broken }
+        let history = History::untouched(&structure);
+        PathChain { structure, finite, links: vec![Link { state, openings, history }], drift: 0.0, broken: None }
     }
 
     /// Adds the next state of the path.
@@ -109,21 +117,49 @@ impl PathChain {
         if self.broken.is_some() {
             return;
         }
-        match self.next(state) {
-            Ok((openings, drift)) => {
-                self.links.push(Link { state: state.clone(), openings });
-                self.drift = drift;
+        match self.links.last().map(|last| self.next(last, state)) {
+            None => {}
+            Some(Ok((link, drift))) => {
+                self.links.push(link);
+                self.drift += drift;
             }
-            Err(why) => {
+            Some(Err(why)) => {
                 self.broken = Some(format!("state {} at the factor {}: {why}", self.links.len(), state.factor));
             }
         }
     }
 
-    /// Openings and drift after an increment to a state.
-    fn next(&self, state: &PathState) -> Result<(Vec<f64>, f64), String> {
+    /// Adds a state that the observer has not seen, the located peak between two states, if it follows from one of them.
+    pub fn add_peak(&mut self, state: &PathState) {
+        if self.links.iter().any(|link| is_same(&link.state, state)) {
+            return;
+        }
+        let before = (0..self.links.len()).rev().find_map(|at| {
+            let (link, _) = self.next(&self.links[at], state).ok().filter(|_| self.is_beside(at, state))?;
+            Some((at, link))
+        });
+        if let Some((at, link)) = before {
+            self.links.insert(at + 1, link);
+        }
+    }
+
+    /// True if the load has a turn between two links at which the state may be.
+    fn is_beside(&self, at: usize, state: &PathState) -> bool {
+        let sense = self.sense(state.load_step);
+        let of_step = |other: &Link| other.state.load_step == state.load_step;
+        let higher = |other: &Link| of_step(other) && (state.factor - other.state.factor) * sense >= 0.0;
+        higher(&self.links[at]) && self.links.get(at + 1).is_none_or(higher)
+    }
+
+    /// 1 if a load step raises its factor, else −1.
+    pub(super) fn sense(&self, load_step: usize) -> f64 {
+        let step = &self.structure.load_steps[load_step];
+        if matches!(step.end, LoadStepEnd::Factor(end) if end < step.start) { -1.0 } else { 1.0 }
+    }
+
+    /// The link after an increment from another to a state, and its drift.
+    fn next(&self, last: &Link, state: &PathState) -> Result<(Link, f64), String> {
         let problem = &*self.structure;
-        let Some(last) = self.links.last() else { return Err("there is no state before it".into()) };
         if state.load_step < last.state.load_step || state.load_step >= problem.load_steps.len() {
             return Err("its load step is not the next".into());
         }
@@ -139,20 +175,28 @@ impl PathChain {
         for (index, contact) in problem.contacts.iter().enumerate() {
             let forces = [last.state.force[index], state.force[index]];
             let gaps = [last.state.gap[index], state.gap[index]];
+            if contact.law.response().is_some() {
+                openings.push(0.0);
+                continue;
+            }
             let passed = passed(contact, forces, gaps, last.openings[index], allowed);
             if passed.outside.is_nan() || passed.outside > worst.0 {
                 worst = (passed.outside, index);
             }
             openings.push(passed.opening);
         }
-        let drift = self.drift + (worst.0 - rounding).max(0.0);
-        if drift.is_nan() || drift > DRIFT * size {
+        let drift = (worst.0 - rounding).max(0.0);
+        if drift.is_nan() || self.drift + drift > DRIFT * size {
             return Err(format!("the gap of contact point {} does not flow as its law says", worst.1));
         }
+        let history = match has_history(problem) {
+            true => last.history.after(problem, [&last.state, state], size, self.finite)?,
+            false => History::default(),
+        };
         if self.finite {
             self.check_midway(&last.state, state)?;
         }
-        Ok((openings, drift))
+        Ok((Link { state: state.clone(), openings, history }, drift))
     }
 
     /// Only the factor of the state's own load step may change; earlier steps have reached their ends.
@@ -222,6 +266,9 @@ impl PathChain {
     pub(super) fn at(&self, own: &PathState) -> Result<(&Link, RateEquations, Vec<Vec<ModeCone>>), String> {
         let link =
             self.links.iter().rev().find(|link| is_same(&link.state, own)).ok_or("the state is not on the path")?;
+        if self.structure.yields() {
+            return Err("rates of blocks that yield are checked for one loading set only".into());
+        }
         let equations = RateEquations::new(&self.structure, &link.state, self.finite)?;
         Ok((link, equations, self.modes(&link.state, &link.openings)))
     }

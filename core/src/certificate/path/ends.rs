@@ -3,7 +3,7 @@
 use super::arrival::Arrival;
 use super::chain::{Link, PathChain, greatest_force, is_same, midway};
 use super::none_rises::{RateProblem, Refuted};
-use crate::path::{LoadStepEnd, PathState, RateClaim, Witness};
+use crate::path::{PathState, RateClaim, Witness};
 
 /// Distance of a slip from the bound of its face, as a share of the scene's size.
 const AT_BOUND: f64 = 1e-9;
@@ -22,10 +22,7 @@ impl PathChain {
     /// The piece between two states of a load step.
     fn arrival(&self, [before, last]: [&Link; 2]) -> Arrival {
         let problem = &*self.structure;
-        let sense = match problem.load_steps[last.state.load_step].end {
-            LoadStepEnd::Factor(end) if end < problem.load_steps[last.state.load_step].start => -1.0,
-            _ => 1.0,
-        };
+        let sense = self.sense(last.state.load_step);
         let openings: Vec<f64> = before.openings.iter().zip(&last.openings).map(|(a, b)| 0.5 * (a + b)).collect();
         let change = |a: [f64; 2], b: [f64; 2]| [b[0] - a[0], b[1] - a[1]];
         let [from, to] = [&before.state, &last.state];

@@ -85,10 +85,10 @@ impl Sum {
 }
 
 /// Multipliers with the sums that they make.
-struct Products<'a> {
+pub(super) struct Products {
     /// α of each contact point with the sizes of its terms.
     alpha: Vec<([f64; 2], f64)>,
-    beta: &'a [[f64; 2]],
+    beta: Vec<[f64; 2]>,
     /// Kᵀ y and Gᵀ β by 3 × body + component.
     motions: Vec<[Sum; 2]>,
     /// The factor of λ̇.
@@ -105,8 +105,8 @@ fn sums(column: &Column, vector: &FarkasVector) -> [Sum; 2] {
     sums
 }
 
-impl<'a> Products<'a> {
-    fn new(equations: &RateEquations, vector: &'a FarkasVector, refuted: Refuted) -> Self {
+impl Products {
+    pub fn new(equations: &RateEquations, vector: &FarkasVector, refuted: Refuted) -> Self {
         let both = |column: &Column| {
             let [a, b] = sums(column, vector);
             Sum { value: a.value + b.value, terms: a.terms + b.terms }
@@ -121,7 +121,7 @@ impl<'a> Products<'a> {
             gap.iter().for_each(|(row, g)| forces[*row].add(vector.work * g));
         }
         let pair = |pair: &[Sum]| ([-pair[0].value, -pair[1].value], pair[0].terms.max(pair[1].terms));
-        Products { alpha: forces.chunks_exact(2).map(pair).collect(), beta: &vector.gap, motions, load }
+        Products { alpha: forces.chunks_exact(2).map(pair).collect(), beta: vector.gap.clone(), motions, load }
     }
 
     /// The reason why the work of the load is not excluded, with the size of the greatest of the sums over motions.
@@ -135,7 +135,17 @@ impl<'a> Products<'a> {
 
     /// The first reason why these multipliers prove nothing.
     fn refutes(&self, problem: &RateProblem, decided: &Decided, refuted: Refuted, work: f64) -> Result<(), String> {
-        let equations = problem.equations;
+        let largest = self.balance(problem.equations)?;
+        if matches!(refuted, Refuted::Standing) {
+            self.excludes_work(problem.equations, work, largest)?;
+        } else {
+            self.excludes(refuted.factor() * problem.equations.sense)?;
+        }
+        self.admit(problem, decided)
+    }
+
+    /// Kᵀ y + Gᵀ β = 0, with the size of the greatest of these sums.
+    fn balance(&self, equations: &RateEquations) -> Result<f64, String> {
         let scale = |index: usize| if index % 3 == 2 { equations.length } else { 1.0 };
         let moved = self.motions.iter().enumerate().map(|(i, [k, g])| (k.terms + g.terms) / scale(i));
         let largest = moved.fold(0.0, f64::max);
@@ -145,15 +155,51 @@ impl<'a> Products<'a> {
                 return Err(format!("the multipliers leave a part of the motion of body {}", index / 3));
             }
         }
-        if matches!(refuted, Refuted::Standing) {
-            self.excludes_work(equations, work, largest)?;
-        } else {
-            let factor = refuted.factor() * equations.sense * self.load.value;
-            if factor.is_nan() || factor > -MARGIN * self.load.terms || factor == 0.0 {
-                return Err("the multipliers do not exclude this sense of the load".into());
+        Ok(largest)
+    }
+
+    /// The factor of λ̇ has the opposite sign of `sense`.
+    fn excludes(&self, sense: f64) -> Result<(), String> {
+        let factor = sense * self.load.value;
+        if factor.is_nan() || factor > -MARGIN * self.load.terms || factor == 0.0 {
+            return Err("the multipliers do not exclude this sense of the load".into());
+        }
+        Ok(())
+    }
+
+    /// Adds κ times a functional of ṙ, ġ and λ̇ to α·ṙ + β·ġ.
+    pub fn leave_out(&mut self, kappa: f64, (forces, gaps, factor): (&[[f64; 2]], &[[f64; 2]], f64)) {
+        for (index, (alpha, _)) in self.alpha.iter_mut().enumerate() {
+            (0..2).for_each(|k| alpha[k] += kappa * forces[index][k]);
+            (0..2).for_each(|k| self.beta[index][k] += kappa * gaps[index][k]);
+        }
+        self.load.add(-kappa * factor);
+    }
+
+    /// The first reason why these multipliers do not exclude that the load rises in one linear rate problem at a state that is
+    /// located. `linear`: of a contact point whose rates are linear, the size of the sum that must vanish and of its terms.
+    pub fn refutes_linear(
+        &self,
+        problem: &RateProblem,
+        linear: impl Fn(usize, [f64; 2], [f64; 2]) -> Option<[f64; 2]>,
+    ) -> Result<(), String> {
+        self.balance(problem.equations)?;
+        self.excludes(problem.equations.sense)?;
+        let largest = self.alpha.iter().map(|own| own.1).fold(0.0, f64::max);
+        let largest_beta = self.beta.iter().map(|beta| length(*beta)).fold(0.0, f64::max);
+        for (contact, (alpha, terms)) in self.alpha.iter().enumerate() {
+            let refutes = match linear(contact, *alpha, self.beta[contact]) {
+                Some([sum, terms]) => sum <= LOCATED * terms,
+                None => problem.modes[contact].iter().all(|cone| {
+                    let products = cone.least_products([*alpha, self.beta[contact]]);
+                    products[0] >= -LOCATED * terms - NOISE * largest && products[1] >= -LOCATED * largest_beta
+                }),
+            };
+            if !refutes {
+                return Err(format!("the multipliers do not refute the loading set at contact point {contact}"));
             }
         }
-        self.admit(problem, decided)
+        Ok(())
     }
 
     /// α·ṙ + β·ġ ≥ 0 in all modes that are left.

@@ -6,7 +6,7 @@ use super::rates::Direction;
 use super::schur::SchurComplement;
 use super::trace::Trace;
 use crate::contact::mode::ContactMode;
-use crate::path::dual_vector::{self, MOST_FACETS};
+use crate::path::dual_vector::{self, MOST_FACETS, Response};
 use crate::path::system::{Load, System};
 use crate::rate::problem::RateProblem;
 use voussoir_core::path::{PathRate, RateClaim, Witness};
@@ -24,9 +24,6 @@ pub fn none_continues(trace: &mut Trace, load: &Load, sense: f64) -> Option<Witn
         dual_vector::none_continues(problem, (active, sense), trials, response).map(RateClaim::NoneContinues)
     })
 }
-
-/// All unknowns for gap rates of the active points and a rate of the load.
-type Response<'a> = &'a dyn Fn(&[[f64; 2]], f64) -> Option<Vec<f64>>;
 
 /// A witness at the present state by a search over the modes of the active points.
 fn prove(

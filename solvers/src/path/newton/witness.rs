@@ -3,7 +3,7 @@
 use super::limit_point_test::{active_set, rate_problem, responses_of, without_factor};
 use super::state::{State, Tangent};
 use super::system::StepSystem;
-use crate::path::dual_vector::{self, MOST_FACETS};
+use crate::path::dual_vector::{self, MOST_FACETS, Response};
 use crate::path::system::System;
 use crate::rate::problem::RateProblem;
 use voussoir_core::path::{FarkasVector, ModeTree, PathState, RateClaim, Witness};
@@ -44,9 +44,6 @@ pub(super) fn none_continues(
     let trees = search(system, state, direction, dual_vector::none_continues)?;
     Some(Witness { state: seen.clone(), claim: RateClaim::NoneContinues(trees) })
 }
-
-/// All unknowns for gap rates of the active points and a rate of the load.
-type Response<'a> = &'a dyn Fn(&[[f64; 2]], f64) -> Option<Vec<f64>>;
 
 /// A proof at a state by a search over the modes of the active points, which are given with λ for a unit of the load.
 fn search<T>(

@@ -4,4 +4,5 @@ mod chain;
 mod derivatives;
 mod ends;
 mod scenes;
+mod softening;
 mod wedge;
