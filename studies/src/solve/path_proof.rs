@@ -1,9 +1,12 @@
 //! The end of a path, proved by its states and witnesses without trust in its solver.
 //!
 //! The states are a chain: each follows from the one before. A witness is a proof about rates at one of them. So a limit point is proved
-//! by a witness that no rate raises the load there, a plateau by the same and a mechanism, a target by a chain that reaches it.
+//! by a witness that no rate raises the load there, a plateau by the same and a mechanism, a target by a chain that reaches it. If laws have
+//! a history, a limit point is proved for the loading set of the rate just beyond it.
 
 use super::limit_points::asked_end;
+use crate::results::EndProof;
+use std::cell::Cell;
 use voussoir_core::certificate::{PathChain, ray_residual, tolerance};
 use voussoir_core::limit::Status;
 use voussoir_core::path::{
@@ -23,10 +26,12 @@ const DISSIPATES: f64 = 1e-6;
 
 /// The chain of a path with the answer of its solver.
 pub(super) struct PathProof<'a> {
-    pub chain: &'a PathChain,
-    pub problem: &'a PathProblem,
-    pub settings: &'a PathSettings,
-    pub solved: &'a PathAnswer,
+    chain: &'a PathChain,
+    problem: &'a PathProblem,
+    settings: &'a PathSettings,
+    solved: &'a PathAnswer,
+    /// True if a limit point is proved for one loading set only.
+    one_loading_set: Cell<bool>,
 }
 
 /// 1 if a load step raises its factor, else −1.
@@ -37,12 +42,27 @@ fn sense(step: &LoadStep) -> f64 {
     }
 }
 
-impl PathProof<'_> {
+impl<'a> PathProof<'a> {
+    /// Of an answer whose states are a chain.
+    pub fn new(
+        chain: &'a PathChain,
+        problem: &'a PathProblem,
+        settings: &'a PathSettings,
+        solved: &'a PathAnswer,
+    ) -> Self {
+        PathProof { chain, problem, settings, solved, one_loading_set: Cell::new(false) }
+    }
+
     /// Checks the end that the solver claims.
     ///
     /// # Errors
     /// The first part that is not proved, in words.
-    pub fn end(&self) -> Result<(), String> {
+    pub fn end(&self) -> Result<EndProof, String> {
+        self.check_end()?;
+        Ok(if self.one_loading_set.get() { EndProof::LoadingSet } else { EndProof::StatesAndWitnesses })
+    }
+
+    fn check_end(&self) -> Result<(), String> {
         if let Some(why) = self.chain.broken() {
             return Err(why.to_string());
         }
@@ -66,14 +86,20 @@ impl PathProof<'_> {
     fn collapse(&self) -> Result<(), String> {
         self.check_falls()?;
         let state = &self.solved.state;
-        if self.settings.finite {
+        let by_mechanism = || {
+            let motion = self.solved.motion.as_deref().ok_or("no mechanism")?;
+            let witnesses: Vec<&Witness> = self.witnesses(state).collect();
+            self.chain.check_collapse(state, motion, &witnesses)?;
+            self.is_greatest(state)
+        };
+        let by_range = || {
             self.limit_point(state)?;
-            return self.chain.stands_still_after(state).or_else(|_| self.falls_after(state));
+            self.chain.stands_still_after(state).or_else(|_| self.falls_after(state))
+        };
+        if self.settings.finite || self.chain.has_history() {
+            return by_range();
         }
-        let motion = self.solved.motion.as_deref().ok_or("no mechanism")?;
-        let witnesses: Vec<&Witness> = self.witnesses(state).collect();
-        self.chain.check_collapse(state, motion, &witnesses)?;
-        self.is_greatest(state)
+        by_mechanism().or_else(|why| by_range().map_err(|_| why))
     }
 
     /// A mechanism that refutes equilibrium by itself. On another path friction that is not associated may carry the dead load.
@@ -122,10 +148,14 @@ impl PathProof<'_> {
         }
     }
 
-    /// No rate raises the load at a state of the chain.
+    /// No rate raises the load at a state of the chain; if laws have a history, none of one loading set.
     fn limit_point(&self, state: &PathState) -> Result<(), String> {
         let witnesses: Vec<&Witness> = self.witnesses(state).collect();
-        self.chain.check_none_rises(state, &witnesses)
+        if !self.chain.has_history() {
+            return self.chain.check_none_rises(state, &witnesses);
+        }
+        self.one_loading_set.set(true);
+        self.chain.check_loading_set(state, &witnesses)
     }
 
     /// Witnesses at a state.
@@ -142,7 +172,11 @@ impl PathProof<'_> {
     fn is_greatest(&self, state: &PathState) -> Result<(), String> {
         let sense = sense(&self.problem.load_steps[state.load_step]);
         let lower = |own: &PathState| (own.factor - state.factor) * sense <= SAME * state.factor.abs();
-        if self.of_step(state.load_step).all(lower) { Ok(()) } else { Err("the load is greater at another state".into()) }
+        if self.of_step(state.load_step).all(lower) {
+            Ok(())
+        } else {
+            Err("the load is greater at another state".into())
+        }
     }
 
     /// The chain ends at a state.
@@ -245,7 +279,8 @@ impl PathProof<'_> {
         let mut states = self.maxima();
         let end = &self.solved.state;
         let is_end = |state: &&PathState| state.load_step == end.load_step && state.factor == end.factor;
-        if self.solved.status == Status::LimitPoint || self.settings.finite && !states.iter().any(is_end) {
+        let ends_there = self.solved.status == Status::LimitPoint || self.settings.finite;
+        if ends_there && !states.iter().any(is_end) {
             states.extend(self.of_step(end.load_step).find(is_end));
         }
         let peak = |state: &PathState| {

@@ -216,12 +216,7 @@ impl PathChain {
     /// Held bodies have moved by their settlements.
     fn check_supports(&self, state: &PathState) -> Result<(), String> {
         let problem = &*self.structure;
-        let mut settled = vec![[0.0; 3]; problem.bodies.len()];
-        for (step, applied) in problem.load_steps.iter().zip(problem.applied(state.load_step, state.factor)) {
-            for (body, motion) in &step.loading.settlements {
-                (0..3).for_each(|i| settled[*body][i] += applied * motion[i]);
-            }
-        }
+        let settled = problem.settled(state.load_step, state.factor);
         let bodies = problem.bodies.iter().zip(state.motion.iter().zip(&settled));
         let off = bodies.filter(|(body, _)| body.held).flat_map(|(_, (own, settled))| {
             (0..3).map(|i| (own[i] - settled[i]).abs() - SAME_FACTOR * settled[i].abs())
@@ -250,6 +245,11 @@ impl PathChain {
         let worst = bodies.map(|(w, _)| w[0].hypot(w[1]).max(w[2].abs() / problem.length)).fold(0.0, f64::max);
         let size: f64 = midway.force.iter().map(|r| r[0].hypot(r[1])).sum();
         if worst <= MIDWAY * size { Ok(()) } else { Err("it is far from the state before it".into()) }
+    }
+
+    /// True if laws of tractions from gaps, or blocks that yield, make the path depend on its history.
+    pub fn has_history(&self) -> bool {
+        has_history(&self.structure)
     }
 
     /// Why the chain ends before the last state that was added.

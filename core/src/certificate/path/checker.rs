@@ -137,7 +137,7 @@ impl PathChecker {
         self.last = Some((state.load_step, state.dissipated));
     }
 
-    /// Checks that bodies balance and that gaps are those of their motions.
+    /// Checks that bodies balance, that gaps are those of their motions, and that supports have moved by their settlements.
     fn check_bodies(&mut self, problem: &PathProblem, displaced: &Displaced, state: &PathState, scale: &Scale) {
         let mut unbalanced = 0.0;
         for (w, _) in displaced.unbalanced().iter().zip(&problem.bodies).filter(|(_, b)| !b.held) {
@@ -148,6 +148,12 @@ impl PathChecker {
         let mut apart = 0.0;
         for (g, own) in displaced.gaps().iter().zip(&state.gap) {
             (0..2).for_each(|i| worsen(&mut apart, (g[i] - own[i]).abs() - scale.rounding));
+        }
+        let settled = problem.settled(state.load_step, state.factor);
+        let supports = problem.bodies.iter().zip(state.motion.iter().zip(&settled)).filter(|(body, _)| body.held);
+        for (_, (own, settled)) in supports {
+            let lengths = [1.0, 1.0, problem.length];
+            (0..3).for_each(|i| worsen(&mut apart, (own[i] - settled[i]).abs() * lengths[i]));
         }
         self.note("path_kinematics", apart / scale.deformation);
     }

@@ -46,8 +46,11 @@ impl PathChain {
         let mut found = Err("no witness that no rate continues the path".to_string());
         for witness in witnesses.iter().filter(|witness| is_same(&witness.state, &last.state)) {
             if let RateClaim::NoneContinues(trees) = &witness.claim {
-                let checks =
-                    [(&trees.rises, rising), (&trees.stands, Refuted::Standing), (&trees.falls, Refuted::FallingNew(&arrival))];
+                let checks = [
+                    (&trees.rises, rising),
+                    (&trees.stands, Refuted::Standing),
+                    (&trees.falls, Refuted::FallingNew(&arrival)),
+                ];
                 found = checks.into_iter().try_for_each(|(tree, refuted)| rates.check_none(tree, refuted).map(|_| ()));
             }
             if found.is_ok() {

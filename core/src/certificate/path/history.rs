@@ -85,7 +85,8 @@ fn block_energies(problem: &PathProblem, states: [&PathState; 2], finite: bool) 
     let (mut stored, mut taken) = (0.0, 0.0);
     for (index, body) in problem.bodies.iter().enumerate() {
         let Some(inelastic) = &body.inelastic else { continue };
-        let flat = |forces: &[crate::model::geometry::Vec2]| -> Vec<f64> { forces.iter().flat_map(|f| [f.x, f.y]).collect() };
+        let flat =
+            |forces: &[crate::model::geometry::Vec2]| -> Vec<f64> { forces.iter().flat_map(|f| [f.x, f.y]).collect() };
         let forces = [flat(&before[index]), flat(&after[index])];
         let own = |state: usize| match states[state].inelastic(index) {
             Some(Yielded { displacement, state }) => (displacement.clone(), state.clone()),

@@ -11,7 +11,7 @@
 use super::chain::{Link, PathChain, deformation, greatest_force, is_same};
 use super::none_rises::{Products, RateProblem, Refuted};
 use super::point_modes::{ModeCone, dot, length};
-use super::rate_equations::RateEquations;
+use super::rate_equations::{Column, RateEquations};
 use crate::law::Facet;
 use crate::linear::{Entries, SparseLu};
 use crate::path::{FarkasVector, PathProblem, PathRate, PathState, PointMode, RateClaim, Witness};
@@ -63,6 +63,15 @@ struct LoadingSet {
     modes: Vec<Option<ModeCone>>,
 }
 
+/// A scaled linear system.
+struct System {
+    entries: Entries,
+    /// Factors of the rows.
+    scales: Vec<f64>,
+    /// ġ by the scaled unknowns.
+    gaps: Vec<Vec<(usize, f64)>>,
+}
+
 fn product(matrix: Matrix, v: [f64; 2]) -> [f64; 2] {
     matrix.map(|row| dot(row, v))
 }
@@ -98,7 +107,8 @@ impl PathChain {
     /// # Errors
     /// The first part of the last witness that is wrong, in words.
     pub fn check_loading_set(&self, state: &PathState, witnesses: &[&Witness]) -> Result<(), String> {
-        let link = self.links.iter().rev().find(|link| is_same(&link.state, state)).ok_or("the state is not on the path")?;
+        let link =
+            self.links.iter().rev().find(|link| is_same(&link.state, state)).ok_or("the state is not on the path")?;
         let mut found = Err("no rate just beyond the state".to_string());
         for witness in witnesses.iter().filter(|witness| is_same(&witness.state, state)) {
             if let RateClaim::Rate(rate) = &witness.claim {
@@ -114,7 +124,10 @@ impl PathChain {
     /// Checks the loading set of a rate, or else that of the rate of this set.
     fn check_beyond(&self, link: &Link, rate: &PathRate) -> Result<(), String> {
         let contacts = self.structure.contacts.len();
-        if rate.force.len() != contacts || rate.gap.len() != contacts || rate.motion.len() != self.structure.bodies.len() {
+        if rate.force.len() != contacts
+            || rate.gap.len() != contacts
+            || rate.motion.len() != self.structure.bodies.len()
+        {
             return Err("a malformed rate".into());
         }
         let numbers = rate.force.iter().chain(&rate.gap).flatten().chain(rate.motion.as_flattened());
@@ -161,7 +174,8 @@ impl PathChain {
             dissipated += contact.area * point.dissipated;
             Ok(Some(point.tangent.map(|row| row.map(|t| contact.area * t))))
         };
-        let tangents: Result<Vec<Option<Matrix>>, String> = self.structure.contacts.iter().enumerate().map(of).collect();
+        let tangents: Result<Vec<Option<Matrix>>, String> =
+            self.structure.contacts.iter().enumerate().map(of).collect();
         Ok((tangents?, dissipated))
     }
 
@@ -179,7 +193,8 @@ impl PathChain {
         let factor = state.factor + share * rate.factor;
         let ahead = PathState { force, factor, yielded: Vec::new(), ..state.clone() };
         let [now, ahead] = [state, &ahead].map(|state| problem.forces_on_points(state, false));
-        let flat = |forces: &[crate::model::geometry::Vec2]| -> Vec<f64> { forces.iter().flat_map(|f| [f.x, f.y]).collect() };
+        let flat =
+            |forces: &[crate::model::geometry::Vec2]| -> Vec<f64> { forces.iter().flat_map(|f| [f.x, f.y]).collect() };
         let of = |(index, body): (usize, &crate::path::PathBody)| {
             let Some(inelastic) = &body.inelastic else { return Ok(None) };
             let (displacement, end) = match state.inelastic(index) {
@@ -316,28 +331,31 @@ impl LoadingSet {
         }
     }
 
-    /// The rate with c·x = 1, the multipliers, and κ with λ̇ = κ c·x.
-    fn solve(&self, state: &PathState) -> Result<(PathRate, FarkasVector, f64), String> {
+    /// Columns of the unknowns ṙ, q̇ of free bodies and λ̇ with their units, for forces and motions of a size.
+    fn columns(&self, free: &[usize], [force, moved]: [f64; 2]) -> Vec<(&Column, f64)> {
         let equations = &self.equations;
-        let (contacts, bodies) = (self.gaps.len(), equations.held.len());
-        let free: Vec<usize> = (0..3 * bodies).filter(|i| !equations.held[i / 3]).collect();
-        let size = 2 * contacts + free.len() + 1;
-        let (force, moved) = (greatest_force(state), deformation(state));
-        let turn = |i: usize| if i % 3 == 2 { equations.length } else { 1.0 };
-        let most = equations.load.equilibrium.iter().map(|(row, p)| (p / turn(*row)).abs()).fold(0.0, f64::max);
+        let most = equations.load.equilibrium.iter().map(|(row, p)| (p / self.turn(*row)).abs()).fold(0.0, f64::max);
         let load = if most > 0.0 { force / most } else { 1.0 };
-        let columns = equations.forces.iter().map(|column| (column, force));
-        let columns = columns.chain(free.iter().map(|i| (&equations.motions[*i], moved / turn(*i))));
-        let columns: Vec<_> = columns.chain([(&equations.load, load)]).collect();
-        // ġ and equilibrium by the unknowns.
-        let (mut gaps, mut balance): (Vec<Vec<(usize, f64)>>, Vec<Vec<(usize, f64)>>) =
-            (vec![Vec::new(); 2 * contacts], vec![Vec::new(); 3 * bodies]);
+        let forces = equations.forces.iter().map(|column| (column, force));
+        let motions = free.iter().map(|i| (&equations.motions[*i], moved / self.turn(*i)));
+        forces.chain(motions).chain([(&equations.load, load)]).collect()
+    }
+
+    /// Unit of a row or column of a motion: moments and rotations have a length.
+    fn turn(&self, index: usize) -> f64 {
+        if index % 3 == 2 { self.equations.length } else { 1.0 }
+    }
+
+    /// The matrix: rows of contact points, of equilibrium, and c, with the factors of the rows; and ġ by the unknowns.
+    fn matrix(&self, free: &[usize], columns: &[(&Column, f64)], [force, moved]: [f64; 2]) -> System {
+        let (contacts, bodies, size) = (self.gaps.len(), self.equations.held.len(), columns.len());
+        let mut gaps: Vec<Vec<(usize, f64)>> = vec![Vec::new(); 2 * contacts];
+        let mut balance: Vec<Vec<(usize, f64)>> = vec![Vec::new(); 3 * bodies];
         for (j, (column, unit)) in columns.iter().enumerate() {
             column.gap.iter().for_each(|(row, value)| gaps[*row].push((j, value * unit)));
             column.equilibrium.iter().for_each(|(row, value)| balance[*row].push((j, value * unit)));
         }
-        let mut entries: Entries = Vec::new();
-        let mut scales = vec![1.0; size];
+        let (mut entries, mut scales): (Entries, Vec<f64>) = (Vec::new(), vec![1.0; size]);
         for index in 0..contacts {
             for (k, [by_force, by_gap]) in self.rows_of(index).into_iter().enumerate() {
                 let row = 2 * index + k;
@@ -346,37 +364,46 @@ impl LoadingSet {
                 let seen = (0..2).flat_map(|t| gaps[2 * index + t].iter().map(move |(j, v)| (*j, by_gap[t] * v)));
                 entries.extend(own.chain(seen).map(|(j, v)| (row, j, v * scales[row])));
             }
+            for t in 0..2 {
+                entries.push((size - 1, 2 * index + t, self.forces[index][t] * force));
+                entries.extend(gaps[2 * index + t].iter().map(|(j, v)| (size - 1, *j, self.gaps[index][t] * v)));
+            }
         }
         for (at, i) in free.iter().enumerate() {
             let row = 2 * contacts + at;
-            scales[row] = 1.0 / (force * turn(*i));
+            scales[row] = 1.0 / (force * self.turn(*i));
             entries.extend(balance[*i].iter().map(|(j, v)| (row, *j, v * scales[row])));
         }
-        for index in 0..contacts {
-            for t in 0..2 {
-                entries.push((size - 1, 2 * index + t, self.forces[index][t] * force));
-                let by = self.gaps[index][t];
-                entries.extend(gaps[2 * index + t].iter().map(|(j, v)| (size - 1, *j, by * v)));
-            }
-        }
-        entries.push((size - 1, size - 1, self.factor * load));
+        entries.push((size - 1, size - 1, self.factor * columns[size - 1].1));
         entries.retain(|entry| entry.2 != 0.0);
-        let other: Entries = entries.iter().map(|(i, j, v)| (*j, *i, *v)).collect();
-        let singular = "the rate of the loading set is not unique";
-        let unit = |at: f64| (0..size).map(|i| if i + 1 == size { at } else { 0.0 }).collect::<Vec<f64>>();
-        let solved = |entries: &Entries, right: Vec<f64>| {
+        System { entries, scales, gaps }
+    }
+
+    /// The rate with c·x = 1, the multipliers, and κ with λ̇ = κ c·x in the sense of the load step.
+    fn solve(&self, state: &PathState) -> Result<(PathRate, FarkasVector, f64), String> {
+        let (equations, contacts) = (&self.equations, self.gaps.len());
+        let free: Vec<usize> = (0..equations.motions.len()).filter(|i| !equations.held[i / 3]).collect();
+        let sizes = [greatest_force(state), deformation(state)];
+        let columns = self.columns(&free, sizes);
+        let System { entries, scales, gaps } = self.matrix(&free, &columns, sizes);
+        let (size, load) = (columns.len(), columns[columns.len() - 1].1);
+        let solved = |entries: &Entries, last: f64| {
+            let right = (0..size).map(|i| if i + 1 == size { last } else { 0.0 }).collect();
             SparseLu::new(size, entries)?.solve(&[right], REFINEMENTS)?.pop()
         };
-        let x = solved(&entries, unit(1.0)).ok_or(singular)?;
-        let z = solved(&other, unit(load * equations.sense)).ok_or(singular)?;
+        let transposed: Entries = entries.iter().map(|(i, j, v)| (*j, *i, *v)).collect();
+        let singular = "the rate of the loading set is not unique";
+        let x = solved(&entries, 1.0).ok_or(singular)?;
+        let z = solved(&transposed, load * equations.sense).ok_or(singular)?;
+        let factor = x[size - 1] * load;
         let mut rate = PathRate {
-            factor: x[size - 1] * load,
-            force: x[..2 * contacts].chunks_exact(2).map(|r| [r[0] * force, r[1] * force]).collect(),
+            factor,
+            force: x[..2 * contacts].chunks_exact(2).map(|r| [r[0] * sizes[0], r[1] * sizes[0]]).collect(),
             gap: vec![[0.0; 2]; contacts],
-            motion: equations.settlements.iter().map(|u| u.map(|u| u * x[size - 1] * load)).collect(),
+            motion: equations.settlements.iter().map(|u| u.map(|u| u * factor)).collect(),
         };
         for (at, i) in free.iter().enumerate() {
-            rate.motion[i / 3][i % 3] = x[2 * contacts + at] * moved / turn(*i);
+            rate.motion[i / 3][i % 3] = x[2 * contacts + at] * sizes[1] / self.turn(*i);
         }
         for (row, own) in gaps.iter().enumerate() {
             rate.gap[row / 2][row % 2] = own.iter().map(|(j, v)| v * x[*j]).sum();

@@ -251,7 +251,8 @@ impl RateProblem<'_> {
                 return products.refutes(self, decided, refuted, vector.work).map(|()| 1);
             }
             ModeTree::Before => {
-                let arrival = refuted.left_out().ok_or("rates in the modes of the piece before are not left out here")?;
+                let arrival =
+                    refuted.left_out().ok_or("rates in the modes of the piece before are not left out here")?;
                 return arrival.had(self.modes, decided).map(|()| 1);
             }
             ModeTree::Split { contact, branches } => (*contact, branches),

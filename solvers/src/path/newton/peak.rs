@@ -8,7 +8,7 @@ use super::state::{State, Tangent};
 use super::step::solve_step;
 use super::tangent::tangent_at;
 use super::tracer::{Peak, Tracer, foreseen, moved_along};
-use super::witness::none_rises;
+use super::witness::{self, has_history, none_rises};
 use voussoir_core::path::ProvenPeak;
 
 /// Relative differences of the loads and displacements of two limit points that are one.
@@ -80,6 +80,9 @@ pub(super) fn peak_at(tracer: &mut Tracer, mut state: State, beyond: &Tangent) -
     tracer.system.keep(&start, &mut state);
     let seen = recorded(&energy, &tracer.system, tracer.load_step, &state, &gradient);
     let motion = scaled_motion(tracer, &state, beyond);
+    if has_history(&tracer.system) {
+        tracer.record.witnesses.push(witness::beyond(&seen, beyond));
+    }
     Peak { factor: state.factor, state: seen, motion }
 }
 

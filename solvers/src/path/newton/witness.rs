@@ -6,9 +6,9 @@ use super::system::StepSystem;
 use crate::path::dual_vector::{self, MOST_FACETS, Response};
 use crate::path::system::System;
 use crate::rate::problem::RateProblem;
-use voussoir_core::path::{FarkasVector, ModeTree, PathState, RateClaim, Witness};
+use voussoir_core::path::{FarkasVector, ModeTree, PathRate, PathState, RateClaim, Witness};
 
-/// Proofs that no rate raises the load at a state that an observer has `seen`: by the rate along which the load stands still, which
+/// Proofs that no rate raises the load at a state that an observer has `seen`. If laws have a history, the rate just beyond it. Otherwise by the rate along which the load stands still, which
 /// is a dual vector if flow is associated, and by a search over the modes.
 pub(super) fn none_rises(
     system: &mut StepSystem,
@@ -16,8 +16,22 @@ pub(super) fn none_rises(
     rate: &Tangent,
     direction: f64,
 ) -> Vec<Witness> {
+    if has_history(system) {
+        return vec![beyond(seen, rate)];
+    }
     let trees = std::iter::once(by_rate(rate)).chain(by_search(system, state, direction));
     trees.map(|tree| Witness { state: seen.clone(), claim: RateClaim::NoneRises(tree) }).collect()
+}
+
+/// True if laws of tractions from gaps, or blocks that yield, make the path depend on its history.
+pub(super) fn has_history(system: &StepSystem) -> bool {
+    !system.laws.responses.is_empty() || system.problem.yields()
+}
+
+/// The rate just beyond a limit point: its loading set is that of the proof if laws have a history.
+pub(super) fn beyond(seen: &PathState, rate: &Tangent) -> Witness {
+    let Tangent { factor, force, gap, motion } = rate.clone();
+    Witness { state: seen.clone(), claim: RateClaim::Rate(PathRate { factor, force, gap, motion }) }
 }
 
 /// The negative rate as multipliers.
