@@ -110,7 +110,7 @@ impl Sliding {
         (self.slip[0]..=self.slip[1]).contains(&slip)
     }
 
-    /// Whether the blocks come apart at the bounds: a point away from all corners is only paired for less.
+    /// Returns true if the blocks come apart at the bounds: a point away from all corners is only paired for less.
     pub fn parts_at_bound(&self) -> bool {
         self.corners != [0.5; 2] || self.passing > 0.0
     }

@@ -24,7 +24,7 @@ pub struct Witness {
 /// The statement of a witness.
 #[derive(Debug, Clone)]
 pub enum RateClaim {
-    /// These rates solve the rate problem: those of a ray or, if laws have a history, those just beyond a limit point.
+    /// These rates solve the rate problem: along a ray or, if laws have a history, just beyond a limit point.
     Rate(PathRate),
     /// No rate has λ̇ > 0 (λ̇ < 0 in a load step that unloads).
     NoneRises(ModeTree),

@@ -43,7 +43,7 @@ fn sense(step: &LoadStep) -> f64 {
 }
 
 impl<'a> PathProof<'a> {
-    /// Of an answer whose states are a chain.
+    /// The proof of an answer whose states are a chain.
     pub fn new(
         chain: &'a PathChain,
         problem: &'a PathProblem,

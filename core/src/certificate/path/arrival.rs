@@ -23,7 +23,7 @@ pub(super) struct Arrival {
 
 impl Arrival {
     /// Checks that all modes that are left at a state were possible on the piece. If λ fell on it, one of the decided modes must
-    /// also be another than that of the piece: else the path goes on as it was.
+    /// also differ from the mode on the piece: else the path goes on as it was.
     pub fn had(&self, modes: &[Vec<ModeCone>], decided: &Decided) -> Result<(), String> {
         for (contact, (before, now)) in self.modes.iter().zip(modes).enumerate() {
             let mut left = now.iter().filter(|cone| decided.get(&contact).is_none_or(|mode| *mode == cone.mode));

@@ -35,7 +35,7 @@ pub(super) struct Link {
     pub(super) state: PathState,
     /// Opening of every contact point \[m\].
     pub(super) openings: Vec<f64>,
-    /// What laws with a history remember after it.
+    /// The history of laws after it.
     pub(super) history: History,
 }
 

@@ -14,6 +14,9 @@ use std::sync::Arc;
 /// that has come apart carries rounding.
 const NOTHING: f64 = 1e-6;
 
+/// Slip beyond the face of a joint that is rounding of the place of an event, as a share of the scene's size.
+const AT_FACE: f64 = 1e-6;
+
 /// Sees the states of a path and keeps the worst of each residual.
 #[derive(Debug, Default)]
 pub struct PathChecker {
@@ -137,7 +140,7 @@ impl PathChecker {
         self.last = Some((state.load_step, state.dissipated));
     }
 
-    /// Checks that bodies balance, that gaps are those of their motions, and that supports have moved by their settlements.
+    /// Checks that bodies balance, that gaps follow from their motions, and that supports have moved by their settlements.
     fn check_bodies(&mut self, problem: &PathProblem, displaced: &Displaced, state: &PathState, scale: &Scale) {
         let mut unbalanced = 0.0;
         for (w, _) in displaced.unbalanced().iter().zip(&problem.bodies).filter(|(_, b)| !b.held) {
@@ -174,6 +177,11 @@ impl PathChecker {
                 PointLaw::Response(_) => continue,
                 PointLaw::Facets(facets) => facets,
             };
+            if self.finite && force[0] > NOTHING * largest {
+                let [low, high] = contact.sliding.slip;
+                let beyond = (low - gap[1]).max(gap[1] - high) - AT_FACE * problem.length;
+                note(&mut bonded, beyond);
+            }
             let before = std::mem::replace(&mut last, facets);
             if !std::ptr::eq(before, last) {
                 asks = Asks::of(facets);

@@ -15,7 +15,7 @@ const ENERGY: f64 = 1e-3;
 /// Change of the history of a block that its law does not give, relative to its greatest strain.
 const REMEMBERED: f64 = 1e-8;
 
-/// What laws remember at a state, and the energies on the way to it.
+/// The history of all laws at a state, and the energies on the way to it.
 #[derive(Debug, Clone, Default)]
 pub(super) struct History {
     /// States of all laws of tractions from gaps.
@@ -52,7 +52,7 @@ impl History {
         let mut taken = 0.0;
         if let Some((worst, after)) = law_residual(problem, state, &self.memory, deformation, finite, 0.0) {
             if worst.is_nan() || worst > tolerance("path_law").result {
-                return Err("forces are not those of the law of tractions after the state before".into());
+                return Err("forces do not follow from the law of tractions and the state before".into());
             }
             let (points, _) = updated(problem, &state.gap, &self.memory).ok_or("a law of tractions has no update")?;
             for (contact, point) in points {

@@ -2,11 +2,11 @@
 //!
 //! Just ahead of a state in the direction of a rate, the updates of all such laws give tangents: ṙ = A T ġ of a law of tractions, a
 //! flexibility of a block that yields. With the modes of all other contact points they make a linear rate problem. One
-//! functional c says that the set loads: points that soften go on, and yielding dissipates. Multipliers then prove c·x = −λ̇/μ
+//! functional c is positive if the set loads: points that soften go on, and yielding dissipates. Multipliers then prove c·x = −λ̇/μ
 //! for all rates x of the set, with μ ≥ 0: where c·x ≥ 0, no rate rises. Another loading set may have one. The set must dissipate:
 //! that of mere unloading proves nothing. If all laws have the same tangents on both sides, there is no other set, and λ̇ = 0.
 //!
-//! The multipliers are the solution of one linear system. They are checked like those of a witness.
+//! The multipliers are the solution of one linear system. They are checked like the multipliers of a witness.
 
 use super::chain::{Link, PathChain, deformation, greatest_force, is_same};
 use super::none_rises::{Products, RateProblem, Refuted};
@@ -22,7 +22,7 @@ use std::sync::Arc;
 const AHEAD: f64 = 1e-6;
 /// Relative change of a tangent that is no other branch of its law.
 const SAME_BRANCH: f64 = 1e-3;
-/// Loading sets that are tried, each that of the rate of the last.
+/// Loading sets that are tried, each found with the rate of the last.
 const SETS: usize = 4;
 /// Least dissipation of a set that loads, relative to the work of contact forces.
 const DISSIPATES: f64 = 1e-6;
@@ -121,7 +121,7 @@ impl PathChain {
         found
     }
 
-    /// Checks the loading set of a rate, or else that of the rate of this set.
+    /// Checks the loading set of a rate, or else the set that the rate of this one loads.
     fn check_beyond(&self, link: &Link, rate: &PathRate) -> Result<(), String> {
         let contacts = self.structure.contacts.len();
         if rate.force.len() != contacts
@@ -411,7 +411,7 @@ impl LoadingSet {
         Ok((rate, self.multipliers(&z, &scales, &free), z[size - 1]))
     }
 
-    /// Multipliers of equilibrium and kinematics with the opposite sign, from those of all rows.
+    /// Multipliers of equilibrium and kinematics with the opposite sign, from the multipliers of all rows.
     fn multipliers(&self, z: &[f64], scales: &[f64], free: &[usize]) -> FarkasVector {
         let (contacts, last) = (self.gaps.len(), z.len() - 1);
         let mut vector = FarkasVector {

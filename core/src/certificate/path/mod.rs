@@ -5,7 +5,8 @@
 //!   sum of all forces (moments divided by the scene's length), in displaced positions where
 //!   displacements are finite ([`Displaced`]);
 //! - `path_kinematics`: gaps recomputed from motions, forces and loads, and motions of supports from settlements, relative to the
-//!   greatest gap or displacement; where displacements are finite the rounding of positions is granted;
+//!   greatest gap or displacement. With finite displacements the rounding of positions is granted, and no pressed point has
+//!   slipped beyond the face that it slides on;
 //! - `path_strength`: greatest excess of a facet over its bound, relative to the greatest contact force;
 //! - `path_penetration`: greatest overlap of blocks, relative to the greatest gap or deformation;
 //! - `path_complementarity`: greatest force × gap of open contact points, relative to both;

@@ -8,8 +8,8 @@ use crate::path::system::System;
 use crate::rate::problem::RateProblem;
 use voussoir_core::path::{FarkasVector, ModeTree, PathRate, PathState, RateClaim, Witness};
 
-/// Proofs that no rate raises the load at a state that an observer has `seen`. If laws have a history, the rate just beyond it. Otherwise by the rate along which the load stands still, which
-/// is a dual vector if flow is associated, and by a search over the modes.
+/// Proofs that no rate raises the load at a state that an observer has `seen`: by the rate along which the load stands still, which
+/// is a dual vector if flow is associated, and by a search over the modes. If laws have a history, the rate just beyond the state.
 pub(super) fn none_rises(
     system: &mut StepSystem,
     (state, seen): (&State, &PathState),
@@ -28,7 +28,7 @@ pub(super) fn has_history(system: &StepSystem) -> bool {
     !system.laws.responses.is_empty() || system.problem.yields()
 }
 
-/// The rate just beyond a limit point: its loading set is that of the proof if laws have a history.
+/// The rate just beyond a limit point: if laws have a history the proof is about its loading set.
 pub(super) fn beyond(seen: &PathState, rate: &Tangent) -> Witness {
     let Tangent { factor, force, gap, motion } = rate.clone();
     Witness { state: seen.clone(), claim: RateClaim::Rate(PathRate { factor, force, gap, motion }) }
