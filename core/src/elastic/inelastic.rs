@@ -76,6 +76,17 @@ pub struct InelasticState {
     pub dissipated: f64,
 }
 
+/// A step of a body by its law alone.
+#[derive(Debug, Clone, Copy)]
+pub struct PassedStep {
+    /// Difference of the history from the expected one, relative to the greatest strain.
+    pub drift: f64,
+    /// Energy stored at its end \[J\].
+    pub stored: f64,
+    /// Energy dissipated in it \[J\].
+    pub dissipated: f64,
+}
+
 /// A body of a yielding material, seen from some of its points.
 #[derive(Clone)]
 pub struct InelasticBody {
@@ -305,6 +316,32 @@ impl InelasticBody {
         let both = new.iter().zip(history).enumerate().filter(|(i, _)| i % size < own);
         let drift = both.map(|(_, (a, b))| (a - b).abs()).fold(0.0, f64::max) / largest;
         Ok([self.unbalanced(&self.internal(&points), forces), drift])
+    }
+
+    /// The update of all Gauss points to displacements from the first of two histories, which the second should be.
+    ///
+    /// # Errors
+    /// If an update fails or the numbers do not fit the mesh.
+    pub fn passed(&self, displacement: &[f64], [before, after]: [&[f64]; 2]) -> Result<PassedStep, String> {
+        let most = self.gauss_points() * self.state_size();
+        if displacement.len() != 2 * self.nodes() || before.len() != most || after.len() != most {
+            return Err("the state of a block does not fit its mesh".into());
+        }
+        let strains = self.strains_at(displacement);
+        let mut new = before.to_vec();
+        let points = self.stresses(&strains, before, &mut new)?;
+        let largest = strains.iter().flatten().fold(0.0f64, |a, x| a.max(x.abs())).max(f64::MIN_POSITIVE);
+        let (size, own) = (self.state_size(), self.memory_size());
+        let both = new.iter().zip(after).enumerate().filter(|(i, _)| i % size < own);
+        let drift = both.map(|(_, (a, b))| (a - b).abs()).fold(0.0, f64::max) / largest;
+        let volume = self.width * self.size * self.size;
+        let weights = self.strains.operators.iter().flatten().map(|(_, weight)| weight * volume);
+        let (mut stored, mut dissipated) = (0.0, 0.0);
+        for (point, weight) in points.iter().zip(weights) {
+            stored += weight * point.stored;
+            dissipated += weight * point.dissipated;
+        }
+        Ok(PassedStep { drift, stored, dissipated })
     }
 
     /// Displacements and stresses of the whole mesh in world axes of the undeformed placement. Stresses at

@@ -54,7 +54,7 @@ mod shape;
 mod stress;
 
 pub use self::condensation::{Condensed, Condenser};
-pub use self::inelastic::{InelasticBody, InelasticState, largest_element};
+pub use self::inelastic::{InelasticBody, InelasticState, PassedStep, largest_element};
 pub use self::joint::{breaks_on_joint, joint_points, union_breaks};
 pub use self::linearisation::Linearisation;
 pub use self::mesh::{Mesh, MeshDensity, edge_breaks, edge_points};

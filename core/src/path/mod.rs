@@ -31,4 +31,4 @@ pub use self::problem::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, Pat
 pub use self::sliding::Sliding;
 pub use self::solver::{PathAnswer, PathObserver, PathSettings, PathSolver, StageSettings, Unobserved};
 pub use self::state::{ContactEvent, PathEvent, PathState, Yielded};
-pub use self::witness::{FarkasVector, ModeTree, PathRate, PointMode, RateClaim, Witness};
+pub use self::witness::{FarkasVector, ModeTree, NoneContinues, PathRate, PointMode, RateClaim, Witness};

@@ -110,6 +110,11 @@ impl Sliding {
         (self.slip[0]..=self.slip[1]).contains(&slip)
     }
 
+    /// Returns true if the blocks come apart at the bounds: a point away from all corners is only paired for less.
+    pub fn parts_at_bound(&self) -> bool {
+        self.corners != [0.5; 2] || self.passing > 0.0
+    }
+
     /// β and its first and second derivatives at a slip \[-, 1/m, 1/m²\].
     pub fn share_at(&self, slip: f64) -> [f64; 3] {
         if self.passing == 0.0 {

@@ -25,10 +25,24 @@ pub struct Witness {
 /// The statement of a witness.
 #[derive(Debug, Clone)]
 pub enum RateClaim {
-    /// These rates solve the rate problem.
+    /// These rates solve the rate problem: along a ray or, if laws have a history, just beyond a limit point.
     Rate(PathRate),
     /// No rate has λ̇ > 0 (λ̇ < 0 in a load step that unloads).
     NoneRises(ModeTree),
+    /// No rate continues the path from the last state.
+    NoneContinues(NoneContinues),
+}
+
+/// The proof that no rate continues a path from its last state, in the sense of the load step. Its trees may have leaves
+/// [`ModeTree::Before`] if λ falls; on a path that arrives with λ falling also if λ rises, since that is the way back.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NoneContinues {
+    /// No rate has λ̇ > 0.
+    pub rises: ModeTree,
+    /// No rate has λ̇ = 0 and a load that does work.
+    pub stands: ModeTree,
+    /// No rate has λ̇ < 0, but those in modes that the path had before.
+    pub falls: ModeTree,
 }
 
 /// Rates of everything at a state.
@@ -58,7 +72,7 @@ pub enum PointMode {
     Open,
 }
 
-/// A complete tree of decisions. Each leaf refutes λ̇ > 0 for the modes decided on the way to it; a point that is not
+/// A complete tree of decisions. Each leaf refutes a sense of λ̇ for the modes decided on the way to it; a point that is not
 /// decided may be in any of its modes. If flow is associated and displacements are small, one leaf without decisions is enough.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ModeTree {
@@ -71,6 +85,8 @@ pub enum ModeTree {
         /// Its modes, each with what refutes it.
         branches: Vec<(PointMode, ModeTree)>,
     },
+    /// All points could have these modes just before the state: their rates existed there and continue nothing.
+    Before,
 }
 
 /// Multipliers y of equilibrium and β of kinematics. They are such that Kᵀ y + Gᵀ β = 0. Every rate then satisfies
@@ -81,12 +97,17 @@ pub enum ModeTree {
 ///
 /// If the left side is ≥ 0 in all modes that are left and the factor of λ̇ is negative, then λ̇ > 0 is impossible. A
 /// mechanism q̇ with p·q̇ = 1 gives y = −q̇, β = 0, and α is the rate of its gaps.
+///
+/// If λ̇ = 0 is refuted, Kᵀ y + Gᵀ β = −κ p with κ > 0. Then α·ṙ + β·ġ = −κ W with α = −(Eᵀ y + Cᵀ β + κ g_p), where
+/// W = p·q̇ + g_p·ṙ is the work of the load. If the left side is ≥ 0 in all modes that are left, the load does no work.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct FarkasVector {
     /// y of every body (those of held bodies are not read).
     pub equilibrium: Vec<[f64; 3]>,
     /// β of every contact point.
     pub gap: Vec<[f64; 2]>,
+    /// κ; read only if λ̇ = 0 is refuted.
+    pub work: f64,
 }
 
 impl ModeTree {
@@ -96,7 +117,7 @@ impl ModeTree {
         let mut leaves = 0;
         while let Some(tree) = open.pop() {
             match tree {
-                ModeTree::Leaf(_) => leaves += 1,
+                ModeTree::Leaf(_) | ModeTree::Before => leaves += 1,
                 ModeTree::Split { branches, .. } => open.extend(branches.iter().map(|(_, tree)| tree)),
             }
             if leaves > most {

@@ -24,6 +24,17 @@ impl PathProblem {
         loading.settlements.iter().map(moves).fold(0.0, f64::max)
     }
 
+    /// Motions of all bodies by the settlements up to a factor of a load step.
+    pub fn settled(&self, load_step: usize, factor: f64) -> Vec<[f64; 3]> {
+        let mut settled = vec![[0.0; 3]; self.bodies.len()];
+        for (step, applied) in self.load_steps.iter().zip(self.applied(load_step, factor)) {
+            for (body, motion) in &step.loading.settlements {
+                (0..3).for_each(|i| settled[*body][i] += applied * motion[i]);
+            }
+        }
+        settled
+    }
+
     /// Work-conjugate displacement of a loading by rigid motions: Σ F·u / Σ|F| \[m\], u by `rigid` of (body, point). If a loading
     /// only moves supports, the distance by which it has moved them at its factor.
     pub fn load_displacement(

@@ -1,11 +1,12 @@
-//! Proofs for the certificate that no rate raises the load: trees of modes, with multipliers from the response of the structure.
+//! Proofs for the certificate that no rate raises the load, or that none continues the path: trees of modes, with multipliers
+//! from the response of the structure.
 
 use super::system::System;
 use crate::linear::largest;
 use crate::rate::answer::Budget;
 use crate::rate::problem::RateProblem;
 use crate::rate::tree::search;
-use voussoir_core::path::{FarkasVector, ModeTree};
+use voussoir_core::path::{FarkasVector, ModeTree, NoneContinues};
 
 /// Facets of the active set up to which the search is tried: its program is dense.
 pub(super) const MOST_FACETS: usize = 160;
@@ -15,9 +16,12 @@ const REST: f64 = 1e-10;
 /// Motions per greatest motion that are rounding.
 const STILL: f64 = 1e-10;
 
-/// The multipliers that complete `alpha`, the gap rates of the active points, by the response `x` to them at a held load, in scaled
+/// All unknowns for gap rates of the active points, which stick but for these, and a rate of the load.
+pub(super) type Response<'a> = &'a dyn Fn(&[[f64; 2]], f64) -> Option<Vec<f64>>;
+
+/// The multipliers that complete `alpha`, the gap rates of the active points, and `work` by the response `x` to them, in scaled
 /// units. The active points stick in it, so that the structure is symmetric: y = −q̇, β = −ṙ.
-fn dual_vector(system: &System, x: &[f64], alpha: &[[f64; 2]]) -> FarkasVector {
+fn dual_vector(system: &System, x: &[f64], alpha: &[[f64; 2]], work: f64) -> FarkasVector {
     let (forces, motions) = x.split_at(2 * system.contacts);
     let unit = if largest(forces) <= REST * largest(alpha.as_flattened()) { 0.0 } else { system.units.force };
     let still = STILL * largest(motions);
@@ -26,18 +30,39 @@ fn dual_vector(system: &System, x: &[f64], alpha: &[[f64; 2]]) -> FarkasVector {
     FarkasVector {
         equilibrium: system.motions(&moving).into_iter().map(|own| own.map(|v| -v)).collect(),
         gap: forces.chunks_exact(2).map(negative).collect(),
+        work,
     }
 }
 
-/// The tree that proves that no rate of a problem over the contact points `contacts` raises the load. `response`: all unknowns for gap
-/// rates of these points at a held load. `None` if the search does not find the proof within its budget.
+/// The tree that proves that no rate of a problem over the contact points `contacts` raises the load. `None` if the search does not find the proof within its budget.
 pub(super) fn none_rises(
     (problem, system): (&RateProblem, &System),
     contacts: &[usize],
     trials: &mut u64,
-    response: impl Fn(&[[f64; 2]]) -> Option<Vec<f64>>,
+    response: Response,
 ) -> Option<ModeTree> {
-    let proof = search(problem, 1.0, Budget::default().leaves, trials).proof?;
-    let vector = |alpha: &[[f64; 2]]| response(alpha).map(|x| dual_vector(system, &x, alpha)).unwrap_or_default();
+    let found = search(problem, 1.0, Budget::default().leaves, trials);
+    let proof = found.proof.filter(|_| found.rates.is_empty())?;
+    let vector = |alpha: &[[f64; 2]], _: f64| {
+        response(alpha, 0.0).map(|x| dual_vector(system, &x, alpha, 0.0)).unwrap_or_default()
+    };
     proof.certified(problem, contacts, &vector)
+}
+
+/// The trees that prove that no rate of a problem over the contact points `contacts` continues the path. `unit`: λ for a unit of
+/// the load in the problem. `None` if the search does not find them within its budget.
+pub(super) fn none_continues(
+    (problem, system): (&RateProblem, &System),
+    (contacts, unit): (&[usize], f64),
+    trials: &mut u64,
+    response: Response,
+) -> Option<NoneContinues> {
+    let vector = |alpha: &[[f64; 2]], work: f64| {
+        response(alpha, -work).map(|x| dual_vector(system, &x, alpha, work * unit)).unwrap_or_default()
+    };
+    let mut tree = |factor: f64| {
+        let proof = search(problem, factor, Budget::default().leaves, trials).proof?;
+        proof.certified(problem, contacts, &vector)
+    };
+    Some(NoneContinues { rises: tree(1.0)?, stands: tree(0.0)?, falls: tree(-1.0)? })
 }

@@ -72,18 +72,18 @@ impl ModeTree {
 }
 
 impl NoRate {
-    /// The proof in the form of the certificate, over the contact points `contacts` of the structure. `None` if it is not
-    /// a proof that no rate rises.
+    /// The proof in the form of the certificate, over the contact points `contacts` of the structure. `None` if a rate with
+    /// λ̇ = 0 is left; other rates that continue nothing are in modes that the path had before.
     ///
-    /// `vector` completes gap multipliers α of the points to multipliers of the whole structure. If the structure is
-    /// symmetric, it is the negative response of the structure to the gap rates α at a held load: y = −q̇, β = −ṙ.
+    /// `vector` completes gap multipliers α of the points and the multiplier y_c to multipliers of the whole structure. If the
+    /// structure is symmetric, it is the negative response of the structure to the gap rates α and to λ̇ = −y_c: y = −q̇, β = −ṙ.
     pub fn certified(
         &self,
         problem: &RateProblem,
         contacts: &[usize],
-        vector: &impl Fn(&[[f64; 2]]) -> FarkasVector,
+        vector: &impl Fn(&[[f64; 2]], f64) -> FarkasVector,
     ) -> Option<CertifiedTree> {
-        if self.factor <= 0.0 { None } else { self.certified_tree(&self.tree, problem, contacts, vector) }
+        self.certified_tree(&self.tree, problem, contacts, vector)
     }
 
     fn certified_tree(
@@ -91,11 +91,14 @@ impl NoRate {
         tree: &ModeTree,
         problem: &RateProblem,
         contacts: &[usize],
-        vector: &impl Fn(&[[f64; 2]]) -> FarkasVector,
+        vector: &impl Fn(&[[f64; 2]], f64) -> FarkasVector,
     ) -> Option<CertifiedTree> {
         match tree {
-            ModeTree::Rate(_) => None,
-            ModeTree::Contradiction(y) => Some(CertifiedTree::Leaf(vector(&self.force_multipliers(problem, y)))),
+            ModeTree::Rate(_) => (self.factor != 0.0).then_some(CertifiedTree::Before),
+            ModeTree::Contradiction(y) => {
+                let work = y.get(self.rows.len()).copied().unwrap_or_default();
+                Some(CertifiedTree::Leaf(vector(&self.force_multipliers(problem, y), work)))
+            }
             ModeTree::Point { point, modes } => {
                 let branch = |(mode, tree): &(PointMode, ModeTree)| {
                     self.certified_tree(tree, problem, contacts, vector).map(|tree| (*mode, tree))

@@ -108,12 +108,25 @@ pub struct PathRecord {
     /// True if the end is proved by the states and witnesses alone, whoever has found them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub end_is_checked: Option<bool>,
+    /// What that proof is about; `None` without one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub end_proof: Option<EndProof>,
     /// The last state of the path: the range that `greatest` is about ends there.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub followed_to: Option<FollowedTo>,
     /// Where the path left an equilibrium that became unstable.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub branches: Vec<BranchEntry>,
+}
+
+/// The proof of the end of a path.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum EndProof {
+    /// No rate at all raises the load at its limit points.
+    StatesAndWitnesses,
+    /// Laws with a history: no rate of the loading set that was found raises the load.
+    LoadingSet,
 }
 
 /// What proves that a case stands.

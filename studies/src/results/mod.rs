@@ -20,7 +20,8 @@ mod study_results;
 pub mod thrust_line;
 
 pub use case_result::{
-    CaseLabel, CaseResult, NonAssociatedAnswer, PathRecord, Proof, ProofFields, StageResult, other_limit_point,
+    CaseLabel, CaseResult, EndProof, NonAssociatedAnswer, PathRecord, Proof, ProofFields, StageResult,
+    other_limit_point,
 };
 pub use comparison::{Comparison, ComparisonCell, ComparisonRow, MapAxes};
 pub use entries::{

@@ -77,6 +77,8 @@ pub enum StoredClaim {
     Rate(PathRate),
     /// No rate raises the load: the nodes of a tree of decisions, each before its branches.
     NoneRises(Vec<StoredNode>),
+    /// No rate continues the path: the nodes of the trees for a factor that rises, stands still and falls.
+    NoneContinues([Vec<StoredNode>; 3]),
 }
 
 /// A node of a tree of decisions. A list of nodes has no depth that a reader could exceed.
@@ -87,4 +89,6 @@ pub enum StoredNode {
     Leaf(FarkasVector),
     /// A contact point, and the mode of each of the branches that follow.
     Split(usize, Vec<PointMode>),
+    /// Modes that the path had before.
+    Before,
 }

@@ -1,13 +1,16 @@
 //! The end of a path, proved by its states and witnesses without trust in its solver.
 //!
 //! The states are a chain: each follows from the one before. A witness is a proof about rates at one of them. So a limit point is proved
-//! by a witness that no rate raises the load there, a plateau by the same and a mechanism, a target by a chain that reaches it.
+//! by a witness that no rate raises the load there, a plateau by the same and a mechanism, a target by a chain that reaches it. If laws have
+//! a history, a limit point is proved for the loading set of the rate just beyond it.
 
 use super::limit_points::asked_end;
+use crate::results::EndProof;
+use std::cell::Cell;
 use voussoir_core::certificate::{PathChain, ray_residual, tolerance};
 use voussoir_core::limit::Status;
 use voussoir_core::path::{
-    LoadStep, LoadStepEnd, PathAnswer, PathProblem, PathSettings, PathState, ProvenPeak, Witness,
+    LimitPointEnd, LoadStep, LoadStepEnd, PathAnswer, PathProblem, PathSettings, PathState, ProvenPeak, Witness,
 };
 
 /// Share of the greatest limit point to which the load has fallen at the end of the range.
@@ -23,10 +26,12 @@ const DISSIPATES: f64 = 1e-6;
 
 /// The chain of a path with the answer of its solver.
 pub(super) struct PathProof<'a> {
-    pub chain: &'a PathChain,
-    pub problem: &'a PathProblem,
-    pub settings: &'a PathSettings,
-    pub solved: &'a PathAnswer,
+    chain: &'a PathChain,
+    problem: &'a PathProblem,
+    settings: &'a PathSettings,
+    solved: &'a PathAnswer,
+    /// True if a limit point is proved for one loading set only.
+    one_loading_set: Cell<bool>,
 }
 
 /// 1 if a load step raises its factor, else −1.
@@ -37,12 +42,27 @@ fn sense(step: &LoadStep) -> f64 {
     }
 }
 
-impl PathProof<'_> {
+impl<'a> PathProof<'a> {
+    /// The proof of an answer whose states are a chain.
+    pub fn new(
+        chain: &'a PathChain,
+        problem: &'a PathProblem,
+        settings: &'a PathSettings,
+        solved: &'a PathAnswer,
+    ) -> Self {
+        PathProof { chain, problem, settings, solved, one_loading_set: Cell::new(false) }
+    }
+
     /// Checks the end that the solver claims.
     ///
     /// # Errors
     /// The first part that is not proved, in words.
-    pub fn end(&self) -> Result<(), String> {
+    pub fn end(&self) -> Result<EndProof, String> {
+        self.check_end()?;
+        Ok(if self.one_loading_set.get() { EndProof::LoadingSet } else { EndProof::StatesAndWitnesses })
+    }
+
+    fn check_end(&self) -> Result<(), String> {
         if let Some(why) = self.chain.broken() {
             return Err(why.to_string());
         }
@@ -66,14 +86,20 @@ impl PathProof<'_> {
     fn collapse(&self) -> Result<(), String> {
         self.check_falls()?;
         let state = &self.solved.state;
-        if self.settings.finite {
+        let by_mechanism = || {
+            let motion = self.solved.motion.as_deref().ok_or("no mechanism")?;
+            let witnesses: Vec<&Witness> = self.witnesses(state).collect();
+            self.chain.check_collapse(state, motion, &witnesses)?;
+            self.is_greatest(state)
+        };
+        let by_range = || {
             self.limit_point(state)?;
-            return self.chain.stands_still_after(state).or_else(|_| self.falls_after(state));
+            self.chain.stands_still_after(state).or_else(|_| self.falls_after(state))
+        };
+        if self.settings.finite || self.chain.has_history() {
+            return by_range();
         }
-        let motion = self.solved.motion.as_deref().ok_or("no mechanism")?;
-        let witnesses: Vec<&Witness> = self.witnesses(state).collect();
-        self.chain.check_collapse(state, motion, &witnesses)?;
-        if self.is_greatest(state) { Ok(()) } else { Err("the load is greater at an earlier state".into()) }
+        by_mechanism().or_else(|why| by_range().map_err(|_| why))
     }
 
     /// A mechanism that refutes equilibrium by itself. On another path friction that is not associated may carry the dead load.
@@ -95,26 +121,41 @@ impl PathProof<'_> {
         self.chain.check_ray(self.witnesses(state).next().ok_or("no witness of the ray")?)
     }
 
-    /// The first limit point of a stage that ends there.
+    /// A limit point with the reason why the path ends at it: the question, a joint that is lost, or that no rate leads on.
     fn ends_at_limit_point(&self) -> Result<(), String> {
         let state = &self.solved.state;
-        if self.solved.limit_point_end.is_some() {
-            return Err("the reason why the path ends at its limit point is not checked".into());
-        }
-        if asked_end(self.settings, &self.problem.load_steps[state.load_step]).is_none() {
-            return Err("the stage does not end at its first limit point".into());
-        }
+        let asked = asked_end(self.settings, &self.problem.load_steps[state.load_step]);
         let earlier = |own: &&PathState| own.load_step == state.load_step && own.factor != state.factor;
-        if self.maxima().iter().any(earlier) {
+        if asked.is_some() && self.maxima().iter().any(earlier) {
             return Err("another limit point comes first".into());
         }
-        self.limit_point(state)
+        match self.solved.limit_point_end {
+            Some(LimitPointEnd::JointLost) => {
+                self.chain.check_joint_lost()?;
+                self.is_last(state)?;
+                self.is_greatest(state)?;
+                self.check_falls()
+            }
+            Some(LimitPointEnd::None) => {
+                self.chain.check_none_continues(&self.solved.witnesses)?;
+                self.is_greatest(state)?;
+                self.limit_point(state)?;
+                self.check_falls()
+            }
+            None if asked.is_none() => Err("the stage does not end at its first limit point".into()),
+            end if end.is_some() && end != asked => Err("the path ends at its limit point for another reason".into()),
+            _ => self.limit_point(state),
+        }
     }
 
-    /// No rate raises the load at a state of the chain.
+    /// No rate raises the load at a state of the chain; if laws have a history, none of one loading set.
     fn limit_point(&self, state: &PathState) -> Result<(), String> {
         let witnesses: Vec<&Witness> = self.witnesses(state).collect();
-        self.chain.check_none_rises(state, &witnesses)
+        if !self.chain.has_history() {
+            return self.chain.check_none_rises(state, &witnesses);
+        }
+        self.one_loading_set.set(true);
+        self.chain.check_loading_set(state, &witnesses)
     }
 
     /// Witnesses at a state.
@@ -127,10 +168,22 @@ impl PathProof<'_> {
         self.chain.states().filter(move |own| own.load_step == load_step)
     }
 
-    /// True if no state of its load step has a greater load, in the sense of the step.
-    fn is_greatest(&self, state: &PathState) -> bool {
+    /// No state of its load step has a greater load, in the sense of the step.
+    fn is_greatest(&self, state: &PathState) -> Result<(), String> {
         let sense = sense(&self.problem.load_steps[state.load_step]);
-        self.of_step(state.load_step).all(|own| (own.factor - state.factor) * sense <= SAME * state.factor.abs())
+        let lower = |own: &PathState| (own.factor - state.factor) * sense <= SAME * state.factor.abs();
+        if self.of_step(state.load_step).all(lower) {
+            Ok(())
+        } else {
+            Err("the load is greater at another state".into())
+        }
+    }
+
+    /// The chain ends at a state.
+    fn is_last(&self, state: &PathState) -> Result<(), String> {
+        let last = self.chain.states().last();
+        let ends = last.is_some_and(|last| last.load_step == state.load_step && last.factor == state.factor);
+        if ends { Ok(()) } else { Err("the path goes on behind its limit point".into()) }
     }
 
     /// States of the chain behind which the load falls after it has risen, each by more than a load that stands still.
@@ -197,15 +250,16 @@ impl PathProof<'_> {
     }
 
     /// After a state the load never exceeds it up to the end of the range: the end that the stage asks for, else half of this load, counted
-    /// from the start of its load step, or a displacement of one span.
+    /// from the start of its load step, or a displacement of one span. A joint that is lost ends the range too.
     fn falls_after(&self, state: &PathState) -> Result<(), String> {
         let step = &self.problem.load_steps[state.load_step];
         let of_step = || self.of_step(state.load_step);
         let (Some(first), Some(last)) = (of_step().next(), of_step().last()) else {
             return Err("no state of the load step".into());
         };
-        if !self.is_greatest(state) {
-            return Err("the load exceeds the limit point".into());
+        self.is_greatest(state)?;
+        if self.chain.check_joint_lost().is_ok() {
+            return Ok(());
         }
         let ended = match self.settings.stop(step.stage) {
             [None, None] => {
@@ -226,7 +280,8 @@ impl PathProof<'_> {
         let mut states = maxima.clone();
         let end = &self.solved.state;
         let is_end = |state: &&PathState| state.load_step == end.load_step && state.factor == end.factor;
-        if self.solved.status == Status::LimitPoint || self.settings.finite && !states.iter().any(is_end) {
+        let ends_there = self.solved.status == Status::LimitPoint || self.settings.finite;
+        if ends_there && !states.iter().any(is_end) {
             states.extend(self.of_step(end.load_step).find(is_end));
         }
         let peak = |state: &PathState| {

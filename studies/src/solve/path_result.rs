@@ -19,7 +19,7 @@ use crate::results::load_entries::path_fill;
 use crate::results::path_state::{carried, mechanism_of, open_hinges, small};
 use crate::results::thrust_line::thrust_line;
 use crate::results::{
-    BranchEntry, CaseResult, DisplacementEntry, EventEntry, PathRecord, Proof, ProofFields, StabilityEntry,
+    BranchEntry, CaseResult, DisplacementEntry, EndProof, EventEntry, PathRecord, Proof, ProofFields, StabilityEntry,
     StageResult, StateEntry,
 };
 use std::collections::BTreeMap;
@@ -32,6 +32,10 @@ use voussoir_core::limit::Status;
 use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::model::{Assembly, Stage, Target};
 use voussoir_core::path::{Branching, PathAnswer, PathEvent, PathProblem, PathState, StageStability};
+
+/// The note on a limit point of laws with a history.
+const LOADING_SET: &str = "the limit point is proved for the loading set that was found: another set of points that soften or \
+     yield may have a rate that raises the load";
 
 /// What was seen of a path.
 pub(super) struct Seen {
@@ -57,7 +61,7 @@ pub(super) fn path_result(
     tag: &str,
     problem: &PathProblem,
     mut solved: PathAnswer,
-    Seen { checker, chain, ends, mut progress, energy, states, believed }: Seen,
+    Seen { checker, mut chain, ends, mut progress, energy, states, believed }: Seen,
 ) -> CaseResult {
     let (assembly, finite) = (input.assembly, input.settings.finite);
     let associated = associated_load(input);
@@ -72,15 +76,16 @@ pub(super) fn path_result(
         prefer_symmetric(assembly, &checker, &mut solved);
     }
     let mut certificate = certificate(&solved, &checker, at_rest, energy);
-    let proof = PathProof { chain: &chain, problem, solved: &solved, settings: input.settings };
+    chain.add_peak(&solved.state);
+    let proof = PathProof::new(&chain, problem, input.settings, &solved);
     let end = proof.end();
-    let end_is_checked = end.is_ok();
-    let stored = if end_is_checked { stored(&chain, &solved, input.stored_numbers) } else { None };
+    let end_proof = end.as_ref().ok().copied();
+    let stored = end_proof.and_then(|_| stored(&chain, &solved, input.stored_numbers));
     if believed {
         progress.add_peak(&solved.state);
     } else {
         let limit_points = proof.limit_points();
-        leave_out_unproved(&mut solved);
+        leave_out_unproved(&mut solved, end_proof.is_some());
         solved.limit_points = limit_points;
         if finite {
             // The rate just behind a limit point is not checked.
@@ -93,7 +98,7 @@ pub(super) fn path_result(
         hint: (solved.status, solved.load_step, solved.factor),
         range: search_range(input, problem, &solved),
         certificate: &certificate,
-        end: if believed { Ok(()) } else { end },
+        end: if believed { Ok(()) } else { end.map(|_| ()) },
         field_is_proof: !finite && safe_theorem_holds(assembly),
         associated: associated.as_ref(),
     };
@@ -107,6 +112,10 @@ pub(super) fn path_result(
             notes.push(format!("{tag}: {}", certificate.failures.join("; ")));
         }
         keep_proved(&mut solved, &progress, problem, status);
+    }
+    let end_proof = end_proof.filter(|_| status.is_answer());
+    if end_proof == Some(EndProof::LoadingSet) {
+        notes.push(LOADING_SET.into());
     }
     solved.status = status;
     add_last_limit_point(&mut solved);
@@ -167,18 +176,19 @@ pub(super) fn path_result(
         notes,
         path: PathRecord {
             states,
-            end_is_checked: Some(end_is_checked && status.is_answer()),
+            end_is_checked: Some(end_proof.is_some()),
+            end_proof,
             ..path_record(input, problem, solved, checker, &progress.history)
         },
-        stored_path: stored.filter(|_| end_is_checked && status.is_answer()).map(Arc::new),
+        stored_path: stored.filter(|_| status.is_answer()).map(Arc::new),
         ..CaseResult::empty()
     }
 }
 
 /// Removes the parts of an answer that no check proves. They are not believed if the solver is from outside this project.
-fn leave_out_unproved(solved: &mut PathAnswer) {
+fn leave_out_unproved(solved: &mut PathAnswer, end_is_checked: bool) {
     solved.limit_points.clear();
-    solved.limit_point_end = None;
+    solved.limit_point_end = solved.limit_point_end.filter(|_| end_is_checked);
     solved.branchings.clear();
     solved.stability.clear();
     solved.events.clear();
@@ -244,6 +254,7 @@ fn path_record(
         branches,
         states: Vec::new(),
         end_is_checked: None,
+        end_proof: None,
     }
 }
 

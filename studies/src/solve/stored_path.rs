@@ -3,16 +3,18 @@
 use crate::results::stored_path::{StoredClaim, StoredNode, StoredPath, StoredState, StoredWitness};
 use voussoir_core::certificate::{PathChain, in_range};
 use voussoir_core::limit::Counters;
-use voussoir_core::path::{ModeTree, PathAnswer, PathState, RateClaim, Witness};
+use voussoir_core::path::{ModeTree, NoneContinues, PathAnswer, PathState, RateClaim, Witness};
 
 /// Most decisions one below another in a tree.
 const MAX_DEPTH: usize = 1_000;
 
-/// The states of a chain with the proof of its end; `None` if the end is not one of the states, or if they have more than `most` numbers.
+/// The states of a chain with the proof of its end; `None` if the end is not one of the states, if they have more than `most`
+/// numbers, or if laws have a history, which is not stored.
 pub(super) fn stored(chain: &PathChain, solved: &PathAnswer, most: usize) -> Option<StoredPath> {
     let states: Vec<&PathState> = chain.states().skip(1).collect();
     let numbers = |state: &&PathState| state.force.as_flattened().len() + state.motion.as_flattened().len();
-    if states.iter().map(numbers).sum::<usize>() > most {
+    let has_history = |state: &&PathState| !state.memory.is_empty() || !state.yielded.is_empty();
+    if states.iter().map(numbers).sum::<usize>() > most || states.iter().any(has_history) {
         return None;
     }
     let place = |wanted: &PathState| {
@@ -47,10 +49,17 @@ fn stored_state(state: &PathState) -> StoredState {
 }
 
 fn stored_claim(claim: &RateClaim) -> StoredClaim {
-    let tree = match claim {
-        RateClaim::Rate(rate) => return StoredClaim::Rate(rate.clone()),
-        RateClaim::NoneRises(tree) => tree,
-    };
+    match claim {
+        RateClaim::Rate(rate) => StoredClaim::Rate(rate.clone()),
+        RateClaim::NoneRises(tree) => StoredClaim::NoneRises(nodes(tree)),
+        RateClaim::NoneContinues(proofs) => {
+            StoredClaim::NoneContinues([&proofs.rises, &proofs.stands, &proofs.falls].map(nodes))
+        }
+    }
+}
+
+/// The nodes of a tree, each before its branches.
+fn nodes(tree: &ModeTree) -> Vec<StoredNode> {
     let (mut nodes, mut left) = (Vec::new(), vec![tree]);
     while let Some(tree) = left.pop() {
         nodes.push(match tree {
@@ -59,9 +68,10 @@ fn stored_claim(claim: &RateClaim) -> StoredClaim {
                 left.extend(branches.iter().rev().map(|(_, branch)| branch));
                 StoredNode::Split(*contact, branches.iter().map(|(mode, _)| *mode).collect())
             }
+            ModeTree::Before => StoredNode::Before,
         });
     }
-    StoredClaim::NoneRises(nodes)
+    nodes
 }
 
 /// The states of a stored path. Gaps are left out: they follow from forces and motions.
@@ -100,16 +110,14 @@ pub(super) fn answer(path: &StoredPath, states: &[PathState]) -> Result<PathAnsw
     let witness = |own: &StoredWitness| {
         let claim = match &own.claim {
             StoredClaim::Rate(rate) => RateClaim::Rate(rate.clone()),
-            StoredClaim::NoneRises(nodes) => {
-                let mut left = nodes.iter();
-                let tree = tree(&mut left, 0)?;
-                if left.next().is_some() {
-                    return Err("a tree of decisions has more nodes than branches".to_string());
-                }
-                RateClaim::NoneRises(tree)
-            }
+            StoredClaim::NoneRises(nodes) => RateClaim::NoneRises(whole_tree(nodes)?),
+            StoredClaim::NoneContinues([rises, stands, falls]) => RateClaim::NoneContinues(NoneContinues {
+                rises: whole_tree(rises)?,
+                stands: whole_tree(stands)?,
+                falls: whole_tree(falls)?,
+            }),
         };
-        Ok(Witness { state: at(own.state)?, claim })
+        Ok::<_, String>(Witness { state: at(own.state)?, claim })
     };
     let state = at(path.end)?;
     Ok(PathAnswer {
@@ -132,12 +140,23 @@ pub(super) fn answer(path: &StoredPath, states: &[PathState]) -> Result<PathAnsw
     })
 }
 
+/// The tree of a list of nodes, all of which belong to it.
+fn whole_tree(nodes: &[StoredNode]) -> Result<ModeTree, String> {
+    let mut left = nodes.iter();
+    let tree = tree(&mut left, 0)?;
+    match left.next() {
+        None => Ok(tree),
+        Some(_) => Err("a tree of decisions has more nodes than branches".into()),
+    }
+}
+
 fn tree<'a>(left: &mut impl Iterator<Item = &'a StoredNode>, depth: usize) -> Result<ModeTree, String> {
     if depth > MAX_DEPTH {
         return Err(format!("a tree of decisions is deeper than {MAX_DEPTH}"));
     }
     match left.next().ok_or("a tree of decisions has fewer nodes than branches")? {
         StoredNode::Leaf(vector) => Ok(ModeTree::Leaf(vector.clone())),
+        StoredNode::Before => Ok(ModeTree::Before),
         StoredNode::Split(contact, modes) => {
             let mut branch = |mode: &_| Ok((*mode, tree(left, depth + 1)?));
             let branches = modes.iter().map(&mut branch).collect::<Result<_, String>>()?;

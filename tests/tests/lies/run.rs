@@ -45,7 +45,7 @@ fn told_in(
     lie: &str,
     known: Option<&CaseResult>,
 ) -> Option<(CaseResult, Vec<String>)> {
-    let case = scene.case(&liar(kind, of, lie)).unwrap_or_else(|wrong| panic!("{wrong}"));
+    let case = scene.case(&liar(kind, of, lie)).ok()?;
     let result = solve_case(&case);
     let wrong = scene.truth.contradictions(&result, known);
     Some((result, wrong))

@@ -6,11 +6,12 @@
 //! the state midway must nearly be in equilibrium too: states of two branches are not neighbours.
 
 use super::displaced::Displaced;
+use super::history::{History, has_history};
 use super::increment::{Allowed, first_opening, passed};
 use super::none_rises::RateProblem;
 use super::point_modes::{ACTIVE, ModeCone, point_modes};
 use super::rate_equations::RateEquations;
-use crate::path::{FarkasVector, LoadStep, LoadStepEnd, ModeTree, PathProblem, PathState, RateClaim, Witness};
+use crate::path::{FarkasVector, LoadStep, LoadStepEnd, ModeTree, PathProblem, PathState, RateClaim, Witness, Yielded};
 use std::sync::Arc;
 
 /// Most distance of all increments together from the flow of laws, as a share of the greatest displacement.
@@ -30,18 +31,20 @@ const MECHANISM: f64 = 1e-3;
 
 /// A state of a chain.
 #[derive(Debug, Clone)]
-struct Link {
-    state: PathState,
+pub(super) struct Link {
+    pub(super) state: PathState,
     /// Opening of every contact point \[m\].
-    openings: Vec<f64>,
+    pub(super) openings: Vec<f64>,
+    /// The history of laws after it.
+    pub(super) history: History,
 }
 
 /// A chain of states.
 #[derive(Debug)]
 pub struct PathChain {
-    structure: Arc<PathProblem>,
-    finite: bool,
-    links: Vec<Link>,
+    pub(super) structure: Arc<PathProblem>,
+    pub(super) finite: bool,
+    pub(super) links: Vec<Link>,
     /// Distance of the increments so far from the flow of laws \[m\].
     drift: f64,
     /// Why the chain ends before its last state.
@@ -49,23 +52,48 @@ pub struct PathChain {
 }
 
 /// The greatest size of gaps and displacements.
-fn deformation(state: &PathState) -> f64 {
+pub(super) fn deformation(state: &PathState) -> f64 {
     let moves = state.motion.iter().flat_map(|u| [u[0], u[1]]);
     state.gap.as_flattened().iter().copied().chain(moves).fold(0.0, |a: f64, v| a.max(v.abs()))
 }
 
-fn greatest_force(state: &PathState) -> f64 {
+pub(super) fn greatest_force(state: &PathState) -> f64 {
     state.force.iter().map(|r| r[0].hypot(r[1])).fold(0.0, f64::max)
 }
 
 /// Returns true if two records are of one state.
-fn is_same(a: &PathState, b: &PathState) -> bool {
+pub(super) fn is_same(a: &PathState, b: &PathState) -> bool {
     a.load_step == b.load_step && a.factor == b.factor && a.force == b.force && a.motion == b.motion
 }
 
 /// Returns true if a load step has neither a load nor a settlement, so that its factor means nothing.
 fn is_idle(problem: &PathProblem, step: &LoadStep) -> bool {
     step.loading.settlements.is_empty() && problem.wrenches(&step.loading).iter().all(|w| *w == [0.0; 3])
+}
+
+/// The mean of two neighbours.
+pub(super) fn midway(problem: &PathProblem, last: &PathState, state: &PathState) -> PathState {
+    let mean2 = |a: &[[f64; 2]], b: &[[f64; 2]]| -> Vec<[f64; 2]> {
+        a.iter().zip(b).map(|(a, b)| [0, 1].map(|i| 0.5 * (a[i] + b[i]))).collect()
+    };
+    // Applied loads are linear in the factor, whichever load step the last state is in.
+    let applied = |of: &PathState| problem.applied(of.load_step, of.factor)[state.load_step];
+    let start = problem.load_steps[state.load_step].start;
+    let motion = last.motion.iter().zip(&state.motion);
+    let deformed = |body: usize| {
+        let (from, to) = (last.inelastic(body)?, state.inelastic(body)?);
+        let mean = from.displacement.iter().zip(to.displacement.iter()).map(|(a, b)| 0.5 * (a + b));
+        Some(Yielded { displacement: Arc::new(mean.collect()), state: to.state.clone() })
+    };
+    PathState {
+        load_step: state.load_step,
+        factor: start + 0.5 * (applied(last) + applied(state)),
+        force: mean2(&last.force, &state.force),
+        gap: mean2(&last.gap, &state.gap),
+        motion: motion.map(|(a, b)| [0, 1, 2].map(|i| 0.5 * (a[i] + b[i]))).collect(),
+        yielded: (0..problem.bodies.len()).map(deformed).collect(),
+        ..PathState::default()
+    }
 }
 
 impl PathChain {
@@ -80,9 +108,8 @@ impl PathChain {
             ..PathState::default()
         };
         let openings = contacts.iter().map(first_opening).collect();
-        let history = structure.yields() || contacts.iter().any(|c| c.law.response().is_some());
-        let broken = history.then(|| "blocks that yield and laws of tractions from gaps have no checked chain".into());
-        PathChain { structure, finite, links: vec![Link { state, openings }], drift: 0.0, broken }
+        let history = History::untouched(&structure);
+        PathChain { structure, finite, links: vec![Link { state, openings, history }], drift: 0.0, broken: None }
     }
 
     /// Adds the next state of the path.
@@ -90,21 +117,49 @@ impl PathChain {
         if self.broken.is_some() {
             return;
         }
-        match self.next(state) {
-            Ok((openings, drift)) => {
-                self.links.push(Link { state: state.clone(), openings });
-                self.drift = drift;
+        match self.links.last().map(|last| self.next(last, state)) {
+            None => {}
+            Some(Ok((link, drift))) => {
+                self.links.push(link);
+                self.drift += drift;
             }
-            Err(why) => {
+            Some(Err(why)) => {
                 self.broken = Some(format!("state {} at the factor {}: {why}", self.links.len(), state.factor));
             }
         }
     }
 
-    /// Openings and drift after an increment to a state.
-    fn next(&self, state: &PathState) -> Result<(Vec<f64>, f64), String> {
+    /// Adds a state that the observer has not seen, the located peak between two states, if it follows from one of them.
+    pub fn add_peak(&mut self, state: &PathState) {
+        if self.links.iter().any(|link| is_same(&link.state, state)) {
+            return;
+        }
+        let before = (0..self.links.len()).rev().find_map(|at| {
+            let (link, _) = self.next(&self.links[at], state).ok().filter(|_| self.is_beside(at, state))?;
+            Some((at, link))
+        });
+        if let Some((at, link)) = before {
+            self.links.insert(at + 1, link);
+        }
+    }
+
+    /// True if the load has a turn between two links at which the state may be.
+    fn is_beside(&self, at: usize, state: &PathState) -> bool {
+        let sense = self.sense(state.load_step);
+        let of_step = |other: &Link| other.state.load_step == state.load_step;
+        let higher = |other: &Link| of_step(other) && (state.factor - other.state.factor) * sense >= 0.0;
+        higher(&self.links[at]) && self.links.get(at + 1).is_none_or(higher)
+    }
+
+    /// 1 if a load step raises its factor, else −1.
+    pub(super) fn sense(&self, load_step: usize) -> f64 {
+        let step = &self.structure.load_steps[load_step];
+        if matches!(step.end, LoadStepEnd::Factor(end) if end < step.start) { -1.0 } else { 1.0 }
+    }
+
+    /// The link after an increment from another to a state, and its drift.
+    fn next(&self, last: &Link, state: &PathState) -> Result<(Link, f64), String> {
         let problem = &*self.structure;
-        let Some(last) = self.links.last() else { return Err("there is no state before it".into()) };
         if state.load_step < last.state.load_step || state.load_step >= problem.load_steps.len() {
             return Err("its load step is not the next".into());
         }
@@ -120,20 +175,28 @@ impl PathChain {
         for (index, contact) in problem.contacts.iter().enumerate() {
             let forces = [last.state.force[index], state.force[index]];
             let gaps = [last.state.gap[index], state.gap[index]];
+            if contact.law.response().is_some() {
+                openings.push(0.0);
+                continue;
+            }
             let passed = passed(contact, forces, gaps, last.openings[index], allowed);
             if passed.outside.is_nan() || passed.outside > worst.0 {
                 worst = (passed.outside, index);
             }
             openings.push(passed.opening);
         }
-        let drift = self.drift + (worst.0 - rounding).max(0.0);
-        if drift.is_nan() || drift > DRIFT * size {
+        let drift = (worst.0 - rounding).max(0.0);
+        if drift.is_nan() || self.drift + drift > DRIFT * size {
             return Err(format!("the gap of contact point {} does not flow as its law says", worst.1));
         }
+        let history = match has_history(problem) {
+            true => last.history.after(problem, [&last.state, state], size, self.finite)?,
+            false => History::default(),
+        };
         if self.finite {
             self.check_midway(&last.state, state)?;
         }
-        Ok((openings, drift))
+        Ok((Link { state: state.clone(), openings, history }, drift))
     }
 
     /// Only the factor of the state's own load step may change; earlier steps have reached their ends.
@@ -153,12 +216,7 @@ impl PathChain {
     /// Held bodies have moved by their settlements.
     fn check_supports(&self, state: &PathState) -> Result<(), String> {
         let problem = &*self.structure;
-        let mut settled = vec![[0.0; 3]; problem.bodies.len()];
-        for (step, applied) in problem.load_steps.iter().zip(problem.applied(state.load_step, state.factor)) {
-            for (body, motion) in &step.loading.settlements {
-                (0..3).for_each(|i| settled[*body][i] += applied * motion[i]);
-            }
-        }
+        let settled = problem.settled(state.load_step, state.factor);
         let bodies = problem.bodies.iter().zip(state.motion.iter().zip(&settled));
         let off = bodies.filter(|(body, _)| body.held).flat_map(|(_, (own, settled))| {
             (0..3).map(|i| (own[i] - settled[i]).abs() - SAME_FACTOR * settled[i].abs())
@@ -181,26 +239,17 @@ impl PathChain {
     /// The mean of two neighbours is nearly in equilibrium.
     fn check_midway(&self, last: &PathState, state: &PathState) -> Result<(), String> {
         let problem = &*self.structure;
-        let mean2 = |a: &[[f64; 2]], b: &[[f64; 2]]| -> Vec<[f64; 2]> {
-            a.iter().zip(b).map(|(a, b)| [0, 1].map(|i| 0.5 * (a[i] + b[i]))).collect()
-        };
-        // Applied loads are linear in the factor, whichever load step the last state is in.
-        let applied = |of: &PathState| problem.applied(of.load_step, of.factor)[state.load_step];
-        let start = problem.load_steps[state.load_step].start;
-        let motion = last.motion.iter().zip(&state.motion);
-        let midway = PathState {
-            load_step: state.load_step,
-            factor: start + 0.5 * (applied(last) + applied(state)),
-            force: mean2(&last.force, &state.force),
-            gap: mean2(&last.gap, &state.gap),
-            motion: motion.map(|(a, b)| [0, 1, 2].map(|i| 0.5 * (a[i] + b[i]))).collect(),
-            ..PathState::default()
-        };
+        let midway = midway(problem, last, state);
         let left = Displaced::new(problem, &midway, true).unbalanced();
         let bodies = left.iter().zip(&problem.bodies).filter(|(_, body)| !body.held);
         let worst = bodies.map(|(w, _)| w[0].hypot(w[1]).max(w[2].abs() / problem.length)).fold(0.0, f64::max);
         let size: f64 = midway.force.iter().map(|r| r[0].hypot(r[1])).sum();
         if worst <= MIDWAY * size { Ok(()) } else { Err("it is far from the state before it".into()) }
+    }
+
+    /// True if laws of tractions from gaps, or blocks that yield, make the path depend on its history.
+    pub fn has_history(&self) -> bool {
+        has_history(&self.structure)
     }
 
     /// Why the chain ends before the last state that was added.
@@ -214,17 +263,22 @@ impl PathChain {
     }
 
     /// A state of the chain with the equations of its rates and the modes of its points.
-    fn at(&self, own: &PathState) -> Result<(&Link, RateEquations, Vec<Vec<ModeCone>>), String> {
+    pub(super) fn at(&self, own: &PathState) -> Result<(&Link, RateEquations, Vec<Vec<ModeCone>>), String> {
         let link =
             self.links.iter().rev().find(|link| is_same(&link.state, own)).ok_or("the state is not on the path")?;
-        let state = &link.state;
-        let equations = RateEquations::new(&self.structure, state, self.finite)?;
+        if self.structure.yields() {
+            return Err("rates of blocks that yield are checked for one loading set only".into());
+        }
+        let equations = RateEquations::new(&self.structure, &link.state, self.finite)?;
+        Ok((link, equations, self.modes(&link.state, &link.openings)))
+    }
+
+    /// The modes that all points may take at a state.
+    pub(super) fn modes(&self, state: &PathState, openings: &[f64]) -> Vec<Vec<ModeCone>> {
         let rounding = if self.finite { 512.0 * f64::EPSILON * self.structure.length } else { 0.0 };
         let (slack, closed) = (ACTIVE * greatest_force(state), CLOSED * deformation(state) + rounding);
-        let points = self.structure.contacts.iter().zip(&state.force).zip(&link.openings);
-        let modes: Vec<Vec<ModeCone>> =
-            points.map(|((contact, force), opening)| point_modes(contact, *force, *opening > closed, slack)).collect();
-        Ok((link, equations, modes))
+        let points = self.structure.contacts.iter().zip(&state.force).zip(openings);
+        points.map(|((contact, force), opening)| point_modes(contact, *force, *opening > closed, slack)).collect()
     }
 
     /// Checks that no rate raises the load at a state, and that a mechanism moves on there at constant load. If flow is associated the
@@ -242,6 +296,7 @@ impl PathChain {
         let own = ModeTree::Leaf(FarkasVector {
             equilibrium: motion.iter().map(|velocity| velocity.map(|v| -equations.sense * v)).collect(),
             gap: vec![[0.0; 2]; self.structure.contacts.len()],
+            work: 0.0,
         });
         rates.check_none_rises(&own).map(|_| ()).or_else(|_| self.check_none_rises(state, witnesses))
     }

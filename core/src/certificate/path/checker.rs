@@ -14,6 +14,9 @@ use std::sync::Arc;
 /// that has come apart carries rounding.
 const NOTHING: f64 = 1e-6;
 
+/// Slip beyond the face of a joint that is rounding of the place of an event, as a share of the scene's size.
+const AT_FACE: f64 = 1e-6;
+
 /// Sees the states of a path and keeps the worst of each residual.
 #[derive(Debug, Default)]
 pub struct PathChecker {
@@ -137,7 +140,7 @@ impl PathChecker {
         self.last = Some((state.load_step, state.dissipated));
     }
 
-    /// Checks that bodies balance and that gaps are those of their motions.
+    /// Checks that bodies balance, that gaps follow from their motions, and that supports have moved by their settlements.
     fn check_bodies(&mut self, problem: &PathProblem, displaced: &Displaced, state: &PathState, scale: &Scale) {
         let mut unbalanced = 0.0;
         for (w, _) in displaced.unbalanced().iter().zip(&problem.bodies).filter(|(_, b)| !b.held) {
@@ -148,6 +151,12 @@ impl PathChecker {
         let mut apart = 0.0;
         for (g, own) in displaced.gaps().iter().zip(&state.gap) {
             (0..2).for_each(|i| worsen(&mut apart, (g[i] - own[i]).abs() - scale.rounding));
+        }
+        let settled = problem.settled(state.load_step, state.factor);
+        let supports = problem.bodies.iter().zip(state.motion.iter().zip(&settled)).filter(|(body, _)| body.held);
+        for (_, (own, settled)) in supports {
+            let lengths = [1.0, 1.0, problem.length];
+            (0..3).for_each(|i| worsen(&mut apart, (own[i] - settled[i]).abs() * lengths[i]));
         }
         self.note("path_kinematics", apart / scale.deformation);
     }
@@ -168,6 +177,11 @@ impl PathChecker {
                 PointLaw::Response(_) => continue,
                 PointLaw::Facets(facets) => facets,
             };
+            if self.finite && force[0] > NOTHING * largest {
+                let [low, high] = contact.sliding.slip;
+                let beyond = (low - gap[1]).max(gap[1] - high) - AT_FACE * problem.length;
+                note(&mut bonded, beyond);
+            }
             let before = std::mem::replace(&mut last, facets);
             if !std::ptr::eq(before, last) {
                 asks = Asks::of(facets);

@@ -4,8 +4,9 @@
 //! - `path_equilibrium`: resultants of loads and contact forces on each free body, relative to the
 //!   sum of all forces (moments divided by the scene's length), in displaced positions where
 //!   displacements are finite ([`Displaced`]);
-//! - `path_kinematics`: gaps recomputed from motions, forces and loads, relative to the greatest gap or
-//!   displacement; where displacements are finite the rounding of positions is granted;
+//! - `path_kinematics`: gaps recomputed from motions, forces and loads, and motions of supports from settlements, relative to the
+//!   greatest gap or displacement. With finite displacements the rounding of positions is granted, and no pressed point has
+//!   slipped beyond the face that it slides on;
 //! - `path_strength`: greatest excess of a facet over its bound, relative to the greatest contact force;
 //! - `path_penetration`: greatest overlap of blocks, relative to the greatest gap or deformation;
 //! - `path_complementarity`: greatest force × gap of open contact points, relative to both;
@@ -30,14 +31,18 @@
 //!
 //! The end of a path is proved by a [`PathChain`] of its states, and by a [`Witness`](crate::path::Witness) at one of them.
 
+mod arrival;
 mod chain;
 mod checker;
 mod claims;
 mod displaced;
 mod displaced_rates;
 mod dual;
+mod ends;
 mod energy;
+mod history;
 mod increment;
+mod loading_set;
 mod none_rises;
 mod point_modes;
 mod rate_check;

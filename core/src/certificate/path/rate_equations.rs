@@ -45,14 +45,8 @@ impl RateEquations {
     /// The equations at a state. An error is the reason why they cannot be derived.
     ///
     /// # Errors
-    /// Blocks that yield, laws of tractions from gaps, and finite displacements with too many unknowns.
+    /// Finite displacements with too many unknowns.
     pub fn new(problem: &PathProblem, state: &PathState, finite: bool) -> Result<Self, String> {
-        if problem.yields() {
-            return Err("rates of blocks that yield are not checked".into());
-        }
-        if (0..problem.contacts.len()).any(|c| problem.response(c).is_some()) {
-            return Err("rates of joint laws of tractions from gaps are not checked".into());
-        }
         let step = &problem.load_steps[state.load_step];
         let mut settlements = vec![[0.0; 3]; problem.bodies.len()];
         for (body, motion) in &step.loading.settlements {

@@ -9,7 +9,7 @@ type Updated = (Vec<(usize, TractionPoint)>, Vec<f64>);
 
 /// One update of every contact point with a law of tractions from gaps, from `before`: contact
 /// point, answer and the states after it. `None` where `before` has the wrong length or an update fails.
-fn updated(problem: &PathProblem, gaps: &[[f64; 2]], before: &[f64]) -> Option<Updated> {
+pub(super) fn updated(problem: &PathProblem, gaps: &[[f64; 2]], before: &[f64]) -> Option<Updated> {
     let (mut after, mut points) = (before.to_vec(), Vec::new());
     if before.len() != problem.memory_size() {
         return None;

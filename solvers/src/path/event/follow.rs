@@ -10,7 +10,7 @@ use super::rates::Direction;
 use super::stability::stage_stability;
 use super::trace::Trace;
 use super::unique::unique;
-use super::witness::{none_rises, rate_witness};
+use super::witness::{none_continues, none_rises, rate_witness};
 use crate::path::outcome::{Outcome, PathRecord};
 use crate::path::stability::regains_limit_point;
 use crate::path::system::Load;
@@ -363,7 +363,11 @@ fn direction(follower: &mut Follower, run: &mut Run) -> Result<Direction, End> {
     match direction {
         Some(direction) => Ok(direction),
         None if undecided => Err(End::Stalled("the path was not followed beyond its limit point".into())),
-        None => Err(End::NoRate),
+        None => {
+            let witness = none_continues(&mut follower.trace, &run.load, run.sense);
+            follower.witnesses.extend(witness);
+            Err(End::NoRate)
+        }
     }
 }
 

@@ -1,4 +1,4 @@
-//! Witnesses for the certificate: rates at a state, and the proof that no rate raises the load.
+//! Witnesses for the certificate: rates at a state, and proofs that no rate raises the load or continues the path.
 
 use super::direction::factorise;
 use super::point::Point;
@@ -6,12 +6,31 @@ use super::rates::Direction;
 use super::schur::SchurComplement;
 use super::trace::Trace;
 use crate::contact::mode::ContactMode;
-use crate::path::dual_vector::{self, MOST_FACETS};
-use crate::path::system::Load;
+use crate::path::dual_vector::{self, MOST_FACETS, Response};
+use crate::path::system::{Load, System};
+use crate::rate::problem::RateProblem;
 use voussoir_core::path::{PathRate, RateClaim, Witness};
 
 /// The proof that no rate raises the load at the present state. `None` if the search does not find it within its budget.
 pub fn none_rises(trace: &mut Trace, load: &Load) -> Option<Witness> {
+    prove(trace, load, |problem, active, trials, response| {
+        dual_vector::none_rises(problem, active, trials, response).map(RateClaim::NoneRises)
+    })
+}
+
+/// The proof that no rate continues the path from the present state; `sense` of λ in the load step.
+pub fn none_continues(trace: &mut Trace, load: &Load, sense: f64) -> Option<Witness> {
+    prove(trace, load, |problem, active, trials, response| {
+        dual_vector::none_continues(problem, (active, sense), trials, response).map(RateClaim::NoneContinues)
+    })
+}
+
+/// A witness at the present state by a search over the modes of the active points.
+fn prove(
+    trace: &mut Trace,
+    load: &Load,
+    search: impl FnOnce((&RateProblem, &System), &[usize], &mut u64, Response) -> Option<RateClaim>,
+) -> Option<Witness> {
     let points = &trace.state.points;
     let active: Vec<usize> = (0..points.len()).filter(|c| points[*c].settled().is_none()).collect();
     if active.iter().map(|c| points[*c].active.len()).sum::<usize>() > MOST_FACETS {
@@ -25,9 +44,14 @@ pub fn none_rises(trace: &mut Trace, load: &Load) -> Option<Witness> {
     let base = factors.present.as_mut()?;
     let at = (present.load_step, load);
     let local = SchurComplement::new((system, &present.points), base, at, &active, &modes, &mut log.counts.solves)?;
-    let response = |gaps: &[[f64; 2]]| base.opened(system, &active, gaps);
-    let tree = dual_vector::none_rises((&local.rate, system), &active, &mut log.counts.rates.trials, response)?;
-    Some(Witness { state, claim: RateClaim::NoneRises(tree) })
+    let driven = base.load_rate(system, present.load_step, load)?.clone();
+    let response = |gaps: &[[f64; 2]], factor: f64| {
+        let mut x = base.opened(system, &active, gaps)?;
+        x.iter_mut().zip(&driven).for_each(|(x, by)| *x += factor * by);
+        Some(x)
+    };
+    let claim = search((&local.rate, system), &active, &mut log.counts.rates.trials, &response)?;
+    Some(Witness { state, claim })
 }
 
 /// The rates of a direction from the present state; `sense` of λ in the load step.

@@ -162,11 +162,12 @@ fn a_certified_tree_names_contact_points() {
     ];
     let case = Case::slipping(&laws, 2, &s, &[0.0, 1.0, 0.0, 1.0]);
     let proof = search(&case.problem, 1.0, 100, &mut 0).proof.expect("complete");
-    let vector = |alpha: &[[f64; 2]]| {
+    let vector = |alpha: &[[f64; 2]], _: f64| {
         let alpha = DVector::from_iterator(4, alpha.iter().flatten().copied());
         assert!(alpha.dot(&case.problem.load_rate) < 0.0);
         let beta = -case.problem.s.tr_mul(&alpha);
-        FarkasVector { equilibrium: Vec::new(), gap: beta.as_slice().chunks(2).map(|b| [b[0], b[1]]).collect() }
+        let gap = beta.as_slice().chunks(2).map(|b| [b[0], b[1]]).collect();
+        FarkasVector { gap, ..FarkasVector::default() }
     };
     let tree = proof.certified(&case.problem, &[7, 9], &vector).expect("a tree");
     assert_eq!(tree.leaves(100), proof.tree.leaves());

@@ -2,7 +2,9 @@
 
 use super::path_lie::{PathAsked, PathLie, Story};
 use voussoir_core::limit::Status;
-use voussoir_core::path::{FarkasVector, ModeTree, PathState, ProvenPeak, RateClaim, Witness};
+use voussoir_core::path::{
+    FarkasVector, LimitPointEnd, ModeTree, NoneContinues, PathRate, PathState, ProvenPeak, RateClaim, Witness,
+};
 
 /// The path ends at a share of its greatest factor, with the witnesses that `forge` makes of the true ones.
 fn witnessed_early(
@@ -21,11 +23,12 @@ fn witnessed_early(
     story.answer.motion = Some(story.answer.motion.take().unwrap_or(rate));
     let trees = witnesses.into_iter().filter_map(|witness| match witness.claim {
         RateClaim::NoneRises(tree) => Some(forge(tree)),
-        RateClaim::Rate(_) => None,
+        _ => None,
     });
     let by_motion = ModeTree::Leaf(FarkasVector {
         equilibrium: story.answer.motion.iter().flatten().map(|own| own.map(|v| -v)).collect(),
         gap: vec![[0.0; 2]; asked.problem.contacts.len()],
+        work: 0.0,
     });
     let trees: Vec<ModeTree> = trees.chain([forge(by_motion)]).collect();
     let claim = |tree| Witness { state: state.clone(), claim: RateClaim::NoneRises(tree) };
@@ -52,12 +55,82 @@ fn with_leaves(tree: ModeTree, change: fn(f64) -> f64) -> ModeTree {
             let branches = branches.into_iter().map(|(mode, tree)| (mode, with_leaves(tree, change))).collect();
             ModeTree::Split { contact, branches }
         }
+        ModeTree::Before => ModeTree::Before,
     }
 }
 
 /// A tree whose first decision has no branch.
 fn without_branches(_: ModeTree) -> ModeTree {
     ModeTree::Split { contact: 0, branches: Vec::new() }
+}
+
+/// The path ends at a share of its greatest factor for a reason that the question does not give, with these statements there.
+fn ends_for_another_reason(
+    asked: &PathAsked,
+    story: &mut Story,
+    end: LimitPointEnd,
+    claims: impl Fn(&PathAsked, &Story, usize) -> Vec<RateClaim>,
+) -> Option<()> {
+    story.falls()?;
+    let index = story.below(0.7)?;
+    let claims = claims(asked, story, index);
+    story.stop_at(index);
+    let state = story.answer.state.clone();
+    (story.answer.status, story.answer.limit_point_end) = (Status::LimitPoint, Some(end));
+    story.answer.motion = None;
+    story.answer.witnesses = claims.into_iter().map(|claim| Witness { state: state.clone(), claim }).collect();
+    Some(())
+}
+
+/// The rate from one state to another, times a factor.
+fn rate_between(from: &PathState, to: &PathState, by: f64) -> RateClaim {
+    let pairs = |to: &[[f64; 2]], from: &[[f64; 2]]| {
+        to.iter().zip(from).map(|(to, from)| [0, 1].map(|i| by * (to[i] - from[i]))).collect()
+    };
+    let motion = to.motion.iter().zip(&from.motion).map(|(to, from)| [0, 1, 2].map(|i| by * (to[i] - from[i])));
+    RateClaim::Rate(PathRate {
+        factor: by * (to.factor - from.factor),
+        force: pairs(&to.force, &from.force),
+        gap: pairs(&to.gap, &from.gap),
+        motion: motion.collect(),
+    })
+}
+
+/// The load on the bodies alone as multipliers: κ p is left, which only forces can carry.
+fn nothing_carries(asked: &PathAsked) -> ModeTree {
+    ModeTree::Leaf(FarkasVector {
+        equilibrium: vec![[0.0; 3]; asked.problem.bodies.len()],
+        gap: vec![[0.0; 2]; asked.problem.contacts.len()],
+        work: 1.0,
+    })
+}
+
+/// Proofs that no rate continues: of the true proof at the end, of the modes before, of nothing.
+fn none_continues(asked: &PathAsked, story: &Story, _: usize) -> Vec<RateClaim> {
+    let rising = story.answer.witnesses.iter().filter_map(|witness| match &witness.claim {
+        RateClaim::NoneRises(tree) => Some(tree.clone()),
+        RateClaim::NoneContinues(trees) => Some(trees.rises.clone()),
+        RateClaim::Rate(_) => None,
+    });
+    let trees = rising.chain([ModeTree::Before, nothing_carries(asked)]);
+    let claim = |rises| NoneContinues { rises, stands: nothing_carries(asked), falls: ModeTree::Before };
+    trees.map(claim).map(RateClaim::NoneContinues).collect()
+}
+
+/// The path ends early at the first limit point that it was asked for, with the rates to other states as witnesses.
+fn rate_as_a_limit_point(_: &PathAsked, story: &mut Story, by: f64) -> Option<()> {
+    story.falls()?;
+    let index = story.below(0.7)?;
+    let (state, next) = (story.states[index].clone(), story.states[index + 1].clone());
+    let last = story.states.last()?.clone();
+    story.stop_at(index);
+    story.answer.status = Status::Collapse;
+    let back: Vec<PathState> = story.states[..index].iter().rev().cloned().collect();
+    story.states.extend(back.into_iter().take_while(|own| own.load_step == state.load_step));
+    story.answer.last = story.states.last().cloned();
+    let claims = [rate_between(&state, &next, by), rate_between(&state, &last, by)];
+    story.answer.witnesses = claims.map(|claim| Witness { state: state.clone(), claim }).into();
+    Some(())
 }
 
 /// Forged witnesses.
@@ -106,6 +179,28 @@ pub const LIES: &[PathLie] = &[
             Some(())
         },
     },
+    PathLie {
+        name: "no_rate_continues_early",
+        tell: |asked, story| ends_for_another_reason(asked, story, LimitPointEnd::None, none_continues),
+    },
+    PathLie {
+        name: "joint_lost_early",
+        tell: |asked, story| ends_for_another_reason(asked, story, LimitPointEnd::JointLost, |_, _, _| Vec::new()),
+    },
+    PathLie {
+        name: "joint_lost_at_the_limit_point",
+        tell: |_, story| {
+            story.falls()?;
+            let peak = story.answer.limit_points.first()?.factor;
+            let index = story.states.iter().position(|state| state.factor == peak)?;
+            story.stop_at(index);
+            (story.answer.status, story.answer.motion) = (Status::LimitPoint, None);
+            story.answer.limit_point_end = Some(LimitPointEnd::JointLost);
+            Some(())
+        },
+    },
+    PathLie { name: "rate_ahead_as_a_limit_point", tell: |asked, story| rate_as_a_limit_point(asked, story, 1.0) },
+    PathLie { name: "rate_back_as_a_limit_point", tell: |asked, story| rate_as_a_limit_point(asked, story, -1.0) },
     PathLie {
         name: "states_left_out_before_the_witness",
         tell: |_, story| {

@@ -335,4 +335,65 @@ pub const PATH_SCENES: &[KnownScene] = &[
         },
         reference: Some("newton_path"),
     },
+    KnownScene {
+        name: "bond_softens",
+        source: "by hand: the weight of 20 kN and a bond of 20 kPa on 1 m²",
+        scene: block!(
+            "law = \"rigid\"",
+            "law = \"cohesive\"\nfriction = 0.6\ntensile_strength = 2e4\ncohesion = 4e4\nnormal_stiffness = 1e9\n\
+             shear_stiffness = 4e8\ntensile_fracture_energy = 10.0\nshear_fracture_energy = 40.0\n\
+             [scene.mesh]\nelements = [1, 1]\norder = 1"
+        ),
+        stages: live!("until = \"collapse\"", "block = \"a\", point = [0.5, 2.0], force = [0.0, 1000.0]"),
+        solver: "kinematics = \"small\"\nstop = { factor = 30.0 }",
+        truth: Truth {
+            endings: &[Status::Collapse, Status::LimitPoint],
+            limit_points: Some(&[40.0]),
+            associated: f64::INFINITY,
+            tolerance: 1e-6,
+            ..Truth::collapse(40.0)
+        },
+        reference: Some("newton_path"),
+    },
+    KnownScene {
+        name: "bond_reaches_its_strength",
+        source: "by hand: the weight of 20 kN and a bond of 20 kPa on 1 m²",
+        scene: block!(
+            "law = \"rigid\"",
+            "law = \"cohesive\"\nfriction = 0.6\ntensile_strength = 2e4\ncohesion = 4e4\nnormal_stiffness = 1e9\n\
+             shear_stiffness = 4e8\ntensile_fracture_energy = 10.0\nshear_fracture_energy = 40.0\n\
+             [scene.mesh]\nelements = [1, 1]\norder = 1"
+        ),
+        stages: live!("until = \"first_limit_point\"", "block = \"a\", point = [0.5, 2.0], force = [0.0, 1000.0]"),
+        solver: "kinematics = \"small\"",
+        truth: Truth {
+            endings: &[Status::LimitPoint],
+            limit_points: Some(&[40.0]),
+            associated: f64::INFINITY,
+            tolerance: 1e-6,
+            ..Truth::collapse(40.0)
+        },
+        reference: Some("newton_path"),
+    },
+    KnownScene {
+        name: "slab_moves_away",
+        source: "by hand: a wall holds the block, and its corner leaves the slab after 0.5 of 0.8 m",
+        scene: "scene = \"blocks\"\nwidth = 1.0\nblocks = [\n\
+             { name = \"slab\", vertices = [[-0.5, -1.0], [2.5, -1.0], [2.5, 0.0], [-0.5, 0.0]], fixed = true },\n\
+             { name = \"wall\", vertices = [[1.0, 0.5], [2.0, 0.5], [2.0, 1.0], [1.0, 1.0]], fixed = true },\n\
+             { name = \"a\", vertices = [[0.0, 0.0], [1.0, 0.0], [1.0, 2.0], [0.0, 2.0]] },\n]\n\
+             [scene.mesh]\nelements = [1, 1]\norder = 1\n[materials.stone]\nlaw = \"rigid\"\ndensity = 1000.0\n\
+             [joints.dry]\nlaw = \"coulomb\"\nfriction = 0.2\nnormal_stiffness = 1e8\nshear_stiffness = 5e7",
+        stages: "[[stages]]\nname = \"dead\"\ngravity = 10.0\n[[stages]]\nname = \"slide\"\n\
+             settlement = [{ support = \"slab\", displacement = [0.8, 0.0] }]",
+        solver: "kinematics = \"finite\"",
+        truth: Truth {
+            endings: &[Status::LimitPoint],
+            limit_points: Some(&[0.625]),
+            associated: f64::INFINITY,
+            tolerance: 1e-3,
+            ..Truth::collapse(0.625)
+        },
+        reference: Some("newton_path"),
+    },
 ];

@@ -54,8 +54,11 @@ fn the_displacement_of_the_load_follows_from_the_motions() {
 
 /// The mechanism with p·q̇ = 1, and the proof that it makes: its slip opens the joint as the normal of the facet says.
 fn proof(state: &PathState) -> Witness {
-    let tree =
-        ModeTree::Leaf(FarkasVector { equilibrium: vec![[0.0; 3], [-1.0, -FRICTION, 0.0]], gap: vec![[0.0; 2]; 2] });
+    let tree = ModeTree::Leaf(FarkasVector {
+        equilibrium: vec![[0.0; 3], [-1.0, -FRICTION, 0.0]],
+        gap: vec![[0.0; 2]; 2],
+        work: 0.0,
+    });
     Witness { state: state.clone(), claim: RateClaim::NoneRises(tree) }
 }
 

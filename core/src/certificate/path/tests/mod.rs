@@ -2,5 +2,7 @@
 
 mod chain;
 mod derivatives;
+mod ends;
 mod scenes;
+mod softening;
 mod wedge;

@@ -37,6 +37,7 @@ fn multipliers() -> FarkasVector {
     FarkasVector {
         equilibrium: vec![[0.0; 3], [y[0], y[1], 0.0]],
         gap: vec![[fy, -fx], [-1e6 * along(n), -1e4 * along(t)]],
+        work: 0.0,
     }
 }
 
@@ -106,7 +107,7 @@ fn each_forged_part_of_a_proof_is_refused() {
     turned.equilibrium[1].iter_mut().chain(turned.gap.as_flattened_mut()).for_each(|v| *v = -*v);
     assert!(verdict(right, &ModeTree::Leaf(turned), true).is_err());
     assert!(verdict(right, &ModeTree::Leaf(FarkasVector::default()), true).is_err_and(|why| why.contains("malformed")));
-    let nothing = FarkasVector { equilibrium: vec![[0.0; 3]; 2], gap: vec![[0.0; 2]; 2] };
+    let nothing = FarkasVector { equilibrium: vec![[0.0; 3]; 2], gap: vec![[0.0; 2]; 2], work: 0.0 };
     assert!(verdict(right, &ModeTree::Leaf(nothing), true).is_err());
 }
 

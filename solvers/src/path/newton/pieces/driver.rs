@@ -11,6 +11,7 @@ use super::super::stable_branch::{Departure, leave_unstable};
 use super::super::state::{State, Tangent};
 use super::super::step_energy::step_energy;
 use super::super::tracer::{LoadStepEnding, Tracer, direction, end_path};
+use super::super::witness::none_continues;
 use super::advance::{Advance, StepEnd, Watched, advance, state_at};
 use super::begin::begin;
 use super::corrector::correct;
@@ -587,6 +588,10 @@ impl<'d> Run<'d> {
             note_peak(tracer, Some(&self.piece.tangent), self.direction);
         }
         let proved = proved && tracer.limit.peak.is_some();
+        if proved {
+            let Tracer { system, state, record, .. } = tracer;
+            record.witnesses.extend(none_continues(system, (state, &record.state), self.direction));
+        }
         tracer.ending.limit_point_end = proved.then_some(LimitPointEnd::None);
         let why = format!("at factor {factor} {why}");
         end_path(tracer, if proved { Status::LimitPoint } else { Status::Stalled }, why)
