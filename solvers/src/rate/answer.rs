@@ -12,13 +12,13 @@
 
 use super::arrival::Arrival;
 use super::choice::choose;
+use super::counts::{Algorithm, RateCounts};
 use super::lcp::{monotone_rate, rate_lcp};
 use super::neighbours::{add, neighbours};
 use super::order::Ordered;
 use super::problem::{Rate, RateProblem};
 use super::proof::NoRate;
-use super::solve::{Algorithm, RateCounts};
-use super::tree::{Searched, search};
+use super::tree::{Searched, search, search_one};
 use nalgebra::DMatrix;
 
 /// Asymmetry and negative eigenvalue of AᵀSA with a unit diagonal up to which the problem is monotone.
@@ -87,6 +87,50 @@ pub fn answer(problem: &RateProblem, arrival: &Arrival, budget: &Budget, counts:
         open => open,
     };
     RateAnswer { continuation, none_rises: found.none_rises.map(proof) }
+}
+
+/// The answer if it needs neither a proof nor a choice: the only rate in the cells next to the arrival along which the
+/// path goes on, rising if it does not fall.
+pub fn only_neighbour(problem: &RateProblem, arrival: &Arrival, budget: &Budget, trials: &mut u64) -> Neighbour {
+    let (rates, complete) = neighbours(problem, arrival, budget.combinations, trials);
+    let goes_on = |rate: &Rate| {
+        let moves_on = rate.factor > 0.0 || arrival.factor < 0.0 && (rate.factor < 0.0 || problem.leads_on(rate));
+        moves_on && arrival.continues(problem, rate)
+    };
+    let mut rates = rates.into_iter().filter(goes_on);
+    match (rates.next(), rates.next()) {
+        (None, _) => Neighbour::None,
+        (Some(rate), None) if complete && problem.is_isolated(&rate) => Neighbour::Only(rate),
+        _ => Neighbour::Several,
+    }
+}
+
+/// A rate with λ̇ = 1, whichever. `None` if it is proved that no such rate exists.
+///
+/// # Errors
+/// The reason why that is not decided.
+pub fn rising_rate(problem: &RateProblem, budget: &Budget, trials: &mut u64) -> Result<Option<Rate>, String> {
+    if is_monotone(problem)
+        && let Some(rate) = monotone_rate(problem, trials).filter(|rate| rate.factor > 0.0)
+    {
+        return Ok(Some(rate));
+    }
+    let Searched { rates, open, .. } = search_one(problem, 1.0, budget.leaves, trials);
+    match (rates.into_iter().next(), open) {
+        (None, Some(why)) => Err(why),
+        (rate, _) => Ok(rate),
+    }
+}
+
+/// Rates in the cells next to an arrival.
+#[derive(Debug, Clone)]
+pub enum Neighbour {
+    /// No rate rises.
+    None,
+    /// One rate continues the path.
+    Only(Rate),
+    /// The rule must choose.
+    Several,
 }
 
 /// The state of the search.

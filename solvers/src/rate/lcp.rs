@@ -13,20 +13,10 @@ use crate::optimise::lcp::{Lcp, LemkeResult, lemke};
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::law::{Facet, FacetMode};
 
-/// Relative tolerance of what pivoting finds.
-pub const PIVOTING: f64 = 1e-7;
 /// Share of the greatest diagonal entry of M up to which another one is rounding.
 const ROUNDING: f64 = 1e-10;
 /// Facets above which it is not pivoted.
 const MOST: usize = 900;
-
-/// What pivoting found.
-pub enum Pivoted {
-    /// Modes close to a solution.
-    Guess(Vec<ContactMode>),
-    /// A mechanism.
-    Ray(Rate),
-}
 
 /// The complementarity problem, each facet in its own scale. Multipliers of opening facets that are open have any
 /// sign: they are eliminated.
@@ -127,40 +117,6 @@ pub fn gaps_of(problem: &RateProblem, lcp: &RateLcp, z: &[f64], factor: f64, ass
     gaps
 }
 
-/// Lemke's pivoting over all active facets, with their own flow or an associated one: modes to correct, or the ray
-/// of a mechanism.
-pub fn pivoting(problem: &RateProblem, associated: bool, trials: &mut u64) -> Option<Pivoted> {
-    let rate = rate_lcp(problem, associated).filter(|rate| rate.facets.len() <= MOST)?;
-    let Lcp { matrix: m, constant: q } = &rate.lcp;
-    let (z, ray) = match lemke(&rate.lcp, trials) {
-        LemkeResult::Solution(z) => (z, false),
-        LemkeResult::Ray(z) => (z, true),
-        LemkeResult::Unfinished => return None,
-    };
-    let z_size = z.iter().copied().fold(1e-300, f64::max);
-    if !ray {
-        let w = q + m * DVector::from_vec(z.clone());
-        let w_size = w.amax().max(1e-300);
-        let flows = |i: usize| z[i] / z_size > (w[i] / w_size).max(1e-12);
-        return Some(Pivoted::Guess(modes_of(problem, &rate.facets, flows)));
-    }
-    let mut gaps = gaps_of(problem, &rate, &z, 0.0, associated);
-    let w = m * DVector::from_vec(z.clone());
-    let moves = gaps.iter().flatten().fold(0.0, |a: f64, g| a.max(g.abs()));
-    let largest = rate.unit.iter().copied().fold(0.0, f64::max);
-    let still = w.amax() <= PIVOTING * z_size && z.iter().all(|z| *z >= -PIVOTING * z_size);
-    let rises = !associated && q.dot(&DVector::from_vec(z.clone())) > 0.0;
-    if !still || moves * largest <= PIVOTING * z_size || rises {
-        return None;
-    }
-    let modes = modes_of(problem, &rate.facets, |i| z[i] > 1e-8 * z_size);
-    // What does not flow does not move, not even by rounding.
-    for (gap, _) in gaps.iter_mut().zip(&modes).filter(|(_, mode)| **mode == ContactMode::Stick) {
-        *gap = [0.0; 2];
-    }
-    Some(Pivoted::Ray(Rate { factor: 0.0, modes, gaps }))
-}
-
 /// A rate of a monotone problem by Lemke's pivoting, which always ends: with λ̇ = 1, or the ray of a mechanism. `None`
 /// if rounding prevents it.
 pub fn monotone_rate(problem: &RateProblem, trials: &mut u64) -> Option<Rate> {
@@ -180,12 +136,6 @@ pub fn monotone_rate(problem: &RateProblem, trials: &mut u64) -> Option<Rate> {
         }
     };
     problem.admits(&rate).then_some(rate)
-}
-
-/// Whether a mechanism means that the load does not grow: from nothing only where slip with
-/// associated flow does not carry it either.
-pub fn mechanism_proves(problem: &RateProblem, trials: &mut u64) -> bool {
-    !problem.from_nothing || problem.is_associated() || matches!(pivoting(problem, true, trials), Some(Pivoted::Ray(_)))
 }
 
 /// Modes of multipliers that solve the problem.

@@ -27,6 +27,8 @@ const COMPLEMENTARY: f64 = 1e-9;
 const ALONG: f64 = 1e-12;
 /// Linear programs for each leaf of the budget.
 const PROGRAMS: u64 = 4;
+/// Entries of the program that all pivots may change: each pivot changes all of them.
+const MOST_CHANGED: u64 = 20_000_000_000;
 
 /// Result of a complete search in one sense of λ.
 pub struct Searched {
@@ -46,6 +48,15 @@ impl Searched {
 
 /// Searches all modes for rates with λ̇ = `factor`; for λ̇ = 0 the load does work on the rate. Ends after `most` leaves.
 pub fn search(problem: &RateProblem, factor: f64, most: usize, trials: &mut u64) -> Searched {
+    searched(problem, factor, (most, usize::MAX), trials)
+}
+
+/// The same, but ends with the first rate.
+pub fn search_one(problem: &RateProblem, factor: f64, most: usize, trials: &mut u64) -> Searched {
+    searched(problem, factor, (most, 1), trials)
+}
+
+fn searched(problem: &RateProblem, factor: f64, (most, wanted): (usize, usize), trials: &mut u64) -> Searched {
     let Some(lcp) = rate_lcp(problem, false) else {
         return Searched::undecided("the points that are open with a strength are held by nothing");
     };
@@ -68,6 +79,7 @@ pub fn search(problem: &RateProblem, factor: f64, most: usize, trials: &mut u64)
         leaves: 0,
         programs: 0,
         most,
+        wanted,
     };
     let found = search.node();
     *trials += search.programs;
@@ -235,6 +247,8 @@ struct Search<'a> {
     leaves: usize,
     programs: u64,
     most: usize,
+    /// Number of rates after which the search ends.
+    wanted: usize,
 }
 
 /// A tree and the points whose modes its contradictions use.
@@ -243,8 +257,10 @@ type Explained = (ModeTree, Vec<usize>);
 impl Search<'_> {
     fn node(&mut self) -> Result<Explained, String> {
         self.programs += 1;
-        if self.leaves >= self.most || self.programs > PROGRAMS * self.most as u64 {
-            return Err(format!("{} combinations of modes were not enough", self.most));
+        let changed = self.dictionary.pivots.saturating_mul(self.program.matrix.len() as u64);
+        let done = changed > MOST_CHANGED || self.programs > PROGRAMS * self.most as u64;
+        if done || self.leaves >= self.most {
+            return Err(format!("{} combinations of modes were not enough", self.leaves));
         }
         let found = self.dictionary.feasible();
         if let Feasibility::Reason(_) = found
@@ -255,7 +271,7 @@ impl Search<'_> {
         }
         match self.next_point(found == Feasibility::Point) {
             Some(point) => self.branch(point),
-            None => Ok(self.cell(found == Feasibility::Point)),
+            None => self.cell(found == Feasibility::Point),
         }
     }
 
@@ -304,7 +320,7 @@ impl Search<'_> {
     }
 
     /// All points have their modes and the program has a point, or was not decided.
-    fn cell(&mut self, feasible: bool) -> Explained {
+    fn cell(&mut self, feasible: bool) -> Result<Explained, String> {
         self.leaves += 1;
         let modes: Vec<PointMode> = self.decided.iter().map(|mode| mode.unwrap_or(PointMode::Stick)).collect();
         let found = if feasible { self.rate_of_cell(&modes) } else { None };
@@ -312,7 +328,10 @@ impl Search<'_> {
             Some(rate) => add(&mut self.rates, rate),
             None => self.doubtful = true,
         }
-        (ModeTree::Rate(modes), (0..self.choices.len()).collect())
+        if self.rates.len() >= self.wanted {
+            return Err("the search ended with a rate".into());
+        }
+        Ok((ModeTree::Rate(modes), (0..self.choices.len()).collect()))
     }
 
     fn rate_of_cell(&self, modes: &[PointMode]) -> Option<Rate> {

@@ -5,7 +5,7 @@ use super::elastic_chain::ElasticChain;
 use super::event_run::{Followed, RECORDED};
 use super::force_method::{Sections, by_force_method};
 use super::joint_tree::by_joint_tree;
-use super::next_event::{MOMENT, SAME, advance, next_event};
+use super::next_event::{MOMENT, SAME, advance, begin_without_end, next_event};
 use super::rates::Direction;
 use super::stability::stage_stability;
 use super::trace::Trace;
@@ -194,7 +194,7 @@ pub fn follow(problem: &PathProblem, settings: &PathSettings, observer: &mut dyn
 fn begin(follower: &mut Follower, load_step: usize) -> Run {
     let trace = &mut follower.trace;
     let present = &trace.problem.load_steps[load_step];
-    (trace.state.load_step, trace.state.factor) = (load_step, present.start);
+    (trace.state.load_step, trace.state.factor, trace.state.sense) = (load_step, present.start, 1.0);
     let (LoadStepEnd::Factor(target) | LoadStepEnd::Collapse(target)) = present.end;
     let sense = match present.end {
         LoadStepEnd::Factor(f) if f < present.start => -1.0,
@@ -243,6 +243,7 @@ fn step(follower: &mut Follower, run: &mut Run) -> Result<bool, End> {
     let whole = bound <= step;
     let step = step.min(bound);
     if step.is_infinite() {
+        begin_without_end(trace, &direction);
         return Err(End::Ray(Box::new(direction), Box::new(run.load.clone())));
     }
     let before = trace.state.factor;
@@ -321,9 +322,8 @@ fn try_force_method(follower: &mut Follower, run: &mut Run) -> Result<bool, End>
 /// The direction in which the path goes on; where λ begins to fall, the limit point is noted.
 fn direction(follower: &mut Follower, run: &mut Run) -> Result<Direction, End> {
     let factor = follower.trace.state.factor;
-    let excluded = "every combination of the contact points of the active set is excluded";
     let next = next_direction(&mut follower.trace, &run.load);
-    let undecided = matches!(next, Next::NoneRises);
+    let mut undecided = false;
     let (direction, note) = match next {
         Next::Go(direction) => {
             follower.limits.falling &= direction.factor <= 0.0;
@@ -331,22 +331,21 @@ fn direction(follower: &mut Follower, run: &mut Run) -> Result<Direction, End> {
         }
         Next::Falling(direction) => (
             Some(direction),
-            format!(
-                "at λ = {factor:.12} no rate of solution has λ rising or standing still: {excluded}; the path goes on with λ falling"
-            ),
+            format!("at λ = {factor:.12} it is proved that no rate has λ rising; the path goes on with λ falling"),
         ),
         Next::Nothing => (
             None,
             format!(
-                "at λ = {factor:.12} no rate of solution goes on, rising or falling: {excluded}; what follows is dynamic"
+                "at λ = {factor:.12} it is proved that no rate goes on, rising or falling; what follows is dynamic"
             ),
         ),
-        Next::NoneRises => (
-            None,
-            format!(
-                "at λ = {factor:.12} no rate of solution has λ rising: {excluded}; whether a rate goes on with λ standing still or falling is not decided"
-            ),
-        ),
+        Next::NoneRises(why) => {
+            undecided = true;
+            let note = format!(
+                "at λ = {factor:.12} it is proved that no rate has λ rising; it is not decided whether a rate stands still or falls: {why}"
+            );
+            (None, note)
+        }
         Next::Lost(why) => return Err(End::Stalled(why)),
     };
     if run.unrecorded.events > 0 && !run.unrecorded.record(&mut follower.trace) {
@@ -446,7 +445,7 @@ fn answer(follower: Follower, mut outcome: Outcome) -> PathAnswer {
         ("solves", log.counts.solves),
         ("rate_problems", log.counts.rate_problems),
         ("rate_trials", log.counts.rates.trials),
-        ("bifurcations", log.counts.bifurcations),
+        ("bifurcations", log.branchings.len() as u64),
         ("rate_problems_by_redundants", log.counts.by_force_method),
         ("sections_looked_at", log.counts.sections),
         ("events", log.events.len() as u64),
@@ -466,13 +465,14 @@ fn answer(follower: Follower, mut outcome: Outcome) -> PathAnswer {
         limits.proven.push(proven(&state));
     }
     let (load_step, limit_points) = (state.load_step, limits.proven);
-    let (stability, events, notes) = (log.stability, log.events, log.notes);
+    let (stability, branchings, events, notes) = (log.stability, log.branchings, log.events, log.notes);
     let record = PathRecord {
         load_step,
         state,
         last,
         limit_points,
         stability,
+        branchings,
         events,
         witnesses,
         counters,

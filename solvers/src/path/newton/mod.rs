@@ -47,7 +47,6 @@ mod termination;
 mod tracer;
 mod tractions;
 mod trial;
-mod twins;
 mod witness;
 
 use self::monitors::resolve;
