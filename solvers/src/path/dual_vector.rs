@@ -1,9 +1,11 @@
 //! Proofs for the certificate that no rate raises the load: trees of modes, with multipliers from the response of the structure.
 
 use super::system::System;
+use crate::contact::active_point::ActivePoint;
 use crate::linear::largest;
 use crate::rate::answer::Budget;
 use crate::rate::problem::RateProblem;
+use crate::rate::proof::NoRate;
 use crate::rate::tree::search;
 use voussoir_core::path::{FarkasVector, ModeTree};
 
@@ -38,6 +40,16 @@ pub(super) fn none_rises(
     response: impl Fn(&[[f64; 2]]) -> Option<Vec<f64>>,
 ) -> Option<ModeTree> {
     let proof = search(problem, 1.0, Budget::default().leaves, trials).proof?;
+    certified(&proof, (&problem.points, system), contacts, response)
+}
+
+/// The tree of a proof over some points, which are the contact points `contacts`.
+pub(super) fn certified(
+    proof: &NoRate,
+    (points, system): (&[ActivePoint], &System),
+    contacts: &[usize],
+    response: impl Fn(&[[f64; 2]]) -> Option<Vec<f64>>,
+) -> Option<ModeTree> {
     let vector = |alpha: &[[f64; 2]]| response(alpha).map(|x| dual_vector(system, &x, alpha)).unwrap_or_default();
-    proof.certified(problem, contacts, &vector)
+    proof.certified(points, contacts, &vector)
 }

@@ -18,11 +18,14 @@ use super::neighbours::{add, neighbours};
 use super::order::Ordered;
 use super::problem::{Rate, RateProblem};
 use super::proof::NoRate;
-use super::tree::{Searched, search, search_one};
+use super::tree::{Searched, search_some};
 use nalgebra::DMatrix;
 
 /// Asymmetry and negative eigenvalue of AᵀSA with a unit diagonal up to which the problem is monotone.
 const MONOTONE: f64 = 1e-9;
+
+/// Leaves of a search for mechanisms after which it ends if it has found one.
+const ENOUGH: usize = 256;
 
 /// Limits of the search.
 #[derive(Debug, Clone, Copy)]
@@ -115,7 +118,7 @@ pub fn rising_rate(problem: &RateProblem, budget: &Budget, trials: &mut u64) -> 
     {
         return Ok(Some(rate));
     }
-    let Searched { rates, open, .. } = search_one(problem, 1.0, budget.leaves, trials);
+    let Searched { rates, open, .. } = search_some(problem, 1.0, (budget.leaves, 0), trials);
     match (rates.into_iter().next(), open) {
         (None, Some(why)) => Err(why),
         (rate, _) => Ok(rate),
@@ -176,9 +179,9 @@ impl Inquiry<'_> {
         RateAnswer { continuation, none_rises }
     }
 
-    /// True if a rate that its modes determine is of a kind.
+    /// True if a rate that its modes determine is of a kind. All rates of a monotone problem have the same forces.
     fn leads_on(&self, kind: impl Fn(&Rate) -> bool) -> bool {
-        self.rates.iter().any(|rate| kind(rate) && self.problem.is_isolated(rate))
+        self.rates.iter().any(|rate| kind(rate) && (self.monotone || self.problem.is_isolated(rate)))
     }
 
     /// Adds those rates that continue the path.
@@ -204,9 +207,12 @@ impl Inquiry<'_> {
         (self.searched(1.0), Algorithm::Tree)
     }
 
-    /// A complete search in one sense of λ; its proof if no rate continues.
+    /// A complete search in one sense of λ; its proof if no rate continues. At a constant load it ends early if it has
+    /// found a rate: forces rest in a mechanism, so that all cells of points that do not move contain it.
     fn searched(&mut self, factor: f64) -> Option<NoRate> {
-        let Searched { rates, proof, open } = search(self.problem, factor, self.budget.leaves, &mut self.counts.trials);
+        let enough = if factor == 0.0 { ENOUGH } else { usize::MAX };
+        let limits = (self.budget.leaves, enough);
+        let Searched { rates, proof, open } = search_some(self.problem, factor, limits, &mut self.counts.trials);
         let proves = factor < 0.0 || rates.is_empty();
         self.keep(rates);
         self.why_open = self.why_open.take().or(open);
@@ -217,8 +223,9 @@ impl Inquiry<'_> {
     /// constant load.
     fn chosen(&mut self, by: Algorithm, none_rises: Option<NoRate>) -> RateAnswer {
         let found = std::mem::take(&mut self.rates);
+        let alone = found.len() == 1;
         let (isolated, mixed): (Vec<Rate>, Vec<Rate>) =
-            found.into_iter().partition(|rate| self.problem.is_isolated(rate));
+            found.into_iter().partition(|rate| alone || self.problem.is_isolated(rate));
         let mut rates = if isolated.is_empty() { mixed } else { isolated };
         if self.arrival.factor >= 0.0 {
             let most = rates.iter().map(|rate| rate.factor).fold(-1.0, f64::max);

@@ -48,15 +48,11 @@ impl Searched {
 
 /// Searches all modes for rates with λ̇ = `factor`; for λ̇ = 0 the load does work on the rate. Ends after `most` leaves.
 pub fn search(problem: &RateProblem, factor: f64, most: usize, trials: &mut u64) -> Searched {
-    searched(problem, factor, (most, usize::MAX), trials)
+    search_some(problem, factor, (most, usize::MAX), trials)
 }
 
-/// The same, but ends with the first rate.
-pub fn search_one(problem: &RateProblem, factor: f64, most: usize, trials: &mut u64) -> Searched {
-    searched(problem, factor, (most, 1), trials)
-}
-
-fn searched(problem: &RateProblem, factor: f64, (most, wanted): (usize, usize), trials: &mut u64) -> Searched {
+/// The same, but ends after `enough` leaves if it has found a rate.
+pub fn search_some(problem: &RateProblem, factor: f64, (most, enough): (usize, usize), trials: &mut u64) -> Searched {
     let Some(lcp) = rate_lcp(problem, false) else {
         return Searched::undecided("the points that are open with a strength are held by nothing");
     };
@@ -79,7 +75,7 @@ fn searched(problem: &RateProblem, factor: f64, (most, wanted): (usize, usize), 
         leaves: 0,
         programs: 0,
         most,
-        wanted,
+        enough,
     };
     let found = search.node();
     *trials += search.programs;
@@ -247,8 +243,8 @@ struct Search<'a> {
     leaves: usize,
     programs: u64,
     most: usize,
-    /// Number of rates after which the search ends.
-    wanted: usize,
+    /// Leaves after which it ends if it has found a rate.
+    enough: usize,
 }
 
 /// A tree and the points whose modes its contradictions use.
@@ -328,7 +324,7 @@ impl Search<'_> {
             Some(rate) => add(&mut self.rates, rate),
             None => self.doubtful = true,
         }
-        if self.rates.len() >= self.wanted {
+        if self.leaves >= self.enough && !self.rates.is_empty() {
             return Err("the search ended with a rate".into());
         }
         Ok((ModeTree::Rate(modes), (0..self.choices.len()).collect()))

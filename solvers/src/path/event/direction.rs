@@ -13,6 +13,7 @@ use crate::path::twins::favoured;
 use crate::rate::answer::{Budget, Continuation, Neighbour, RateAnswer, answer, only_neighbour};
 use crate::rate::neighbours::settled;
 use crate::rate::problem::Rate;
+use crate::rate::proof::NoRate;
 use voussoir_core::path::{Branching, PathProblem};
 
 /// Relative residual of a direction above which it is solved anew.
@@ -48,9 +49,21 @@ pub enum Next {
     Lost(String),
 }
 
+/// The continuation of the path and, if it was sought and found, the proof that no rate raises the load.
+pub struct Continued {
+    pub next: Next,
+    pub none_rises: Option<NoRate>,
+}
+
+impl From<Next> for Continued {
+    fn from(next: Next) -> Self {
+        Continued { next, none_rises: None }
+    }
+}
+
 /// The direction from the present state: by the only rate next to the arrival if there is one, else by the answer to the
 /// rate problem of the whole active set.
-pub fn next_direction(trace: &mut Trace, load: &Load) -> Next {
+pub fn next_direction(trace: &mut Trace, load: &Load) -> Continued {
     trace.log.counts.rate_problems += 1;
     let points = &trace.state.points;
     let active: Vec<usize> = (0..points.len()).filter(|c| points[*c].settled().is_none()).collect();
@@ -59,20 +72,21 @@ pub fn next_direction(trace: &mut Trace, load: &Load) -> Next {
         true
     } else {
         match by_neighbours(trace, load, &active) {
-            Neighbourhood::Next(next) => return next,
+            Neighbourhood::Next(next) => return next.into(),
             Neighbourhood::NotFound => active.len() > MANY && trace.state.sense > 0.0,
             Neighbourhood::Several => false,
         }
     };
     if many && let Some(direction) = on_whole_system(trace, load, &active) {
-        return Next::Go(direction);
+        return Next::Go(direction).into();
     }
     if active.len() > DENSE && !trace.associated {
         return Next::Lost(format!(
             "the rate problem at λ = {:.9} has {} contact points in its active set, friction is not associated, and the active set on the whole system did not solve it: newton_path may",
             trace.state.factor,
             active.len()
-        ));
+        ))
+        .into();
     }
     // One attempt on the present factorisation, one on a fresh one.
     for fresh in [false, true] {
@@ -89,13 +103,14 @@ pub fn next_direction(trace: &mut Trace, load: &Load) -> Next {
             return Next::Lost(
                 "the system is singular with the contact points of the active set closed: a block is held by nothing"
                     .into(),
-            );
+            )
+            .into();
         }
         if let Some(next) = by_rate_problem(trace, load, &active) {
             return next;
         }
     }
-    Next::Lost("the stiffness of the contact points of the active set could not be found".into())
+    Next::Lost("the stiffness of the contact points of the active set could not be found".into()).into()
 }
 
 pub(super) fn factorise(trace: &mut Trace, modes: Vec<ContactMode>, refine_columns: bool) -> bool {
@@ -252,7 +267,7 @@ fn rates_of(
 }
 
 /// The answer to the rate problem over the active set. `None` if linear algebra fails.
-fn by_rate_problem(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<Next> {
+fn by_rate_problem(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<Continued> {
     let mut modes = present_modes(trace);
     let arrival = trace.arrival(active);
     let Trace { system, state, factors, log, problem, associated, .. } = &mut *trace;
@@ -264,14 +279,17 @@ fn by_rate_problem(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<N
         answer(&local.rate, &arrival, &Budget::default(), &mut log.counts.rates);
     let (rate, twins) = match continuation {
         Continuation::Goes { rate, twins } => (rate, twins),
-        Continuation::NoneContinues(_) => return Some(Next::Nothing),
-        Continuation::Open(why) if none_rises.is_some() => return Some(Next::NoneRises(why)),
-        Continuation::Open(why) => return Some(Next::Lost(lost(state.factor, active.len(), &why))),
+        Continuation::NoneContinues(_) => return Some(Continued { next: Next::Nothing, none_rises }),
+        Continuation::Open(why) if none_rises.is_some() => {
+            return Some(Continued { next: Next::NoneRises(why), none_rises });
+        }
+        Continuation::Open(why) => return Some(Next::Lost(lost(state.factor, active.len(), &why)).into()),
     };
     // A mechanism of associated flow is the proof itself.
     let proved = none_rises.is_some() || arrival.factor < 0.0 || (*associated && rate.factor == 0.0);
     if rate.factor <= 0.0 && !proved {
-        return Some(Next::Lost(lost(state.factor, active.len(), "it is not decided whether a rate raises the load")));
+        let why = "it is not decided whether a rate raises the load";
+        return Some(Next::Lost(lost(state.factor, active.len(), why)).into());
     }
     let rate = favoured_twin(&local, base, (problem, at, state.factor), rate, twins, log)?;
     let rates = rates_of(&local, base, at, &rate, (active, &mut modes))?;
@@ -279,16 +297,18 @@ fn by_rate_problem(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<N
     let mut rates = solved_anew(trace, rates, load, &modes);
     if rates.factor != 0.0 && rates.worst > BELIEVED[1] {
         let Some(motion) = motion_alone((&trace.system, &trace.state.points), &rates, load, active, &modes) else {
-            return Some(Next::Lost(format!(
+            let why = format!(
                 "the rates at λ = {:.9} leave {:.1e} of their equations: the system is singular to rounding",
                 trace.state.factor, rates.worst
-            )));
+            );
+            return Some(Next::Lost(why).into());
         };
         rates = motion;
     }
     active.iter().zip(&rate.modes).for_each(|(c, mode)| trace.state.points[*c].mode = *mode);
     let direction = direction_of(&trace.system, &mut trace.state.points, rates, load);
-    Some(if rate.factor < 0.0 { Next::Falling(direction) } else { Next::Go(direction) })
+    let next = if rate.factor < 0.0 { Next::Falling(direction) } else { Next::Go(direction) };
+    Some(Continued { next, none_rises })
 }
 
 fn lost(factor: f64, points: usize, why: &str) -> String {

@@ -1,6 +1,6 @@
 //! Following the path: from load step to load step and from event to event, and how it ends.
 
-use super::direction::{Next, next_direction};
+use super::direction::{Continued, Next, next_direction};
 use super::elastic_chain::ElasticChain;
 use super::event_run::{Followed, RECORDED};
 use super::force_method::{Sections, by_force_method};
@@ -14,6 +14,7 @@ use super::witness::{none_rises, rate_witness};
 use crate::path::outcome::{Outcome, PathRecord};
 use crate::path::stability::regains_limit_point;
 use crate::path::system::Load;
+use crate::rate::proof::NoRate;
 use voussoir_core::certificate::flow_residual;
 use voussoir_core::limit::{Counters, Status};
 use voussoir_core::path::{
@@ -39,7 +40,14 @@ enum End {
     /// Not followed further, and why.
     Stalled(String),
     /// A direction without end under a load.
-    Ray(Box<Direction>, Box<Load>),
+    Ray(Box<Ray>),
+}
+
+/// A direction without end under a load, and the proof that no rate raises the load, if there is one.
+struct Ray {
+    direction: Direction,
+    load: Load,
+    proof: Option<NoRate>,
 }
 
 /// One load step while it is followed.
@@ -229,7 +237,7 @@ fn step(follower: &mut Follower, run: &mut Run) -> Result<bool, End> {
         )));
     }
     let by_chain = follower.trace.log.counts.by_force_method;
-    let direction = direction(follower, run)?;
+    let (direction, proof) = direction(follower, run)?;
     let trace = &mut follower.trace;
     let by_chain = trace.log.counts.by_force_method > by_chain;
     let left = (run.target - trace.state.factor) * run.sense;
@@ -244,7 +252,7 @@ fn step(follower: &mut Follower, run: &mut Run) -> Result<bool, End> {
     let step = step.min(bound);
     if step.is_infinite() {
         begin_without_end(trace, &direction);
-        return Err(End::Ray(Box::new(direction), Box::new(run.load.clone())));
+        return Err(End::Ray(Box::new(Ray { direction, load: run.load.clone(), proof })));
     }
     let before = trace.state.factor;
     advance(trace, &direction, step, run.sense, if whole { &[] } else { &hits });
@@ -320,14 +328,14 @@ fn try_force_method(follower: &mut Follower, run: &mut Run) -> Result<bool, End>
 }
 
 /// The direction in which the path goes on; where λ begins to fall, the limit point is noted.
-fn direction(follower: &mut Follower, run: &mut Run) -> Result<Direction, End> {
+fn direction(follower: &mut Follower, run: &mut Run) -> Result<(Direction, Option<NoRate>), End> {
     let factor = follower.trace.state.factor;
-    let next = next_direction(&mut follower.trace, &run.load);
+    let Continued { next, none_rises: proof } = next_direction(&mut follower.trace, &run.load);
     let mut undecided = false;
     let (direction, note) = match next {
         Next::Go(direction) => {
             follower.limits.falling &= direction.factor <= 0.0;
-            return Ok(direction);
+            return Ok((direction, proof));
         }
         Next::Falling(direction) => (
             Some(direction),
@@ -356,11 +364,11 @@ fn direction(follower: &mut Follower, run: &mut Run) -> Result<Direction, End> {
     }
     if !follower.limits.falling {
         follower.limits.add(follower.trace.present(), run.sense);
-        let witness = none_rises(&mut follower.trace, &run.load);
+        let witness = none_rises(&mut follower.trace, &run.load, proof.as_ref());
         follower.witnesses.extend(witness);
     }
     match direction {
-        Some(direction) => Ok(direction),
+        Some(direction) => Ok((direction, None)),
         None if undecided => Err(End::Stalled("the path was not followed beyond its limit point".into())),
         None => Err(End::NoRate),
     }
@@ -376,13 +384,13 @@ fn finish(mut follower: Follower, end: End, sense: f64) -> PathAnswer {
             follower.trace.log.notes.push(why);
             Outcome::at(Status::Stalled, None)
         }
-        End::Ray(direction, load) => ray_outcome(&mut follower, &direction, &load, sense),
+        End::Ray(ray) => ray_outcome(&mut follower, &ray, sense),
     };
     answer(follower, outcome)
 }
 
 /// A direction without end: a mechanism where λ stands still, else a ray that carries any load.
-fn ray_outcome(follower: &mut Follower, direction: &Direction, load: &Load, sense: f64) -> Outcome {
+fn ray_outcome(follower: &mut Follower, Ray { direction, load, proof }: &Ray, sense: f64) -> Outcome {
     let trace = &mut follower.trace;
     let (contacts, force_unit) = (trace.system.contacts, trace.system.units.force);
     if direction.factor > 0.0 {
@@ -421,7 +429,7 @@ fn ray_outcome(follower: &mut Follower, direction: &Direction, load: &Load, sens
     };
     // With associated flow the mechanism itself is the proof.
     if matches!(outcome.status, Status::Collapse | Status::NoEquilibrium) {
-        let witness = if trace.associated { None } else { none_rises(trace, load) };
+        let witness = if trace.associated { None } else { none_rises(trace, load, proof.as_ref()) };
         follower.witnesses.extend(witness);
     }
     let trace = &mut follower.trace;

@@ -168,7 +168,7 @@ fn a_certified_tree_names_contact_points() {
         let beta = -case.problem.s.tr_mul(&alpha);
         FarkasVector { equilibrium: Vec::new(), gap: beta.as_slice().chunks(2).map(|b| [b[0], b[1]]).collect() }
     };
-    let tree = proof.certified(&case.problem, &[7, 9], &vector).expect("a tree");
+    let tree = proof.certified(&case.problem.points, &[7, 9], &vector).expect("a tree");
     assert_eq!(tree.leaves(100), proof.tree.leaves());
     if let CertifiedTree::Split { contact, .. } = tree {
         assert!([7, 9].contains(&contact));

@@ -166,8 +166,9 @@ fn advance(run: &mut Run, trace: &mut Trace, solution: &Solution, (step, sense):
         run.update_all(trace, e, None);
         run.joints[e].stale = true;
     }
-    let hits: Vec<(usize, usize)> = hits.iter().map(|hit| (hit.2, hit.3)).collect();
+    let mut hits: Vec<(usize, usize)> = hits.iter().map(|hit| (hit.2, hit.3)).collect();
     arrive(trace, &hits);
+    hits.dedup_by_key(|hit| hit.0);
     run.arrived = hits.len();
 }
 
