@@ -5,15 +5,17 @@
 //! 1. rates in the cells next to the arrival ([`neighbours`](super::neighbours));
 //! 2. on a path that does not fall, if none of them rises, all rates with λ̇ > 0. If there is one, the path goes on with
 //!    it, since the structure is in equilibrium under a growing load. A limit point needs a proof that no such rate exists;
-//! 3. if no neighbour continues, all rates with λ̇ = 0 on which the load does work, and all with λ̇ < 0.
+//! 3. if none rises, all rates with λ̇ = 0 on which the load does work; if there is none and no neighbour continues, all
+//!    with λ̇ < 0.
 //!
 //! For associated flow without softening (AᵀSA positive semidefinite) step 2 is a monotone complementarity problem, which
-//! pivoting always solves. Otherwise steps 2 and 3 are complete searches ([`tree`](super::tree)) within a budget.
+//! pivoting always solves. Otherwise steps 2 and 3 are complete searches ([`tree`](super::tree)) within a budget. If there
+//! are more combinations next to the arrival than the budget allows, the first rate that rises is followed.
 
 use super::arrival::Arrival;
 use super::choice::choose;
 use super::counts::{Algorithm, RateCounts};
-use super::lcp::{monotone_rate, rate_lcp};
+use super::lcp::{pivoted_rate, rate_lcp};
 use super::neighbours::{add, neighbours};
 use super::order::Ordered;
 use super::problem::{Rate, RateProblem};
@@ -113,10 +115,13 @@ pub fn only_neighbour(problem: &RateProblem, arrival: &Arrival, budget: &Budget,
 /// # Errors
 /// The reason why that is not decided.
 pub fn rising_rate(problem: &RateProblem, budget: &Budget, trials: &mut u64) -> Result<Option<Rate>, String> {
-    if is_monotone(problem)
-        && let Some(rate) = monotone_rate(problem, trials).filter(|rate| rate.factor > 0.0)
-    {
-        return Ok(Some(rate));
+    if let Some((rate, proof)) = pivoted_rate(problem, trials) {
+        if rate.factor > 0.0 {
+            return Ok(Some(rate));
+        }
+        if proof.is_some() {
+            return Ok(None);
+        }
     }
     let Searched { rates, open, .. } = search_some(problem, 1.0, (budget.leaves, 0), trials);
     match (rates.into_iter().next(), open) {
@@ -157,14 +162,18 @@ impl Inquiry<'_> {
         let most = if self.monotone { 0 } else { self.budget.combinations };
         let (rates, complete) = neighbours(self.problem, self.arrival, most, &mut self.counts.trials);
         self.keep(rates);
-        if (complete || self.monotone) && self.leads_on(|rate| falls || rate.factor > 0.0) {
+        // If there are too many combinations next to the arrival, there are too many for a complete search.
+        if self.leads_on(|rate| rate.factor > 0.0 || (falls && complete)) {
             return self.chosen(Algorithm::Neighbours, None);
         }
-        let (none_rises, by) = self.rising();
-        if self.leads_on(|rate| complete || rate.factor >= 0.0) {
+        let (none_rises, by) = self.rising(complete);
+        if self.leads_on(|rate| rate.factor >= 0.0 || (falls && complete)) {
             return self.chosen(by, none_rises);
         }
         let standing = self.searched(0.0);
+        if self.leads_on(|rate| rate.factor >= 0.0 || complete) {
+            return self.chosen(Algorithm::Tree, none_rises);
+        }
         let falling = self.searched(-1.0);
         if !self.rates.is_empty() {
             return self.chosen(Algorithm::Tree, none_rises);
@@ -195,14 +204,13 @@ impl Inquiry<'_> {
     }
 
     /// Searches all rates with λ rising; returns a proof if no such rate exists.
-    fn rising(&mut self) -> (Option<NoRate>, Algorithm) {
-        if self.monotone {
-            let rate = monotone_rate(self.problem, &mut self.counts.trials);
-            let rises = rate.as_ref().is_some_and(|rate| rate.factor > 0.0);
-            self.keep(rate.into_iter().collect());
-            if rises {
-                return (None, Algorithm::Pivoting);
-            }
+    /// Pivoting comes first; if there are few combinations, the rate that it finds may not be the only one.
+    fn rising(&mut self, few: bool) -> (Option<NoRate>, Algorithm) {
+        let (rate, proof) = pivoted_rate(self.problem, &mut self.counts.trials).unzip();
+        let (rises, proof) = (rate.as_ref().is_some_and(|rate| rate.factor > 0.0), proof.flatten());
+        self.keep(rate.into_iter().collect());
+        if proof.is_some() || (rises && (self.monotone || !few)) {
+            return (proof, Algorithm::Pivoting);
         }
         (self.searched(1.0), Algorithm::Tree)
     }

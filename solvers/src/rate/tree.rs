@@ -5,7 +5,7 @@
 //! contradiction, and a contradiction that does not use the mode of a node ends that node too (conflict-directed
 //! backjumping: Prosser 1993, Computational Intelligence 9).
 
-use super::lcp::{RateLcp, gaps_of, rate_lcp};
+use super::lcp::{LARGEST, RateLcp, gaps_of, rate_lcp};
 use super::neighbours::add;
 use super::problem::{Rate, RateProblem};
 use super::proof::{ModeTree, NoRate};
@@ -16,9 +16,6 @@ use crate::optimise::dense_simplex::{Dictionary, Feasibility};
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::path::PointMode;
 
-/// Entries w and z up to which rates are excluded, where q and the diagonal of M have size one: multipliers that are
-/// rounding of zero are weighed with it.
-const LARGEST: f64 = 1e6;
 /// Coefficient, relative to the greatest, below which a contradiction does not use a fixed variable.
 const ROUNDING: f64 = 1e-14;
 /// Product of w and z, relative to the greatest of each, up to which it is zero.
@@ -295,9 +292,21 @@ impl Search<'_> {
         undecided.map(|k| (product(k), k)).reduce(|a, b| if b.0 > a.0 { b } else { a }).map(|(_, k)| k)
     }
 
+    /// The modes of a point, first those that the present point of the program nearly satisfies.
+    fn nearest_first(&self, point: usize) -> Vec<Choice> {
+        let n = self.lcp.facets.len();
+        let value = |x: usize| self.dictionary.value(x).max(0.0);
+        let most = |first: usize| (first..first + n).map(value).fold(1e-3, f64::max);
+        let sizes = [most(0), most(n)];
+        let distance = |choice: &Choice| choice.1.iter().map(|x| value(*x) / sizes[x / n]).fold(0.0, f64::max);
+        let mut choices = self.choices[point].clone();
+        choices.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+        choices
+    }
+
     fn branch(&mut self, point: usize) -> Result<Explained, String> {
         let (mut modes, mut reasons) = (Vec::new(), Vec::new());
-        for (mode, fixed) in self.choices[point].clone() {
+        for (mode, fixed) in self.nearest_first(point) {
             self.decided[point] = Some(mode);
             fixed.iter().for_each(|x| self.dictionary.fix(*x, true));
             let found = self.node();
