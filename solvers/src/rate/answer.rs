@@ -15,7 +15,7 @@
 use super::arrival::Arrival;
 use super::choice::choose;
 use super::counts::{Algorithm, RateCounts};
-use super::lcp::{pivoted_rate, rate_lcp};
+use super::lcp::{pivoted_rate, rate_lcp, rate_near_associated};
 use super::neighbours::{add, neighbours};
 use super::order::Ordered;
 use super::problem::{Rate, RateProblem};
@@ -206,6 +206,12 @@ impl Inquiry<'_> {
     /// Searches all rates with λ rising; returns a proof if no such rate exists.
     /// Pivoting comes first; if there are few combinations, the rate that it finds may not be the only one.
     fn rising(&mut self, few: bool) -> (Option<NoRate>, Algorithm) {
+        if !(few || self.monotone)
+            && let Some(rate) = rate_near_associated(self.problem, &mut self.counts.trials)
+        {
+            self.keep(vec![rate]);
+            return (None, Algorithm::Pivoting);
+        }
         let (rate, proof) = pivoted_rate(self.problem, &mut self.counts.trials).unzip();
         let (rises, proof) = (rate.as_ref().is_some_and(|rate| rate.factor > 0.0), proof.flatten());
         self.keep(rate.into_iter().collect());

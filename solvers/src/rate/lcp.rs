@@ -20,8 +20,8 @@ const ROUNDING: f64 = 1e-10;
 /// Entries w and z up to which rates are excluded, where q and the diagonal of M have size one: multipliers that are
 /// rounding of zero are weighed with it.
 pub const LARGEST: f64 = 1e6;
-/// Facets above which it is not pivoted.
-const MOST: usize = 900;
+/// Facets up to which a problem is pivoted or searched: its matrix is dense.
+pub const MOST: usize = 2000;
 
 /// The complementarity problem, each facet in its own scale. Multipliers of opening facets that are open have any
 /// sign: they are eliminated.
@@ -159,6 +159,16 @@ pub fn pivoted_rate(problem: &RateProblem, trials: &mut u64) -> Option<(Rate, Op
         }
     };
     problem.admits(&rate).then_some((rate, proof))
+}
+
+/// A rate with λ̇ = 1 by an active set from the modes of associated flow, whose forces are unique: those of a symmetric
+/// structure are symmetric. `None` if it finds none.
+pub fn rate_near_associated(problem: &RateProblem, trials: &mut u64) -> Option<Rate> {
+    let lcp = rate_lcp(problem, true).filter(|lcp| lcp.facets.len() <= MOST)?;
+    let LemkeResult::Solution(z) = lemke(&lcp.lcp, trials) else { return None };
+    let modes = modes_of_solution(problem, &lcp, &z);
+    let rate = settled(problem, modes, &vec![false; problem.points.len()], 1.0, trials)?;
+    (rate.factor > 0.0 && problem.admits(&rate)).then_some(rate)
 }
 
 /// Modes of multipliers that solve the problem.

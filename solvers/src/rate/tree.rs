@@ -5,7 +5,7 @@
 //! contradiction, and a contradiction that does not use the mode of a node ends that node too (conflict-directed
 //! backjumping: Prosser 1993, Computational Intelligence 9).
 
-use super::lcp::{LARGEST, RateLcp, gaps_of, rate_lcp};
+use super::lcp::{LARGEST, MOST, RateLcp, gaps_of, rate_lcp};
 use super::neighbours::add;
 use super::problem::{Rate, RateProblem};
 use super::proof::{ModeTree, NoRate};
@@ -53,6 +53,9 @@ pub fn search_some(problem: &RateProblem, factor: f64, (most, enough): (usize, u
     let Some(lcp) = rate_lcp(problem, false) else {
         return Searched::undecided("the points that are open with a strength are held by nothing");
     };
+    if lcp.facets.len() > MOST {
+        return Searched::undecided("there are too many facets for its dense program");
+    }
     let rows = lcp.all_rows();
     let Some(program) = Program::new(problem, &lcp, factor) else {
         let tree = ModeTree::Contradiction([vec![0.0; rows.len()], vec![1.0]].concat());
@@ -321,6 +324,8 @@ impl Search<'_> {
         }
         reasons.sort_unstable();
         reasons.dedup();
+        let place = |mode: &PointMode| self.choices[point].iter().position(|choice| choice.0 == *mode);
+        modes.sort_by_key(|(mode, _)| place(mode));
         Ok((ModeTree::Point { point, modes }, reasons))
     }
 
