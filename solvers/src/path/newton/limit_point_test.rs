@@ -2,23 +2,22 @@
 //!
 //! Points with slack in all facets stay stuck, open ones without strength open. With the others, the active set, taken
 //! as stuck, equilibrium and elasticity are one factorisation, which gives the rate problem ṙ = S ġ + s λ̇ over them
-//! ([`rate::problem`](crate::rate::problem)); branching finds a rate with λ̇ = 1 or proves that there is none.
+//! ([`rate::problem`](crate::rate::problem)); a complete search finds a rate with λ̇ = 1 or proves that there is none.
 
 use super::equations::Equations;
 use super::response::traction_row;
 use super::state::{State, Tangent};
 use super::system::StepSystem;
 use super::tangent::tangent_from;
-use super::twins::favoured;
 use crate::contact::active_point::ActivePoint;
 use crate::contact::facet::slack;
 use crate::contact::mode::ContactMode;
 use crate::linear::{inner, largest};
-use crate::rate::answer::{Budget, Continuation, answer};
+use crate::path::twins::favoured;
+use crate::rate::answer::{Budget, Continuation, answer, rising_rate};
 use crate::rate::arrival::{Arrival, ArrivalPoint};
-use crate::rate::branching::{RisingRate, rising_rate};
+use crate::rate::counts::RateCounts;
 use crate::rate::problem::{Rate, RateProblem};
-use crate::rate::solve::RateCounts;
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::law::FacetMode;
 use voussoir_core::linear::{Entries, SparseLu};
@@ -31,8 +30,6 @@ const OPEN: f64 = 1e-9;
 const RESIDUAL: f64 = 1e-9;
 /// Regularisation of the factorised matrix, taken out by refinement.
 const REGULARISATION: f64 = 1e-11;
-/// Linear programs of a search.
-const MOST: u64 = 20_000;
 
 /// The active set of a state.
 pub(super) struct ActiveSet {
@@ -63,17 +60,15 @@ pub(super) fn limit_point_test(system: &mut StepSystem, state: &State, direction
     let Some(responses) = responses_of(system, state, &active, &equations, direction) else {
         return LimitPointTest::Unknown(format!("the stiffness of {count} facets of the active set was not found"));
     };
-    let mut programs = 0;
-    let found = rising_rate(&rate_problem(system, &active, &responses), MOST, &mut programs);
-    system.count("rate_programs", programs);
+    let mut trials = 0;
+    let found = rising_rate(&rate_problem(system, &active, &responses), &Budget::default(), &mut trials);
+    system.count("rate_combinations", trials);
     match found {
-        RisingRate::None => LimitPointTest::None,
-        RisingRate::Undecided(why) => {
-            LimitPointTest::Unknown(format!("{count} facets of the active set may let the load grow: {why}"))
-        }
-        RisingRate::Found(gaps, modes) => {
-            let x = unknowns_of(&responses, &gaps, 1.0, direction);
-            let modes = modes_of(system, &active, modes);
+        Ok(None) => LimitPointTest::None,
+        Err(why) => LimitPointTest::Unknown(format!("{count} facets of the active set may let the load grow: {why}")),
+        Ok(Some(rate)) => {
+            let x = unknowns_of(&responses, &rate.gaps, 1.0, direction);
+            let modes = modes_of(system, &active, rate.modes);
             LimitPointTest::Tangent(tangent_from(system, &x, state, &equations), modes)
         }
     }
@@ -309,7 +304,6 @@ pub(super) fn rate_problem<'s>(system: &'s StepSystem, active: &ActiveSet, respo
             open: *open,
             apex: open.is_none() && ActivePoint::is_apex(law, facets),
             guess: ContactMode::Stick,
-            hit: true,
             stiffness: 1.0,
         }
     };
@@ -317,7 +311,6 @@ pub(super) fn rate_problem<'s>(system: &'s StepSystem, active: &ActiveSet, respo
         points: active.contacts.iter().zip(&active.facets).map(point).collect(),
         s: DMatrix::from_fn(n, n, |i, j| force(i, &responses[j])),
         load_rate: DVector::from_fn(n, |i, _| force(i, &responses[n])),
-        from_nothing: false,
         load_force: largest(&responses[n][..2 * system.scaled.contacts]),
         load_flexibility: 0.0,
         metric: None,

@@ -56,7 +56,7 @@ fn merit(system: &mut StepSystem, start: &State, state: &State, gradient: &Gradi
             Some(law) => {
                 let r = state.force[c];
                 let z = [r[0] - pulled[0], r[1] - pulled[1]];
-                let (_, back) = law.return_map(z, rho, system.problem.contacts[c].area);
+                let back = law.return_map(z, rho, system.problem.contacts[c].area);
                 [r[0] - back[0], r[1] - back[1]]
             }
             None => pulled,
