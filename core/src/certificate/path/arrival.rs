@@ -3,8 +3,7 @@
 //! A rate at the state in modes of that piece existed on it too. Unloading is such a rate, and so is the way back. None of them
 //! continues the path.
 
-use super::none_rises::Decided;
-use super::point_modes::ModeCone;
+use super::point_modes::{Decided, ModeCone};
 use crate::path::PointMode;
 
 /// Distance of an increment from a mode, relative to the greatest increment, from which the point was not in this mode.

@@ -421,13 +421,13 @@ impl LoadingSet {
         };
         for index in 0..contacts {
             let of_rows = self.rows_of(index);
-            for t in 0..2 {
+            vector.gap[index] = [0, 1].map(|t| {
                 let own = |k: usize| z[2 * index + k] * scales[2 * index + k] * of_rows[k][1][t];
                 let terms = [own(0), own(1), z[last] * self.gaps[index][t]];
                 let sum: f64 = terms.iter().sum();
                 let rounding = NOISE * terms.iter().map(|term| term.abs()).sum::<f64>();
-                vector.gap[index][t] = if sum.abs() > rounding { -sum } else { 0.0 };
-            }
+                if sum.abs() > rounding { -sum } else { 0.0 }
+            });
         }
         for (at, i) in free.iter().enumerate() {
             let row = 2 * contacts + at;

@@ -12,10 +12,9 @@
 //! by the tolerances. No number is searched for.
 
 use super::arrival::Arrival;
-use super::point_modes::{ModeCone, length};
+use super::point_modes::{Decided, ModeCone, length};
 use super::rate_equations::{Column, RateEquations};
-use crate::path::{FarkasVector, ModeTree, PointMode};
-use std::collections::BTreeMap;
+use crate::path::{FarkasVector, ModeTree};
 
 /// Most leaves of a tree.
 pub const MAX_LEAVES: usize = 10_000;
@@ -66,9 +65,6 @@ impl<'a> Refuted<'a> {
         }
     }
 }
-
-/// The modes that are decided on a branch.
-pub(super) type Decided = BTreeMap<usize, PointMode>;
 
 /// A sum with the sum of the sizes of its terms.
 #[derive(Debug, Clone, Copy, Default)]

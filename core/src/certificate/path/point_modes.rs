@@ -14,6 +14,7 @@
 use super::claims::outside;
 use crate::law::{Facet, FacetMode, YieldPolygon};
 use crate::path::{Contact, PointLaw, PointMode};
+use std::collections::BTreeMap;
 
 /// Slack of a facet, as a share of the greatest contact force, up to which it is active.
 pub const ACTIVE: f64 = 1e-8;
@@ -23,6 +24,9 @@ const ALONG: f64 = 1e-12;
 
 /// All directions of the plane.
 const PLANE: [[f64; 2]; 4] = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
+
+/// The modes that are decided on a branch of a tree, by contact point.
+pub(super) type Decided = BTreeMap<usize, PointMode>;
 
 /// A mode with the generators of both cones.
 #[derive(Debug, Clone)]

@@ -117,18 +117,14 @@ fn none_continues(asked: &PathAsked, story: &Story, _: usize) -> Vec<RateClaim> 
     trees.map(claim).map(RateClaim::NoneContinues).collect()
 }
 
-/// The path ends early at the first limit point that it was asked for, with the rates to other states as witnesses.
+/// The path ends early at its first limit point, with the rates to other states as witnesses.
 fn rate_as_a_limit_point(_: &PathAsked, story: &mut Story, by: f64) -> Option<()> {
     story.falls()?;
     let index = story.below(0.7)?;
     let (state, next) = (story.states[index].clone(), story.states[index + 1].clone());
-    let last = story.states.last()?.clone();
+    let claims = [rate_between(&state, &next, by), rate_between(&state, &story.answer.state, by)];
     story.stop_at(index);
-    story.answer.status = Status::Collapse;
-    let back: Vec<PathState> = story.states[..index].iter().rev().cloned().collect();
-    story.states.extend(back.into_iter().take_while(|own| own.load_step == state.load_step));
-    story.answer.last = story.states.last().cloned();
-    let claims = [rate_between(&state, &next, by), rate_between(&state, &last, by)];
+    (story.answer.status, story.answer.motion) = (Status::LimitPoint, None);
     story.answer.witnesses = claims.map(|claim| Witness { state: state.clone(), claim }).into();
     Some(())
 }
