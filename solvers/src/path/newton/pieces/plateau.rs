@@ -1,6 +1,6 @@
 //! Whether a piece is a mechanism that moves on under a constant load.
 
-use super::super::limit_point_test::{LimitPointTest, limit_point_test};
+use super::super::limit_point_test::{LimitPointTest, active_set, limit_point_test};
 use super::super::measure::fastest;
 use super::super::state::State;
 use super::super::tracer::Tracer;
@@ -63,12 +63,14 @@ pub(super) fn plateau(tracer: &mut Tracer, piece: &Piece, direction: f64) -> Opt
     if moved * fastest < LEAST * size || !is_same(&start, &state) {
         return None;
     }
+    // The tangents of a loading set are linear: if no facet may change its mode their one rate has a constant factor.
+    let has_history = !tracer.system.laws.responses.is_empty() || start.yields();
+    if has_history && active_set(&tracer.system, &start, &[]).contacts.is_empty() {
+        return Some(Plateau { moved: state, unproved: None });
+    }
     match limit_point_test(&mut tracer.system, &start, direction) {
         LimitPointTest::None => Some(Plateau { moved: state, unproved: None }),
-        // The tangents of a loading set are linear: their one rate has a constant factor.
-        LimitPointTest::Unknown(_) if !tracer.system.laws.responses.is_empty() || start.yields() => {
-            Some(Plateau { moved: state, unproved: None })
-        }
+        LimitPointTest::Unknown(_) if has_history => Some(Plateau { moved: state, unproved: None }),
         LimitPointTest::Unknown(why) => Some(Plateau { moved: state, unproved: Some(why) }),
         LimitPointTest::Tangent(..) => None,
     }
