@@ -192,11 +192,11 @@ impl Monitor {
             let said = system.laws.responses.at(self.contact, there, &start.updates.memory);
             said.is_none_or(|point| point.branch == branch)
         };
-        // At the start of a piece the branch is that just ahead of the state.
-        let inside = std::ptr::eq(start, state) || state.updates.points[self.contact].branch == branch;
-        let sense = if inside { 1.0 } else { -1.0 };
-        // Nearer than the place where tangents are taken the branch may be rounding.
+        // Nearer than the place where tangents are taken the branch may be rounding, or a point may not have entered it yet.
         let mut far = AHEAD.max(tolerance);
+        let at_start = std::ptr::eq(start, state);
+        let inside = at_start || state.updates.points[self.contact].branch == branch || is_in(far);
+        let sense = if inside { 1.0 } else { -1.0 };
         let mut near = 0.0;
         for _ in 0..DOUBLINGS {
             if is_in(sense * far) != inside {
