@@ -20,8 +20,8 @@ const ROUNDING: f64 = 1e-10;
 /// Entries w and z up to which rates are excluded, where q and the diagonal of M have size one: multipliers that are
 /// rounding of zero are weighed with it.
 pub const LARGEST: f64 = 1e6;
-/// Facets up to which a problem is pivoted or searched: its matrix is dense.
-pub const MOST: usize = 2000;
+/// Facets up to which a problem is pivoted: its matrix is dense, and it takes about as many pivots as it has facets.
+const MOST: usize = 4000;
 
 /// The complementarity problem, each facet in its own scale. Multipliers of opening facets that are open have any
 /// sign: they are eliminated.

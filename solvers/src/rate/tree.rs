@@ -5,7 +5,7 @@
 //! contradiction, and a contradiction that does not use the mode of a node ends that node too (conflict-directed
 //! backjumping: Prosser 1993, Computational Intelligence 9).
 
-use super::lcp::{LARGEST, MOST, RateLcp, gaps_of, rate_lcp};
+use super::lcp::{LARGEST, RateLcp, gaps_of, rate_lcp};
 use super::neighbours::add;
 use super::problem::{Rate, RateProblem};
 use super::proof::{ModeTree, NoRate};
@@ -22,6 +22,8 @@ const ROUNDING: f64 = 1e-14;
 const COMPLEMENTARY: f64 = 1e-9;
 /// Cosine up to which directions are at a right angle.
 const ALONG: f64 = 1e-12;
+/// Facets up to which a problem is searched: its program is dense.
+const MOST: usize = 1200;
 /// Linear programs for each leaf of the budget.
 const PROGRAMS: u64 = 4;
 /// Entries of the program that all pivots may change: each pivot changes all of them.
