@@ -86,7 +86,12 @@ fn each_is_found(name: &str, text: &str) {
     let (findings, named) = verified(&forged);
     let expected = files.iter().map(|(name, _)| name).filter(|name| *name != "results.json");
     assert_eq!(findings, 0, "{name}");
-    assert_eq!(named, expected.map(|name| format!("{name} is not what results.json gives")).collect(), "{name}");
+    // The states of a path do not follow from results.json: their line has a checksum.
+    let finding = |name: &String| match name.as_str() {
+        "path_proofs.jsonl" => format!("{name}, line 1, case 0: the checksum is wrong"),
+        _ => format!("{name} is not what results.json gives"),
+    };
+    assert_eq!(named, expected.map(finding).collect(), "{name}");
 }
 
 /// Limit analysis, a path with its curve, a comparison, a map, an optimum.

@@ -106,6 +106,5 @@ fn fuzzed_rate_problems_are_answered() {
             assert_eq!(all.iter().any(|rate| rate.factor > 0.0), rises, "{number}: {all:?}");
         }
     }
-    println!("{tallies:#?}");
     assert!(tallies.values().all(|(problems, open, _)| 10 * open <= *problems), "{tallies:#?}");
 }
