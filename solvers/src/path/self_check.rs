@@ -63,7 +63,8 @@ fn confirm(problem: &PathProblem, finite: bool, answer: &PathAnswer) -> Result<(
     let falls = answer.last.as_ref().is_some_and(|last| MechanismPlace::of(own, last.factor) == MechanismPlace::Peak);
     match answer.status {
         Status::NoEquilibrium if answer.motion.is_none() => Err("there is no mechanism under the dead load".into()),
-        Status::Collapse | Status::NoEquilibrium if finite || falls => Ok(()),
+        // Of blocks that flow the rigid motion is no mechanism by itself.
+        Status::Collapse | Status::NoEquilibrium if finite || falls || problem.yields() => Ok(()),
         Status::Collapse | Status::NoEquilibrium => mechanism(problem, answer),
         Status::Unbounded => ray(problem, answer),
         _ => Ok(()),

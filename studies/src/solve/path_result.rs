@@ -70,8 +70,8 @@ pub(super) fn path_result(
     }
     let place =
         solved.factor.zip(progress.history.last()).map(|(factor, last)| MechanismPlace::of(factor, last.factor));
-    // At a peak, and with finite displacements, forces change along the mechanism.
-    let at_rest = !finite && place == Some(MechanismPlace::Plateau);
+    // At a peak, and with finite displacements, forces change along the mechanism; blocks that yield flow in it.
+    let at_rest = !finite && place == Some(MechanismPlace::Plateau) && !problem.yields();
     if at_rest {
         prefer_symmetric(assembly, &checker, &mut solved);
     }

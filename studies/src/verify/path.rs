@@ -40,10 +40,10 @@ pub(super) fn verify(case: &Case, result: &CaseResult, findings: &mut Findings) 
     }
     verify_status(case, &problem, &state, result, findings);
     verify_range(case, &problem, &state, result, findings);
-    // At a peak, and with finite displacements, forces change along the mechanism.
+    // At a peak, and with finite displacements, forces change along the mechanism; blocks that yield flow in it.
     let followed_to = result.path.followed_to.as_ref().map(|end| end.factor);
-    let place = result.load_factor.zip(followed_to).map(|(factor, end)| MechanismPlace::of(factor, end));
-    let at_rest = !finite && place == Some(MechanismPlace::Plateau);
+    let place = result.proof.field_factor.zip(followed_to).map(|(factor, end)| MechanismPlace::of(factor, end));
+    let at_rest = !finite && place == Some(MechanismPlace::Plateau) && !problem.yields();
     if let Some(mechanism) = &result.mechanism {
         findings.expect(mechanism.at == place, "the place of the mechanism does not fit the end of the path");
     }

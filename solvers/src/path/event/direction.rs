@@ -8,6 +8,7 @@ use super::rates::{Direction, Rates, direction_of, leaving, motion_alone, residu
 use super::schur::SchurComplement;
 use super::trace::{Log, Trace};
 use crate::contact::mode::ContactMode;
+use crate::path::newton::small_load::modes_of_small_load;
 use crate::path::system::{Load, System};
 use crate::path::twins::favoured;
 use crate::rate::answer::{Budget, Continuation, Neighbour, RateAnswer, answer, only_neighbour};
@@ -67,8 +68,9 @@ pub fn next_direction(trace: &mut Trace, load: &Load) -> Continued {
     trace.log.counts.rate_problems += 1;
     let points = &trace.state.points;
     let active: Vec<usize> = (0..points.len()).filter(|c| points[*c].settled().is_none()).collect();
-    // From nothing all points are in the active set, and no rate is next to another one.
-    let many = if trace.state.x.iter().all(|v| *v == 0.0) {
+    let from_nothing = trace.state.x.iter().all(|v| *v == 0.0);
+    let many = if from_nothing {
+        // All points are in the active set, and no rate is next to another one.
         true
     } else {
         match by_neighbours(trace, load, &active) {
@@ -77,8 +79,12 @@ pub fn next_direction(trace: &mut Trace, load: &Load) -> Continued {
             Neighbourhood::Several => false,
         }
     };
-    if many && let Some(direction) = on_whole_system(trace, load, &active) {
-        return Next::Go(direction).into();
+    let present = many.then(|| present_modes(trace));
+    let loaded = from_nothing.then(|| modes_of_small_load(trace.problem, trace.state.load_step)).flatten();
+    for modes in loaded.into_iter().chain(present) {
+        if let Some(direction) = on_whole_system(trace, load, &active, modes) {
+            return Next::Go(direction).into();
+        }
     }
     if active.len() > DENSE && !trace.associated {
         return Next::Lost(format!(
@@ -402,9 +408,8 @@ fn solved_anew(trace: &mut Trace, rates: Rates, load: &Load, modes: &[ContactMod
     rates
 }
 
-/// The active set on the whole system with λ̇ = 1: for many points at once.
-fn on_whole_system(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<Direction> {
-    let mut modes = present_modes(trace);
+/// The active set on the whole system with λ̇ = 1 from some modes: for many points at once.
+fn on_whole_system(trace: &mut Trace, load: &Load, active: &[usize], mut modes: Vec<ContactMode>) -> Option<Direction> {
     let mut seen: Vec<Vec<ContactMode>> = Vec::new();
     for round in 0..ROUNDS[0] {
         trace.log.counts.factorisations += 1;

@@ -489,7 +489,6 @@ fn answer(follower: Follower, mut outcome: Outcome) -> PathAnswer {
         witnesses,
         counters,
         notes,
-        ..PathRecord::default()
     };
     outcome.unconfirmed(record)
 }

@@ -30,6 +30,7 @@ mod recorded;
 mod relaxation;
 mod response;
 mod second_order;
+pub(super) mod small_load;
 mod stable_branch;
 mod state;
 mod step;

@@ -18,6 +18,10 @@ const BEYOND: f64 = 1.02;
 const STRAIGHT: f64 = 0.1;
 /// Length, in units, that is rounding of a state.
 const ROUNDING: f64 = 1e-7;
+/// Distance of a state from its predictor, relative to the step, beyond which it belongs to another branch, and the part of the
+/// distance that is rounding.
+const ELSEWHERE: f64 = 0.5;
+const NOISE: f64 = 1e-10;
 /// Points between the ends of a step at which a cubic is looked at.
 const SAMPLES: usize = 16;
 /// States that are computed to locate an event.
@@ -134,6 +138,9 @@ impl Step<'_, '_> {
         let moved = scaled_row(self.system, &step);
         let away: f64 = moved.iter().zip(self.piece.row.iter()).map(|(x, t)| (x - length * t).powi(2)).sum();
         let error = away.sqrt() / length.abs().max(1e-300);
+        if error > ELSEWHERE + NOISE / length.abs().max(1e-300) {
+            return None;
+        }
         let unexplained = self.unexplained(&state, &rate, length);
         let readings = self.readings(&state, &rate);
         Some(Trial { end: StepEnd { state, rate, length, error, unexplained }, readings })
@@ -255,10 +262,16 @@ fn locate(step: &mut Step, mut low: Trial, mut high: Trial) -> Advance {
             (0..middle.readings.len()).any(|i| was(i) && middle.readings[i].value <= middle.readings[i].tolerance);
         low = middle;
         if arrived {
-            break;
+            return ended(low, &high);
         }
     }
-    ended(low, &high)
+    // Slacks and openings are continuous: if one of them jumps, the states behind the bracket are on another branch.
+    let jumps = |(a, b): (&Reading, &Reading)| a.rate.is_some() && !a.is_active() && b.is_violated();
+    match low.readings.iter().zip(&high.readings).any(jumps) {
+        true if low.end.length > 0.0 => Advance::Whole(low.end),
+        true => Advance::Failed,
+        false => ended(low, &high),
+    }
 }
 
 /// What ends a step at `low`, behind which `high` violates something.

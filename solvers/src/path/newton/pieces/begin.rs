@@ -3,6 +3,7 @@
 use super::super::commit::commit;
 use super::super::control::Control;
 use super::super::limit_point_test::{LimitPointTest, limit_point_test};
+use super::super::small_load::SMALL;
 use super::super::state::State;
 use super::super::step::solve_step;
 use super::super::tangent::tangent_at;
@@ -13,8 +14,6 @@ use crate::contact::mode::ContactMode;
 use crate::path::event::first_modes;
 use voussoir_core::limit::Status;
 
-/// Load, relative to the unit of the factor, whose state has the modes with which the path begins from nothing.
-const SMALL: f64 = 0.05;
 /// Shares of the load step at which a state is looked for if no rate has been found.
 const AHEAD: [f64; 3] = [1e-6, 1e-4, 1e-2];
 

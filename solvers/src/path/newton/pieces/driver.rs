@@ -1,6 +1,6 @@
 //! Pieces one after the other, from the start of a load step to its end.
 
-use super::super::ahead::facing_ahead;
+use super::super::ahead::{facing_ahead, length_to_yield};
 use super::super::commit::{commit, end_at_lost_joint, lost_joint};
 use super::super::control::Control;
 use super::super::events::events;
@@ -19,7 +19,7 @@ use super::end::end_of_range;
 use super::loading_set::{LoadingRate, loading_rate};
 use super::monitors::{Monitor, What};
 use super::piece::Piece;
-use super::plateau::{Plateau, plateau, stands_still};
+use super::plateau::{Plateau, plateau, stands_still, stood_still};
 use super::ray::ray;
 use super::switch::{NextPiece, after_event};
 use crate::contact::mode::ContactMode;
@@ -45,6 +45,8 @@ const TELLING: f64 = 0.1;
 const NOT_FALLEN: f64 = 1e-12;
 /// Relative difference of two loads that are the same in a result.
 const SAME_LOAD: f64 = 1e-6;
+/// Length, relative to the first step, below which blocks that begin to yield are looked for.
+const ONSET: f64 = 1e-3;
 /// Length, relative to the first step, below which there is no step.
 const SHORTEST: f64 = 1e-10;
 /// Pieces of next to no length one after the other at which the path is lost.
@@ -80,6 +82,8 @@ struct Run<'d> {
     unstable: bool,
     /// Whether the path moves on under a constant load.
     on_plateau: bool,
+    /// Whether blocks flowed in the last step while the load stood still.
+    stood_still: bool,
 }
 
 /// Events at one place: the path has hardly moved since the first of them.
@@ -139,6 +143,7 @@ impl<'d> Run<'d> {
             cluster: Cluster::default(),
             unstable: false,
             on_plateau: false,
+            stood_still: false,
         };
         run.first = run.by_strategy(tracer);
         run.length = run.first;
@@ -163,7 +168,7 @@ impl<'d> Run<'d> {
     fn greatest_step(&self, tracer: &Tracer) -> f64 {
         let u = tracer.system.units();
         let most = match tracer.strategy.largest_step() {
-            step if step.is_finite() => step,
+            step if step.is_finite() || !tracer.system.finite() => step,
             // Friction's flow turns with the blocks: its error adds up over a path, and the error of one step does not show it.
             _ => LARGEST_FINITE_STEP,
         };
@@ -199,17 +204,30 @@ impl<'d> Run<'d> {
     fn shorten(&mut self, tracer: &mut Tracer, length: f64) -> Option<LoadStepEnding> {
         tracer.system.count("cutbacks", 1);
         self.length = length;
-        if length >= SHORTEST * self.first {
+        let onset = if length < ONSET * self.first { self.at_onset(tracer, length) } else { None };
+        if length >= SHORTEST * self.first && onset.is_none() {
             return None;
         }
         if let Some(found) = self.around_corner(tracer) {
             self.length = 0.1 * self.first;
+            tracer.state.blocks.clone_from(&found.state.blocks);
             let modes = found.state.mode.clone();
             return self.go_on(tracer, found, modes, None);
         }
         let failure = tracer.system.failure.take().map_or(String::new(), |why| format!(": {why}"));
         let why = format!("no state of the piece was found beyond factor {}{failure}", tracer.state.factor);
         Some(end_path(tracer, Status::Stalled, why))
+    }
+
+    /// Goes to the place near the present state at which blocks begin to yield, if there is one.
+    fn at_onset(&mut self, tracer: &mut Tracer, length: f64) -> Option<()> {
+        if !tracer.system.problem.yields() {
+            return None;
+        }
+        let (here, most) = (tracer.state.clone(), length / ONSET);
+        let onset = length_to_yield(&mut tracer.system, &here, &self.piece.tangent, most)?;
+        let end = state_at(&mut tracer.system, &here, &self.piece, onset)?;
+        commit(tracer, end.state).then_some(())
     }
 
     /// The rate that leads on from a state beyond which the piece has none, since blocks or bonds begin to yield there.
@@ -253,6 +271,7 @@ impl<'d> Run<'d> {
         let Some(piece) = self.piece.turned(&tracer.system, &end.rate) else {
             return Err(self.shorten(tracer, 0.3 * end.length));
         };
+        self.stood_still = stood_still(tracer, &end.state);
         if !commit(tracer, end.state) {
             return Err(Some(LoadStepEnding::Ended));
         }
@@ -277,11 +296,12 @@ impl<'d> Run<'d> {
     /// The end at a mechanism under a constant load, if there is one at the present state. If the stage asks for a
     /// displacement beyond its limit point, the path goes on.
     fn plateau(&mut self, tracer: &mut Tracer) -> Option<LoadStepEnding> {
-        if self.on_plateau || !stands_still(tracer, &self.piece) {
+        if self.on_plateau || !(self.stood_still || stands_still(tracer, &self.piece)) {
             return None;
         }
-        let found = plateau(tracer, &self.piece.clone(), self.direction)?;
-        if found.unproved.is_none() && tracer.settings.stop(self.load_step.stage)[0].is_some() {
+        let found = plateau(tracer, &self.piece.clone(), self.direction, self.stood_still)?;
+        let goes_on = tracer.settings.stop(self.load_step.stage)[0].is_some() && !self.stood_still;
+        if found.unproved.is_none() && goes_on {
             note_peak(tracer, Some(&self.piece.tangent), self.direction);
             self.on_plateau = true;
             return None;
@@ -631,7 +651,7 @@ impl<'d> Run<'d> {
                 "the load stands still, which is not proved to be its greatest".into(),
             );
         }
-        if !commit(tracer, found.moved) {
+        if !found.moved.into_iter().all(|state| commit(tracer, state)) {
             return LoadStepEnding::Ended;
         }
         end_path(tracer, Status::Collapse, "the structure moves on under a constant load".into())
