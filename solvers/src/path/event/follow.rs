@@ -478,17 +478,7 @@ fn answer(follower: Follower, mut outcome: Outcome) -> PathAnswer {
     }
     let (load_step, limit_points) = (state.load_step, limits.proven);
     let (stability, branchings, events, notes) = (log.stability, log.branchings, log.events, log.notes);
-    let record = PathRecord {
-        load_step,
-        state,
-        last,
-        limit_points,
-        stability,
-        branchings,
-        events,
-        witnesses,
-        counters,
-        notes,
-    };
+    let record =
+        PathRecord { load_step, state, last, limit_points, stability, branchings, events, witnesses, counters, notes };
     outcome.unconfirmed(record)
 }

@@ -9,8 +9,10 @@ use super::super::peak::{note_peak, peak_at, scaled_motion};
 use super::super::second_order::{instability, second_order_work};
 use super::super::stable_branch::{Departure, leave_unstable};
 use super::super::state::{State, Tangent};
+use super::super::step::solve_step;
 use super::super::step_energy::step_energy;
-use super::super::tracer::{LoadStepEnding, Tracer, direction, end_path};
+use super::super::tangent::tangent_at;
+use super::super::tracer::{LoadStepEnding, Tracer, direction, end_path, moved};
 use super::super::witness::none_continues;
 use super::advance::{Advance, StepEnd, Watched, advance, state_at};
 use super::begin::begin;
@@ -45,6 +47,8 @@ const TELLING: f64 = 0.1;
 const NOT_FALLEN: f64 = 1e-12;
 /// Relative difference of two loads that are the same in a result.
 const SAME_LOAD: f64 = 1e-6;
+/// Lengths, relative to the first step, of steps across a corner.
+const ACROSS: [f64; 4] = [1e-6, 1e-5, 1e-4, 1e-3];
 /// Length, relative to the first step, below which blocks that begin to yield are looked for.
 const ONSET: f64 = 1e-3;
 /// Length, relative to the first step, below which there is no step.
@@ -80,10 +84,16 @@ struct Run<'d> {
     cluster: Cluster,
     /// Whether the present modes are known to be unstable under their loads, and no stable equilibrium is near.
     unstable: bool,
+    standing: Standing,
+}
+
+/// A load that stands still.
+#[derive(Default)]
+struct Standing {
     /// Whether the path moves on under a constant load.
     on_plateau: bool,
-    /// Whether blocks flowed in the last step while the load stood still.
-    stood_still: bool,
+    /// Whether blocks flowed in the last step.
+    flows: bool,
 }
 
 /// Events at one place: the path has hardly moved since the first of them.
@@ -142,8 +152,7 @@ impl<'d> Run<'d> {
             from: tracer.record.state.displacement,
             cluster: Cluster::default(),
             unstable: false,
-            on_plateau: false,
-            stood_still: false,
+            standing: Standing::default(),
         };
         run.first = run.by_strategy(tracer);
         run.length = run.first;
@@ -214,6 +223,9 @@ impl<'d> Run<'d> {
             let modes = found.state.mode.clone();
             return self.go_on(tracer, found, modes, None);
         }
+        if !tracer.system.piecewise_linear() && !self.crowded() && self.across(tracer) {
+            return None;
+        }
         let failure = tracer.system.failure.take().map_or(String::new(), |why| format!(": {why}"));
         let why = format!("no state of the piece was found beyond factor {}{failure}", tracer.state.factor);
         Some(end_path(tracer, Status::Stalled, why))
@@ -240,6 +252,26 @@ impl<'d> Run<'d> {
         let piece = Piece::new(&tracer.system, &found.state, &found.rate)?;
         let cosine = inner(&piece.row, &self.piece.row);
         (cosine < 1.0 - CORNER).then_some(found)
+    }
+
+    /// Takes the shortest step across a corner at which no loading set agrees with its rate: by Newton's method on the laws
+    /// themselves, whose branches may change. Returns true if it is taken.
+    fn across(&mut self, tracer: &mut Tracer) -> bool {
+        let here = tracer.state.clone();
+        let found = ACROSS.iter().map(|share| share * self.first).find_map(|length| {
+            let control = self.piece.control(length);
+            let guess = moved(&here, &self.piece.tangent, length);
+            let (next, _) = solve_step(&mut tracer.system, &here, guess, &control).ok()?;
+            let rate = tangent_at(&mut tracer.system, &next, &control)?;
+            step_energy(tracer, &next).holds.then_some((length, next, rate))
+        });
+        let Some((length, next, rate)) = found else { return false };
+        let Some(piece) = Piece::new(&tracer.system, &next, &rate) else { return false };
+        if !commit(tracer, next) {
+            return false;
+        }
+        (self.piece, self.length) = (piece, length);
+        true
     }
 
     /// Counts a piece of next to no length; returns true if there are too many of them.
@@ -271,7 +303,7 @@ impl<'d> Run<'d> {
         let Some(piece) = self.piece.turned(&tracer.system, &end.rate) else {
             return Err(self.shorten(tracer, 0.3 * end.length));
         };
-        self.stood_still = stood_still(tracer, &end.state);
+        self.standing.flows = stood_still(tracer, &end.state);
         if !commit(tracer, end.state) {
             return Err(Some(LoadStepEnding::Ended));
         }
@@ -296,14 +328,14 @@ impl<'d> Run<'d> {
     /// The end at a mechanism under a constant load, if there is one at the present state. If the stage asks for a
     /// displacement beyond its limit point, the path goes on.
     fn plateau(&mut self, tracer: &mut Tracer) -> Option<LoadStepEnding> {
-        if self.on_plateau || !(self.stood_still || stands_still(tracer, &self.piece)) {
+        if self.standing.on_plateau || !(self.standing.flows || stands_still(tracer, &self.piece)) {
             return None;
         }
-        let found = plateau(tracer, &self.piece.clone(), self.direction, self.stood_still)?;
-        let goes_on = tracer.settings.stop(self.load_step.stage)[0].is_some() && !self.stood_still;
+        let found = plateau(tracer, &self.piece.clone(), self.direction, self.standing.flows)?;
+        let goes_on = tracer.settings.stop(self.load_step.stage)[0].is_some() && !self.standing.flows;
         if found.unproved.is_none() && goes_on {
             note_peak(tracer, Some(&self.piece.tangent), self.direction);
-            self.on_plateau = true;
+            self.standing.on_plateau = true;
             return None;
         }
         Some(self.end_at_plateau(tracer, found))

@@ -72,6 +72,10 @@ pub(super) fn plateau(tracer: &mut Tracer, piece: &Piece, direction: f64, flows:
     // The tangents of a loading set are linear: if no facet may change its mode their one rate has a constant factor. Those of
     // blocks that flow are regularised and say nothing of it.
     let has_history = !tracer.system.laws.responses.is_empty() || start.yields();
+    if !has_history {
+        // Slip and forces give the dissipation of the whole motion.
+        states = vec![state];
+    }
     if flows || has_history && active_set(&tracer.system, &start, &[]).contacts.is_empty() {
         return Some(Plateau { moved: states, unproved: None });
     }
