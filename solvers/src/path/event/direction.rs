@@ -81,6 +81,12 @@ pub fn next_direction(trace: &mut Trace, load: &Load) -> Continued {
     };
     let present = many.then(|| present_modes(trace));
     let loaded = from_nothing.then(|| modes_of_small_load(trace.problem, trace.state.load_step)).flatten();
+    let loaded = loaded.map(|modes| {
+        // Open points close under a load that is not small for them.
+        let mut all = present_modes(trace);
+        active.iter().for_each(|c| all[*c] = modes[*c]);
+        all
+    });
     for modes in loaded.into_iter().chain(present) {
         if let Some(direction) = on_whole_system(trace, load, &active, modes) {
             return Next::Go(direction).into();

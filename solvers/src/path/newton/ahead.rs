@@ -7,36 +7,15 @@ use super::tracer::moved;
 
 /// Length along a rate of size 1 at which tangents are taken.
 pub(super) const AHEAD: f64 = 1e-6;
-/// Halvings of the length at which blocks begin to yield.
-const BISECTIONS: usize = 50;
 /// Rate of a gap, relative to the fastest, up to which its point is at rest and keeps its tangent.
 const AT_REST: f64 = 1e-8;
 
 /// The state with blocks and laws of tractions that have the tangents of a place a short length ahead along a rate of size 1. `None` if the
 /// laws give no stresses there.
 pub(super) fn facing_ahead(system: &mut StepSystem, state: &State, rate: &Tangent) -> Option<State> {
-    facing(system, state, rate, AHEAD)
-}
-
-/// Greatest length along a rate, up to some length, at which no block yields. `None` if blocks yield at the state, or not within
-/// the length.
-pub(super) fn length_to_yield(system: &mut StepSystem, state: &State, rate: &Tangent, most: f64) -> Option<f64> {
-    let mut yields = |length: f64| facing(system, state, rate, length).is_none_or(|facing| facing.yields());
-    if state.yields() || !yields(most) {
-        return None;
-    }
-    let (mut low, mut high) = (0.0, most);
-    for _ in 0..BISECTIONS {
-        let middle = 0.5 * (low + high);
-        if yields(middle) { high = middle } else { low = middle }
-    }
-    Some(low)
-}
-
-fn facing(system: &mut StepSystem, state: &State, rate: &Tangent, length: f64) -> Option<State> {
     let mut facing = state.clone();
     if !state.blocks.is_empty() {
-        let mut ahead = moved(state, rate, length);
+        let mut ahead = moved(state, rate, AHEAD);
         update_blocks(system, &mut ahead).ok()?;
         facing.blocks = ahead.blocks;
     }
@@ -46,7 +25,7 @@ fn facing(system: &mut StepSystem, state: &State, rate: &Tangent, length: f64) -
         let fastest = rate.gap.iter().map(speed).fold(0.0, f64::max);
         let mut gap = state.gap.clone();
         for (own, rate) in gap.iter_mut().zip(&rate.gap) {
-            (0..2).for_each(|k| own[k] += length * rate[k]);
+            (0..2).for_each(|k| own[k] += AHEAD * rate[k]);
         }
         let ahead = system.laws.responses.update(&gap, &state.updates.memory).ok()?;
         for ((own, ahead), rate) in facing.updates.points.iter_mut().zip(&ahead.points).zip(&rate.gap) {

@@ -10,14 +10,15 @@ use crate::path::stability::regains_limit_point;
 use voussoir_core::limit::Status;
 use voussoir_core::path::{Contact, LimitPointEnd};
 
-/// Greatest contact force after a peak, by that at the peak, up to which the blocks
+/// Greatest contact force after a peak of finite displacements, by that at the peak, up to which the blocks
 /// have come apart: such forces are rounding.
 const APART: f64 = 1e-6;
 
 /// Takes a converged state as the next one. Returns true if the path goes on.
 pub(super) fn commit(tracer: &mut Tracer, mut next: State) -> bool {
     let greatest = |force: &[[f64; 2]]| force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
-    if let Some(peak) = &tracer.limit.peak
+    if tracer.system.finite()
+        && let Some(peak) = &tracer.limit.peak
         && greatest(&next.force) <= APART * greatest(&peak.state.force)
     {
         end_path(

@@ -18,8 +18,8 @@ const BEYOND: f64 = 1.02;
 const STRAIGHT: f64 = 0.1;
 /// Length, in units, that is rounding of a state.
 const ROUNDING: f64 = 1e-7;
-/// Distance of a state from its predictor, relative to the step, beyond which it belongs to another branch, and the part of the
-/// distance that is rounding.
+/// Distance of a state from its predictor, relative to the step, beyond which bonds have taken it to another branch, and the part
+/// of the distance that is rounding.
 const ELSEWHERE: f64 = 0.5;
 const NOISE: f64 = 1e-10;
 /// Points between the ends of a step at which a cubic is looked at.
@@ -138,7 +138,8 @@ impl Step<'_, '_> {
         let moved = scaled_row(self.system, &step);
         let away: f64 = moved.iter().zip(self.piece.row.iter()).map(|(x, t)| (x - length * t).powi(2)).sum();
         let error = away.sqrt() / length.abs().max(1e-300);
-        if error > ELSEWHERE + NOISE / length.abs().max(1e-300) {
+        let bonds = !self.system.laws.responses.is_empty();
+        if bonds && error > ELSEWHERE + NOISE / length.abs().max(1e-300) {
             return None;
         }
         let unexplained = self.unexplained(&state, &rate, length);

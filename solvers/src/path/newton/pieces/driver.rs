@@ -1,6 +1,6 @@
 //! Pieces one after the other, from the start of a load step to its end.
 
-use super::super::ahead::{facing_ahead, length_to_yield};
+use super::super::ahead::facing_ahead;
 use super::super::commit::{commit, end_at_lost_joint, lost_joint};
 use super::super::control::Control;
 use super::super::events::events;
@@ -49,8 +49,6 @@ const NOT_FALLEN: f64 = 1e-12;
 const SAME_LOAD: f64 = 1e-6;
 /// Lengths, relative to the first step, of steps across a corner.
 const ACROSS: [f64; 4] = [1e-6, 1e-5, 1e-4, 1e-3];
-/// Length, relative to the first step, below which blocks that begin to yield are looked for.
-const ONSET: f64 = 1e-3;
 /// Length, relative to the first step, below which there is no step.
 const SHORTEST: f64 = 1e-10;
 /// Pieces of next to no length one after the other at which the path is lost.
@@ -177,7 +175,7 @@ impl<'d> Run<'d> {
     fn greatest_step(&self, tracer: &Tracer) -> f64 {
         let u = tracer.system.units();
         let most = match tracer.strategy.largest_step() {
-            step if step.is_finite() || !tracer.system.finite() => step,
+            step if step.is_finite() => step,
             // Friction's flow turns with the blocks: its error adds up over a path, and the error of one step does not show it.
             _ => LARGEST_FINITE_STEP,
         };
@@ -213,8 +211,7 @@ impl<'d> Run<'d> {
     fn shorten(&mut self, tracer: &mut Tracer, length: f64) -> Option<LoadStepEnding> {
         tracer.system.count("cutbacks", 1);
         self.length = length;
-        let onset = if length < ONSET * self.first { self.at_onset(tracer, length) } else { None };
-        if length >= SHORTEST * self.first && onset.is_none() {
+        if length >= SHORTEST * self.first {
             return None;
         }
         if let Some(found) = self.around_corner(tracer) {
@@ -229,17 +226,6 @@ impl<'d> Run<'d> {
         let failure = tracer.system.failure.take().map_or(String::new(), |why| format!(": {why}"));
         let why = format!("no state of the piece was found beyond factor {}{failure}", tracer.state.factor);
         Some(end_path(tracer, Status::Stalled, why))
-    }
-
-    /// Goes to the place near the present state at which blocks begin to yield, if there is one.
-    fn at_onset(&mut self, tracer: &mut Tracer, length: f64) -> Option<()> {
-        if !tracer.system.problem.yields() {
-            return None;
-        }
-        let (here, most) = (tracer.state.clone(), length / ONSET);
-        let onset = length_to_yield(&mut tracer.system, &here, &self.piece.tangent, most)?;
-        let end = state_at(&mut tracer.system, &here, &self.piece, onset)?;
-        commit(tracer, end.state).then_some(())
     }
 
     /// The rate that leads on from a state beyond which the piece has none, since blocks or bonds begin to yield there.
