@@ -207,7 +207,6 @@ impl InterfaceResponse for CohesiveResponse {
             dissipated += released * mean.min(1.0) * (damage - damage_old);
         }
         let branch = match (grows, slides && slip != slip_old && self.friction * pressure > 0.0) {
-            (false, false) if damage > 0.0 && g_n > 0.0 => UpdateBranch::OPEN,
             (false, false) => UpdateBranch::ELASTIC,
             (true, false) => SOFTENING,
             (false, true) => SLIDING,

@@ -1,6 +1,9 @@
-//! One contact point: the facets of its law, its mode, its yield polygon with return map.
+//! One contact point: the facets of its law, its mode, its yield polygon with return map, the normal fan of that
+//! polygon and piecewise linear paths through its cells.
 
 pub(crate) mod active_point;
 pub(crate) mod facet;
 pub(crate) mod mode;
+pub(crate) mod normal_fan;
+pub(crate) mod piecewise_path;
 pub(crate) mod yield_polygon;

@@ -8,6 +8,7 @@ pub(crate) mod csr;
 pub(crate) mod dense;
 pub(crate) mod factorised;
 pub(crate) mod updated;
+pub(crate) mod updated_inverse;
 
 /// a · b.
 pub(crate) fn inner(a: &[f64], b: &[f64]) -> f64 {

@@ -10,7 +10,6 @@ mod outcome;
 mod self_check;
 mod stability;
 mod system;
-mod twins;
 
 #[cfg(test)]
 mod tests;

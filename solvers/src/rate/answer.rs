@@ -5,29 +5,24 @@
 //! 1. rates in the cells next to the arrival ([`neighbours`](super::neighbours));
 //! 2. on a path that does not fall, if none of them rises, all rates with λ̇ > 0. If there is one, the path goes on with
 //!    it, since the structure is in equilibrium under a growing load. A limit point needs a proof that no such rate exists;
-//! 3. if none rises, all rates with λ̇ = 0 on which the load does work; if there is none and no neighbour continues, all
-//!    with λ̇ < 0.
+//! 3. if no neighbour continues, all rates with λ̇ = 0 on which the load does work, and all with λ̇ < 0.
 //!
 //! For associated flow without softening (AᵀSA positive semidefinite) step 2 is a monotone complementarity problem, which
-//! pivoting always solves. Otherwise steps 2 and 3 are complete searches ([`tree`](super::tree)) within a budget. If there
-//! are more combinations next to the arrival than the budget allows, the first rate that rises is followed.
+//! pivoting always solves. Otherwise steps 2 and 3 are complete searches ([`tree`](super::tree)) within a budget.
 
 use super::arrival::Arrival;
 use super::choice::choose;
-use super::counts::{Algorithm, RateCounts};
-use super::lcp::{pivoted_rate, rate_lcp, rate_near_associated};
+use super::lcp::{monotone_rate, rate_lcp};
 use super::neighbours::{add, neighbours};
 use super::order::Ordered;
 use super::problem::{Rate, RateProblem};
 use super::proof::NoRate;
-use super::tree::{Searched, search_some};
+use super::solve::{Algorithm, RateCounts};
+use super::tree::{Searched, search};
 use nalgebra::DMatrix;
 
 /// Asymmetry and negative eigenvalue of AᵀSA with a unit diagonal up to which the problem is monotone.
 const MONOTONE: f64 = 1e-9;
-
-/// Leaves of a search for mechanisms after which it ends if it has found one.
-const ENOUGH: usize = 256;
 
 /// Limits of the search.
 #[derive(Debug, Clone, Copy)]
@@ -94,53 +89,6 @@ pub fn answer(problem: &RateProblem, arrival: &Arrival, budget: &Budget, counts:
     RateAnswer { continuation, none_rises: found.none_rises.map(proof) }
 }
 
-/// The answer if it needs neither a proof nor a choice: the only rate in the cells next to the arrival along which the
-/// path goes on, rising if it does not fall.
-pub fn only_neighbour(problem: &RateProblem, arrival: &Arrival, budget: &Budget, trials: &mut u64) -> Neighbour {
-    let (rates, complete) = neighbours(problem, arrival, budget.combinations, trials);
-    let goes_on = |rate: &Rate| {
-        let moves_on = rate.factor > 0.0 || arrival.factor < 0.0 && (rate.factor < 0.0 || problem.leads_on(rate));
-        moves_on && arrival.continues(problem, rate)
-    };
-    let mut rates = rates.into_iter().filter(goes_on);
-    match (rates.next(), rates.next()) {
-        (None, _) => Neighbour::None,
-        (Some(rate), None) if complete && problem.is_isolated(&rate) => Neighbour::Only(rate),
-        _ => Neighbour::Several,
-    }
-}
-
-/// A rate with λ̇ = 1, whichever. `None` if it is proved that no such rate exists.
-///
-/// # Errors
-/// The reason why that is not decided.
-pub fn rising_rate(problem: &RateProblem, budget: &Budget, trials: &mut u64) -> Result<Option<Rate>, String> {
-    if let Some((rate, proof)) = pivoted_rate(problem, trials) {
-        if rate.factor > 0.0 {
-            return Ok(Some(rate));
-        }
-        if proof.is_some() {
-            return Ok(None);
-        }
-    }
-    let Searched { rates, open, .. } = search_some(problem, 1.0, (budget.leaves, 0), trials);
-    match (rates.into_iter().next(), open) {
-        (None, Some(why)) => Err(why),
-        (rate, _) => Ok(rate),
-    }
-}
-
-/// Rates in the cells next to an arrival.
-#[derive(Debug, Clone)]
-pub enum Neighbour {
-    /// No rate rises.
-    None,
-    /// One rate continues the path.
-    Only(Rate),
-    /// The rule must choose.
-    Several,
-}
-
 /// The state of the search.
 struct Inquiry<'a> {
     problem: &'a RateProblem<'a>,
@@ -162,18 +110,14 @@ impl Inquiry<'_> {
         let most = if self.monotone { 0 } else { self.budget.combinations };
         let (rates, complete) = neighbours(self.problem, self.arrival, most, &mut self.counts.trials);
         self.keep(rates);
-        // If there are too many combinations next to the arrival, there are too many for a complete search.
-        if self.leads_on(|rate| rate.factor > 0.0 || (falls && complete)) {
+        if (complete || self.monotone) && self.leads_on(|rate| falls || rate.factor > 0.0) {
             return self.chosen(Algorithm::Neighbours, None);
         }
-        let (none_rises, by) = self.rising(complete);
-        if self.leads_on(|rate| rate.factor >= 0.0 || (falls && complete)) {
+        let (none_rises, by) = self.rising();
+        if self.leads_on(|rate| complete || rate.factor >= 0.0) {
             return self.chosen(by, none_rises);
         }
         let standing = self.searched(0.0);
-        if self.leads_on(|rate| rate.factor >= 0.0 || complete) {
-            return self.chosen(Algorithm::Tree, none_rises);
-        }
         let falling = self.searched(-1.0);
         if !self.rates.is_empty() {
             return self.chosen(Algorithm::Tree, none_rises);
@@ -188,9 +132,9 @@ impl Inquiry<'_> {
         RateAnswer { continuation, none_rises }
     }
 
-    /// True if a rate that its modes determine is of a kind. All rates of a monotone problem have the same forces.
+    /// True if a rate that its modes determine is of a kind.
     fn leads_on(&self, kind: impl Fn(&Rate) -> bool) -> bool {
-        self.rates.iter().any(|rate| kind(rate) && (self.monotone || self.problem.is_isolated(rate)))
+        self.rates.iter().any(|rate| kind(rate) && self.problem.is_isolated(rate))
     }
 
     /// Adds those rates that continue the path.
@@ -204,29 +148,21 @@ impl Inquiry<'_> {
     }
 
     /// Searches all rates with λ rising; returns a proof if no such rate exists.
-    /// Pivoting comes first; if there are few combinations, the rate that it finds may not be the only one.
-    fn rising(&mut self, few: bool) -> (Option<NoRate>, Algorithm) {
-        if !(few || self.monotone)
-            && let Some(rate) = rate_near_associated(self.problem, &mut self.counts.trials)
-        {
-            self.keep(vec![rate]);
-            return (None, Algorithm::Pivoting);
-        }
-        let (rate, proof) = pivoted_rate(self.problem, &mut self.counts.trials).unzip();
-        let (rises, proof) = (rate.as_ref().is_some_and(|rate| rate.factor > 0.0), proof.flatten());
-        self.keep(rate.into_iter().collect());
-        if proof.is_some() || (rises && (self.monotone || !few)) {
-            return (proof, Algorithm::Pivoting);
+    fn rising(&mut self) -> (Option<NoRate>, Algorithm) {
+        if self.monotone {
+            let rate = monotone_rate(self.problem, &mut self.counts.trials);
+            let rises = rate.as_ref().is_some_and(|rate| rate.factor > 0.0);
+            self.keep(rate.into_iter().collect());
+            if rises {
+                return (None, Algorithm::Pivoting);
+            }
         }
         (self.searched(1.0), Algorithm::Tree)
     }
 
-    /// A complete search in one sense of λ; its proof if no rate continues. At a constant load it ends early if it has
-    /// found a rate: forces rest in a mechanism, so that all cells of points that do not move contain it.
+    /// A complete search in one sense of λ; its proof if no rate continues.
     fn searched(&mut self, factor: f64) -> Option<NoRate> {
-        let enough = if factor == 0.0 { ENOUGH } else { usize::MAX };
-        let limits = (self.budget.leaves, enough);
-        let Searched { rates, proof, open } = search_some(self.problem, factor, limits, &mut self.counts.trials);
+        let Searched { rates, proof, open } = search(self.problem, factor, self.budget.leaves, &mut self.counts.trials);
         let proves = factor < 0.0 || rates.is_empty();
         self.keep(rates);
         self.why_open = self.why_open.take().or(open);
@@ -237,9 +173,8 @@ impl Inquiry<'_> {
     /// constant load.
     fn chosen(&mut self, by: Algorithm, none_rises: Option<NoRate>) -> RateAnswer {
         let found = std::mem::take(&mut self.rates);
-        let alone = found.len() == 1;
         let (isolated, mixed): (Vec<Rate>, Vec<Rate>) =
-            found.into_iter().partition(|rate| alone || self.problem.is_isolated(rate));
+            found.into_iter().partition(|rate| self.problem.is_isolated(rate));
         let mut rates = if isolated.is_empty() { mixed } else { isolated };
         if self.arrival.factor >= 0.0 {
             let most = rates.iter().map(|rate| rate.factor).fold(-1.0, f64::max);

@@ -81,7 +81,7 @@ pub fn add(found: &mut Vec<Rate>, rate: Rate) {
 
 /// Primal–dual active set in one sense of λ: points that are not `held` change their modes by their inequalities.
 /// `None` if it cycles or if a held point violates its mode.
-pub fn settled(
+fn settled(
     problem: &RateProblem,
     mut modes: Vec<ContactMode>,
     held: &[bool],

@@ -30,6 +30,21 @@ impl Rate {
     }
 }
 
+/// What is known of the solutions.
+#[derive(Debug, Clone)]
+pub enum RateOutcome {
+    /// One was taken; how many others with growing λ there are, where that was examined.
+    Found(Rate, Option<usize>),
+    /// None with λ̇ ≥ 0 (all combinations are excluded); one with λ̇ < 0 that is no mere unloading.
+    Falling(Rate),
+    /// None at all that goes on: all combinations are excluded.
+    NoRate,
+    /// None with λ̇ > 0; whether there are others is not decided.
+    NoneRises,
+    /// Not decided; how many combinations there are.
+    Undecided(usize),
+}
+
 /// Pivot, in the units of the points, up to which a combination of modes is a mechanism.
 const SINGULAR: f64 = 1e-10;
 /// Relative tolerance of inequalities.
@@ -46,6 +61,9 @@ pub struct RateProblem<'a> {
     pub s: DMatrix<f64>,
     /// s.
     pub load_rate: DVector<f64>,
+    /// Whether nothing is loaded yet: then every sliding motion is without forces, and one that is not
+    /// associated does not prove that the load cannot be carried.
+    pub from_nothing: bool,
     /// The greatest force that λ̇ = 1 causes at any point of the structure if all points are held: forces far below it are rounding.
     pub load_force: f64,
     /// p·q̇ for a unit of λ̇ if all points are held; 0 if it is not known.
@@ -200,6 +218,12 @@ impl RateProblem<'_> {
         rate.factor > 0.0 || (rate.factor == 0.0 && self.power(&rate.gaps) > INEQUALITY * size)
     }
 
+    /// Whether a rate with λ falling is more than unloading: a point that has just arrived flows.
+    pub fn goes_on(&self, rate: &Rate) -> bool {
+        let mut points = self.points.iter().zip(&rate.modes);
+        rate.factor < 0.0 && points.any(|(point, mode)| point.hit && *mode != ContactMode::Stick)
+    }
+
     /// The rate of some modes with λ̇ = `factor`, where it fits them.
     pub fn exactly(&self, modes: Vec<ContactMode>, factor: f64) -> Option<Rate> {
         let attempt = self.attempt(&modes, 1.0).filter(|attempt| !attempt.singular)?;
@@ -213,6 +237,11 @@ impl RateProblem<'_> {
             self.violations(modes, &attempt, *sign).is_empty() && self.leads_on(&self.rate(modes, &attempt, *sign, 0.0))
         };
         [1.0, -1.0].into_iter().find(fits).map(|sign| self.rate(modes, &attempt, sign, 0.0))
+    }
+
+    /// Number of combinations of modes.
+    pub fn combinations(&self) -> usize {
+        self.points.iter().fold(1usize, |n, p| n.saturating_mul(p.candidates().len()))
     }
 
     /// Whether flow is associated.

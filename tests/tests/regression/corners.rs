@@ -26,7 +26,6 @@ fn certified(result: &CaseResult, status: Status) -> f64 {
 
 /// A wall of very unlike bricks: both path solvers follow the same pieces to the same collapse.
 #[test]
-#[ignore = "open: neither Newton's method nor the complete search decides the first rate of this wall within its budget"]
 fn both_path_solvers_follow_the_same_pieces() {
     let scene = scene_of((
         Law::Coulomb,

@@ -299,7 +299,7 @@ fn a_column_crushed_through_is_followed() {
         for strategy in &followed {
             let (problem, answer, seen) = traced(&press.study(), &settings(Some(strategy.clone())));
             println!("{blocks} of order {order}, {strategy:?}: {:?}", answer.counters);
-            assert_eq!(answer.status, Status::Collapse, "{strategy:?}: {:?}", answer.notes);
+            assert_eq!(answer.status, Status::LimitPoint, "{strategy:?}: {:?}", answer.notes);
             assert_close(answer.factor.expect("a factor"), carried, 1e-8);
             seen.is_certified();
             let elastic = strength / 5e9 * height;
@@ -339,7 +339,6 @@ fn softening_bar(energy: f64, layer: f64, width: f64) -> (Press, f64) {
 /// A bar of 1.2 m in plane stress of which one layer of elements softens, one element of 10, 5 and 2.5 cm: the same load by shortening through snap-back, and the dissipated energy is that of the softening law.
 /// Arc length and dissipation control. Down to a quarter of the strength: some way below, steps no longer converge.
 #[test]
-#[ignore = "the path of a softening bar with small displacements is open at its limit point: contacts and blocks change at once"]
 fn a_softening_bar_does_not_depend_on_the_mesh() {
     let energy = 6e3;
     let largest_step = Some(2e-6);
@@ -392,7 +391,6 @@ fn a_softening_bar_does_not_depend_on_the_mesh() {
 /// A layer of elements twice as long as wide, or half as long, across the band: its energy is that of the law times
 /// h∥ / √A = √2 or 1/√2, the error of a characteristic length that is √A.
 #[test]
-#[ignore = "the path of a softening bar with small displacements is open at its limit point: contacts and blocks change at once"]
 fn the_band_is_as_wide_as_its_element_is_long() {
     let (energy, layer) = (6e3, 0.05);
     for aspect in [0.5, 1.0, 2.0] {

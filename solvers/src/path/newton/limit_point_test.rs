@@ -2,22 +2,22 @@
 //!
 //! Points with slack in all facets stay stuck, open ones without strength open. With the others, the active set, taken
 //! as stuck, equilibrium and elasticity are one factorisation, which gives the rate problem ṙ = S ġ + s λ̇ over them
-//! ([`rate::problem`](crate::rate::problem)); a complete search finds a rate with λ̇ = 1 or proves that there is none.
+//! ([`rate::problem`](crate::rate::problem)); branching finds a rate with λ̇ = 1 or proves that there is none.
 
 use super::equations::Equations;
-use super::response::traction_row;
 use super::state::{State, Tangent};
 use super::system::StepSystem;
 use super::tangent::tangent_from;
+use super::twins::favoured;
 use crate::contact::active_point::ActivePoint;
 use crate::contact::facet::slack;
 use crate::contact::mode::ContactMode;
 use crate::linear::{inner, largest};
-use crate::path::twins::favoured;
-use crate::rate::answer::{Budget, Continuation, answer, rising_rate};
+use crate::rate::answer::{Budget, Continuation, answer};
 use crate::rate::arrival::{Arrival, ArrivalPoint};
-use crate::rate::counts::RateCounts;
+use crate::rate::branching::{RisingRate, rising_rate};
 use crate::rate::problem::{Rate, RateProblem};
+use crate::rate::solve::RateCounts;
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::law::FacetMode;
 use voussoir_core::linear::{Entries, SparseLu};
@@ -30,6 +30,8 @@ const OPEN: f64 = 1e-9;
 const RESIDUAL: f64 = 1e-9;
 /// Regularisation of the factorised matrix, taken out by refinement.
 const REGULARISATION: f64 = 1e-11;
+/// Linear programs of a search.
+const MOST: u64 = 20_000;
 
 /// The active set of a state.
 pub(super) struct ActiveSet {
@@ -57,18 +59,20 @@ pub(super) fn limit_point_test(system: &mut StepSystem, state: &State, direction
     let count: usize = active.facets.iter().map(|(facets, _)| facets.len()).sum();
     system.count("factorisations", 1);
     let equations = system.equations(state);
-    let Some(responses) = responses_of(system, state, &active, &equations, direction) else {
+    let Some(responses) = responses_of(system, &active, &equations, direction) else {
         return LimitPointTest::Unknown(format!("the stiffness of {count} facets of the active set was not found"));
     };
-    let mut trials = 0;
-    let found = rising_rate(&rate_problem(system, &active, &responses), &Budget::default(), &mut trials);
-    system.count("rate_combinations", trials);
+    let mut programs = 0;
+    let found = rising_rate(&rate_problem(system, &active, &responses), MOST, &mut programs);
+    system.count("rate_programs", programs);
     match found {
-        Ok(None) => LimitPointTest::None,
-        Err(why) => LimitPointTest::Unknown(format!("{count} facets of the active set may let the load grow: {why}")),
-        Ok(Some(rate)) => {
-            let x = unknowns_of(&responses, &rate.gaps, 1.0, direction);
-            let modes = modes_of(system, &active, rate.modes);
+        RisingRate::None => LimitPointTest::None,
+        RisingRate::Undecided(why) => {
+            LimitPointTest::Unknown(format!("{count} facets of the active set may let the load grow: {why}"))
+        }
+        RisingRate::Found(gaps, modes) => {
+            let x = unknowns_of(&responses, &gaps, 1.0, direction);
+            let modes = modes_of(system, &active, modes);
             LimitPointTest::Tangent(tangent_from(system, &x, state, &equations), modes)
         }
     }
@@ -113,7 +117,7 @@ pub(super) fn rate_after_event(
     let active = active_set(system, state, &event.closing);
     system.count("factorisations", 1);
     let equations = system.equations(state);
-    let Some(responses) = responses_of(system, state, &active, &equations, direction) else {
+    let Some(responses) = responses_of(system, &active, &equations, direction) else {
         return AfterEvent::Unknown("the stiffness of the active set was not found".into(), false);
     };
     let mut problem = rate_problem(system, &active, &responses);
@@ -234,7 +238,6 @@ pub(super) fn active_facets(
 /// and, last, by λ̇ in the sense `direction`. `None` where linear algebra fails.
 pub(super) fn responses_of(
     system: &StepSystem,
-    state: &State,
     active: &ActiveSet,
     equations: &Equations,
     direction: f64,
@@ -251,15 +254,14 @@ pub(super) fn responses_of(
     for (c, mode) in active.modes.iter().enumerate() {
         let gap: [Vec<(usize, f64)>; 2] = [0, 1].map(|k| equations.gaps.row(2 * c + k).collect());
         let law = system.law(c).map_or(&[][..], |law| &law.facets);
-        let rows = if system.laws.responses.is(c) { traction_rows(system, state, c) } else { mode.rows(law)? };
-        for (k, own) in rows.into_iter().enumerate() {
+        for (k, own) in mode.rows(law)?.into_iter().enumerate() {
             let i = 2 * c + k;
             entries.extend((0..2).filter(|t| own[*t] != 0.0).map(|t| (i, 2 * c + t, own[t])));
             for t in (0..2).filter(|t| own[2 + t] != 0.0) {
                 add(i, &gap[t], own[2 + t], &mut entries);
                 right[i] += own[2 + t] * driven(&gap[t]);
             }
-            if *mode == ContactMode::Stick && !system.laws.responses.is(c) {
+            if *mode == ContactMode::Stick {
                 shift.push((i, i, REGULARISATION));
             }
         }
@@ -287,12 +289,6 @@ pub(super) fn responses_of(
     Some(x)
 }
 
-/// Rows [by force, by gap] of a contact point with a law of tractions from gaps: dr + K dg = 0, scaled.
-fn traction_rows(system: &StepSystem, state: &State, contact: usize) -> [[f64; 4]; 2] {
-    let (own, stiffness) = traction_row(system, state, contact);
-    [[own[0], 0.0, stiffness[0][0], stiffness[0][1]], [0.0, own[1], stiffness[1][0], stiffness[1][1]]]
-}
-
 pub(super) fn rate_problem<'s>(system: &'s StepSystem, active: &ActiveSet, responses: &[Vec<f64>]) -> RateProblem<'s> {
     let n = 2 * active.contacts.len();
     let force = |i: usize, x: &[f64]| x[2 * active.contacts[i / 2] + i % 2];
@@ -304,6 +300,7 @@ pub(super) fn rate_problem<'s>(system: &'s StepSystem, active: &ActiveSet, respo
             open: *open,
             apex: open.is_none() && ActivePoint::is_apex(law, facets),
             guess: ContactMode::Stick,
+            hit: true,
             stiffness: 1.0,
         }
     };
@@ -311,6 +308,7 @@ pub(super) fn rate_problem<'s>(system: &'s StepSystem, active: &ActiveSet, respo
         points: active.contacts.iter().zip(&active.facets).map(point).collect(),
         s: DMatrix::from_fn(n, n, |i, j| force(i, &responses[j])),
         load_rate: DVector::from_fn(n, |i, _| force(i, &responses[n])),
+        from_nothing: false,
         load_force: largest(&responses[n][..2 * system.scaled.contacts]),
         load_flexibility: 0.0,
         metric: None,

@@ -62,8 +62,6 @@ pub(super) struct StepSystem<'a> {
     pub counters: Counters,
     /// Greatest relative residual of each iteration of the last step that was tried.
     pub residuals: Vec<f64>,
-    /// The reason why a law or a block gave no stresses last.
-    pub failure: Option<String>,
     /// Viscous wrenches of a descent to a stable equilibrium.
     pub damping: Option<Damping>,
 }
@@ -74,6 +72,22 @@ pub(super) struct Damping {
     pub rate: f64,
     /// Motions from which they pull.
     pub from: Vec<[f64; 3]>,
+}
+
+/// Why a step was not found.
+#[derive(Debug, Clone)]
+pub(super) struct StepFailure {
+    pub why: String,
+    /// Contact points that kept changing.
+    pub cycling: Vec<usize>,
+}
+
+impl StepFailure {
+    /// With nothing to say of contact points.
+    pub fn new(why: impl Into<String>) -> Self {
+        let why = why.into();
+        StepFailure { cycling: Vec::new(), why }
+    }
 }
 
 /// What laws of tractions from gaps add to the compliance of contact points before anything has moved.
@@ -109,7 +123,6 @@ impl<'a> StepSystem<'a> {
             counters: Counters::new(),
             loads: StagedLoads { earlier: Vec::new(), growing: &problem.load_steps[0].loading, start: 0.0 },
             residuals: Vec::new(),
-            failure: None,
             damping: None,
             blocks: undeformed(problem)?,
             cache,

@@ -1,6 +1,5 @@
 //! Tests of event_path on scenes of two or three blocks.
 
-mod continuations;
 mod ends;
 mod energy;
 mod friction;

@@ -18,18 +18,12 @@ const BEYOND: f64 = 1.02;
 const STRAIGHT: f64 = 0.1;
 /// Length, in units, that is rounding of a state.
 const ROUNDING: f64 = 1e-7;
-/// Distance of a state from its predictor, relative to the step, beyond which bonds have taken it to another branch, and the part
-/// of the distance that is rounding.
-const ELSEWHERE: f64 = 0.5;
-const NOISE: f64 = 1e-10;
 /// Points between the ends of a step at which a cubic is looked at.
 const SAMPLES: usize = 16;
 /// States that are computed to locate an event.
 const MOST_TRIALS: usize = 100;
 /// Width of a bracket, relative to the step, at which an event is located whatever its monitor reads.
 const NARROW: f64 = 1e-13;
-/// Length that is left to the end of a branch, relative to the step, up to which the step goes on to it.
-const NEAR: f64 = 0.02;
 /// Change of the factor in a step, relative to it, below which it is not looked at.
 const FLAT: f64 = 1e-7;
 /// Rate of the factor, relative to that at the start, at which it turns.
@@ -96,9 +90,9 @@ struct Step<'a, 's> {
 
 impl Step<'_, '_> {
     fn readings(&self, state: &State, rate: &Tangent) -> Vec<Reading> {
-        let mut all = self.piece.read(self.system, self.start, state, rate);
+        let mut all = self.piece.read(self.system, state, rate);
         let unit = self.system.units().factor;
-        let never = Reading::NEVER;
+        let never = Reading { value: 1.0, rate: None, tolerance: 0.0, rate_tolerance: 0.0 };
         let at_start = (self.piece.tangent.factor / unit).abs();
         all.push(self.watched.sense.map_or(never, |sense| Reading {
             value: sense * rate.factor / unit,
@@ -109,14 +103,9 @@ impl Step<'_, '_> {
             value: (target - state.factor) * direction / unit,
             rate: Some(-rate.factor * direction / unit),
             tolerance: 1e-14 * (target / unit).abs().max(1e-3),
-            ..never
+            rate_tolerance: 0.0,
         }));
         all
-    }
-
-    /// Length at which the first branch of a law of tractions ends if its rate stays.
-    fn branch_crossing(&self, readings: &[Reading]) -> f64 {
-        readings.iter().filter(|reading| reading.of_branch).map(|reading| reading.value).fold(f64::INFINITY, f64::min)
     }
 
     /// The state at a length, from one nearer to the start.
@@ -128,7 +117,7 @@ impl Step<'_, '_> {
     fn controlled(&mut self, from: &StepEnd, length: f64, control: &Control) -> Option<Trial> {
         let guess = moved(&from.state, &from.rate, length - from.length);
         let state = correct(self.system, self.start, guess, control)?;
-        let rate = self.piece.rate_at(self.system, &state)?;
+        let rate = self.piece.rate_at(self.system, self.start, &state)?;
         let step = Tangent {
             force: Vec::new(),
             gap: Vec::new(),
@@ -138,10 +127,6 @@ impl Step<'_, '_> {
         let moved = scaled_row(self.system, &step);
         let away: f64 = moved.iter().zip(self.piece.row.iter()).map(|(x, t)| (x - length * t).powi(2)).sum();
         let error = away.sqrt() / length.abs().max(1e-300);
-        let bonds = !self.system.laws.responses.is_empty();
-        if bonds && error > ELSEWHERE + NOISE / length.abs().max(1e-300) {
-            return None;
-        }
         let unexplained = self.unexplained(&state, &rate, length);
         let readings = self.readings(&state, &rate);
         Some(Trial { end: StepEnd { state, rate, length, error, unexplained }, readings })
@@ -187,10 +172,7 @@ pub(super) fn advance(system: &mut StepSystem, start: &State, piece: &Piece, len
     let readings = step.readings(start, &piece.tangent);
     let end = StepEnd { state: start.clone(), rate: piece.tangent.clone(), length: 0.0, error: 0.0, unexplained: 0.0 };
     let low = Trial { end, readings };
-    let crossing = first_crossing(&low.readings);
-    // Beyond the end of a branch of a law of tractions there may be no state along the present tangent.
-    let of_branch = step.branch_crossing(&low.readings);
-    let length = length.min(if of_branch <= crossing { of_branch } else { BEYOND * crossing });
+    let length = length.min(BEYOND * first_crossing(&low.readings));
     if let Some(end) = step.reaching_target(&low.end, length) {
         return Advance::Target(end);
     }
@@ -205,30 +187,8 @@ pub(super) fn advance(system: &mut StepSystem, start: &State, piece: &Piece, len
             Some(middle) => Advance::Whole(middle.end),
             None => Advance::Failed,
         },
-        None if length == of_branch => at_branch_end(&mut step, low, high),
         None => Advance::Whole(high.end),
     }
-}
-
-/// Goes on from a state next to the end of a law's branch up to this end.
-fn at_branch_end(step: &mut Step, low: Trial, mut high: Trial) -> Advance {
-    for _ in 0..MOST_TRIALS {
-        let left = step.branch_crossing(&high.readings);
-        if high.readings.iter().any(|own| own.of_branch && own.value <= own.tolerance) {
-            let monitors = high.readings.len() - 2;
-            let hits = (0..monitors).filter(|i| high.readings[*i].is_active()).collect();
-            return Advance::Event(high.end, hits);
-        }
-        if left > NEAR * high.end.length {
-            break;
-        }
-        let Some(next) = step.trial(&high.end, high.end.length + left) else { return Advance::Failed };
-        if next.readings.iter().any(Reading::is_violated) {
-            return locate(step, low, next);
-        }
-        high = next;
-    }
-    Advance::Whole(high.end)
 }
 
 /// Length at which the first monitor would be zero if all rates stayed.
@@ -263,16 +223,10 @@ fn locate(step: &mut Step, mut low: Trial, mut high: Trial) -> Advance {
             (0..middle.readings.len()).any(|i| was(i) && middle.readings[i].value <= middle.readings[i].tolerance);
         low = middle;
         if arrived {
-            return ended(low, &high);
+            break;
         }
     }
-    // Slacks and openings are continuous: if one of them jumps, the states behind the bracket are on another branch.
-    let jumps = |(a, b): (&Reading, &Reading)| a.rate.is_some() && !a.is_active() && b.is_violated();
-    match low.readings.iter().zip(&high.readings).any(jumps) {
-        true if low.end.length > 0.0 => Advance::Whole(low.end),
-        true => Advance::Failed,
-        false => ended(low, &high),
-    }
+    ended(low, &high)
 }
 
 /// What ends a step at `low`, behind which `high` violates something.

@@ -3,7 +3,6 @@
 use super::super::commit::commit;
 use super::super::control::Control;
 use super::super::limit_point_test::{LimitPointTest, limit_point_test};
-use super::super::small_load::SMALL;
 use super::super::state::State;
 use super::super::step::solve_step;
 use super::super::tangent::tangent_at;
@@ -14,6 +13,8 @@ use crate::contact::mode::ContactMode;
 use crate::path::event::first_modes;
 use voussoir_core::limit::Status;
 
+/// Load, relative to the unit of the factor, whose state has the modes with which the path begins from nothing.
+const SMALL: f64 = 0.05;
 /// Shares of the load step at which a state is looked for if no rate has been found.
 const AHEAD: [f64; 3] = [1e-6, 1e-4, 1e-2];
 
@@ -21,8 +22,8 @@ const AHEAD: [f64; 3] = [1e-6, 1e-4, 1e-2];
 pub(super) fn begin(tracer: &mut Tracer, target: f64, direction: f64) -> Result<Piece, LoadStepEnding> {
     match first_rate(tracer, target, direction) {
         Ok((rate, modes)) => {
+            let piece = Piece::new(&tracer.system, &modes, &rate);
             tracer.state.mode = modes;
-            let piece = Piece::new(&tracer.system, &tracer.state, &rate);
             piece.ok_or_else(|| end_path(tracer, Status::Stalled, "nothing moves under this load".into()))
         }
         Err((status, why)) => Err(end_path(tracer, status, why)),
@@ -53,7 +54,7 @@ fn rate_from_nothing(tracer: &mut Tracer, target: f64, direction: f64) -> Result
 /// The rate at the present state in some modes, if they admit it.
 fn rate_in(tracer: &mut Tracer, modes: Vec<ContactMode>, target: f64, direction: f64) -> Option<Start> {
     let state = State { mode: modes, ..tracer.state.clone() };
-    let rate = tangent_at(&mut tracer.system, &state, &Control::Factor(target))?.scaled(direction);
+    let rate = tangent_at(&mut tracer.system, &state, &state, &Control::Factor(target))?.scaled(direction);
     is_admissible(&tracer.system, &state, &state.mode, &rate).then_some((rate, state.mode))
 }
 

@@ -5,27 +5,22 @@ use super::super::commit::{commit, end_at_lost_joint, lost_joint};
 use super::super::control::Control;
 use super::super::events::events;
 use super::super::measure::{increment_along, motion_size};
-use super::super::peak::{note_peak, peak_at, scaled_motion};
+use super::super::peak::{note_peak, peak_at};
 use super::super::second_order::{instability, second_order_work};
 use super::super::stable_branch::{Departure, leave_unstable};
 use super::super::state::{State, Tangent};
-use super::super::step::solve_step;
 use super::super::step_energy::step_energy;
-use super::super::tangent::tangent_at;
-use super::super::tracer::{LoadStepEnding, Tracer, direction, end_path, moved};
+use super::super::tracer::{LoadStepEnding, Tracer, direction, end_path};
 use super::super::witness::none_continues;
 use super::advance::{Advance, StepEnd, Watched, advance, state_at};
 use super::begin::begin;
 use super::corrector::correct;
 use super::end::end_of_range;
-use super::loading_set::{LoadingRate, loading_rate};
 use super::monitors::{Monitor, What};
 use super::piece::Piece;
-use super::plateau::{Plateau, plateau, stands_still, stood_still};
-use super::ray::ray;
+use super::plateau::{Plateau, plateau, stands_still};
 use super::switch::{NextPiece, after_event};
 use crate::contact::mode::ContactMode;
-use crate::linear::inner;
 use crate::path::continuation::LARGEST_FINITE_STEP;
 use crate::path::stability::SecondOrderWork;
 use voussoir_core::limit::Status;
@@ -39,6 +34,8 @@ const MOST_ITERATIONS: u64 = 20_000;
 const WANTED_ERROR: f64 = 0.02;
 /// The same above which the step is repeated.
 const MOST_ERROR: f64 = 0.1;
+/// Length, relative to the first step, at which tangents of materials just ahead of a state are taken.
+const AHEAD: f64 = 1e-5;
 /// Share of the change of the factor in a step that its rates may leave unexplained.
 const MOST_UNEXPLAINED: f64 = 0.1;
 /// Length of a step, relative to that wanted, from which on its error tells how long the next one may be.
@@ -47,14 +44,10 @@ const TELLING: f64 = 0.1;
 const NOT_FALLEN: f64 = 1e-12;
 /// Relative difference of two loads that are the same in a result.
 const SAME_LOAD: f64 = 1e-6;
-/// Lengths, relative to the first step, of steps across a corner.
-const ACROSS: [f64; 4] = [1e-6, 1e-5, 1e-4, 1e-3];
 /// Length, relative to the first step, below which there is no step.
 const SHORTEST: f64 = 1e-10;
 /// Pieces of next to no length one after the other at which the path is lost.
 const MOST_SHORT_PIECES: u32 = 50;
-/// Difference from 1 of the cosine of two tangents between which the path has a corner.
-const CORNER: f64 = 1e-6;
 /// Rate of the factor, in units, relative to that of motions, at which it stands still.
 const STILL: f64 = 1e-13;
 /// Width, relative to a step, of the bracket of the first unstable state.
@@ -82,16 +75,8 @@ struct Run<'d> {
     cluster: Cluster,
     /// Whether the present modes are known to be unstable under their loads, and no stable equilibrium is near.
     unstable: bool,
-    standing: Standing,
-}
-
-/// A load that stands still.
-#[derive(Default)]
-struct Standing {
     /// Whether the path moves on under a constant load.
     on_plateau: bool,
-    /// Whether blocks flowed in the last step.
-    flows: bool,
 }
 
 /// Events at one place: the path has hardly moved since the first of them.
@@ -150,7 +135,7 @@ impl<'d> Run<'d> {
             from: tracer.record.state.displacement,
             cluster: Cluster::default(),
             unstable: false,
-            standing: Standing::default(),
+            on_plateau: false,
         };
         run.first = run.by_strategy(tracer);
         run.length = run.first;
@@ -211,59 +196,10 @@ impl<'d> Run<'d> {
     fn shorten(&mut self, tracer: &mut Tracer, length: f64) -> Option<LoadStepEnding> {
         tracer.system.count("cutbacks", 1);
         self.length = length;
-        if length >= SHORTEST * self.first {
-            return None;
-        }
-        if let Some(found) = self.around_corner(tracer) {
-            self.length = 0.1 * self.first;
-            tracer.state.blocks.clone_from(&found.state.blocks);
-            let modes = found.state.mode.clone();
-            return self.go_on(tracer, found, modes, None);
-        }
-        if !tracer.system.piecewise_linear() && !self.crowded() && self.across(tracer) {
-            return None;
-        }
-        let failure = tracer.system.failure.take().map_or(String::new(), |why| format!(": {why}"));
-        let why = format!("no state of the piece was found beyond factor {}{failure}", tracer.state.factor);
-        Some(end_path(tracer, Status::Stalled, why))
-    }
-
-    /// The rate that leads on from a state beyond which the piece has none, since blocks or bonds begin to yield there.
-    fn around_corner(&mut self, tracer: &mut Tracer) -> Option<LoadingRate> {
-        if tracer.system.piecewise_linear() || self.crowded() {
-            return None;
-        }
-        let here = tracer.state.clone();
-        let found = loading_rate(&mut tracer.system, &here, &self.piece)?;
-        let piece = Piece::new(&tracer.system, &found.state, &found.rate)?;
-        let cosine = inner(&piece.row, &self.piece.row);
-        (cosine < 1.0 - CORNER).then_some(found)
-    }
-
-    /// Takes the shortest step across a corner at which no loading set agrees with its rate: by Newton's method on the laws
-    /// themselves, whose branches may change. Returns true if it is taken.
-    fn across(&mut self, tracer: &mut Tracer) -> bool {
-        let here = tracer.state.clone();
-        let found = ACROSS.iter().map(|share| share * self.first).find_map(|length| {
-            let control = self.piece.control(length);
-            let guess = moved(&here, &self.piece.tangent, length);
-            let (next, _) = solve_step(&mut tracer.system, &here, guess, &control).ok()?;
-            let rate = tangent_at(&mut tracer.system, &next, &control)?;
-            step_energy(tracer, &next).holds.then_some((length, next, rate))
-        });
-        let Some((length, next, rate)) = found else { return false };
-        let Some(piece) = Piece::new(&tracer.system, &next, &rate) else { return false };
-        if !commit(tracer, next) {
-            return false;
-        }
-        (self.piece, self.length) = (piece, length);
-        true
-    }
-
-    /// Counts a piece of next to no length; returns true if there are too many of them.
-    fn crowded(&mut self) -> bool {
-        self.cluster.pieces += 1;
-        self.cluster.pieces > MOST_SHORT_PIECES
+        (length < SHORTEST * self.first).then(|| {
+            let why = format!("no state of the piece was found beyond factor {}", tracer.state.factor);
+            end_path(tracer, Status::Stalled, why)
+        })
     }
 
     /// Takes a state of the piece over. `None` if the step is to be repeated or the path ends.
@@ -289,7 +225,6 @@ impl<'d> Run<'d> {
         let Some(piece) = self.piece.turned(&tracer.system, &end.rate) else {
             return Err(self.shorten(tracer, 0.3 * end.length));
         };
-        self.standing.flows = stood_still(tracer, &end.state);
         if !commit(tracer, end.state) {
             return Err(Some(LoadStepEnding::Ended));
         }
@@ -314,31 +249,21 @@ impl<'d> Run<'d> {
     /// The end at a mechanism under a constant load, if there is one at the present state. If the stage asks for a
     /// displacement beyond its limit point, the path goes on.
     fn plateau(&mut self, tracer: &mut Tracer) -> Option<LoadStepEnding> {
-        if self.standing.on_plateau || !(self.standing.flows || stands_still(tracer, &self.piece)) {
+        if self.on_plateau || !stands_still(tracer, &self.piece) {
             return None;
         }
-        let found = plateau(tracer, &self.piece.clone(), self.direction, self.standing.flows)?;
-        let goes_on = tracer.settings.stop(self.load_step.stage)[0].is_some() && !self.standing.flows;
-        if found.unproved.is_none() && goes_on {
+        let found = plateau(tracer, &self.piece.clone(), self.direction)?;
+        if found.unproved.is_none() && tracer.settings.stop(self.load_step.stage)[0].is_some() {
             note_peak(tracer, Some(&self.piece.tangent), self.direction);
-            self.standing.on_plateau = true;
+            self.on_plateau = true;
             return None;
         }
         Some(self.end_at_plateau(tracer, found))
     }
 
-    /// The end of the range or of the path behind a step.
+    /// What is looked at behind each step.
     fn after(&mut self, tracer: &mut Tracer) -> Option<LoadStepEnding> {
-        if self.target.is_infinite()
-            && let Some(ending) = ray(tracer, &self.piece, self.direction)
-        {
-            return Some(ending);
-        }
-        let ending = end_of_range(tracer, self.load_step, self.direction, self.from);
-        if ending.is_some() {
-            tracer.ending.motion = scaled_motion(tracer, &tracer.state, &self.piece.tangent);
-        }
-        ending
+        end_of_range(tracer, self.load_step, self.direction, self.from)
     }
 
     /// The state at the target.
@@ -520,62 +445,43 @@ impl<'d> Run<'d> {
             return Some(self.lose_joint(tracer, lost.contact));
         }
         if moved {
-            self.cluster = Cluster::default();
-        } else if self.crowded() {
+            self.cluster = Cluster { pieces: self.cluster.pieces, ..Cluster::default() };
+        } else {
+            self.cluster.pieces += 1;
+        }
+        if self.cluster.pieces > MOST_SHORT_PIECES {
             let why = format!("at factor {} events follow each other without end", tracer.state.factor);
             return Some(end_path(tracer, Status::Stalled, why));
         }
         let hits = self.all_hits(tracer, hits);
-        let points: Vec<Monitor> = hits.iter().filter(|hit| !matches!(hit.what, What::Branch(_))).copied().collect();
         let here = tracer.state.clone();
-        let state = facing_ahead(&mut tracer.system, &here, &self.piece.tangent).unwrap_or(here);
-        if points.is_empty() {
-            let rate = self.piece.tangent.clone();
-            let modes = state.mode.clone();
-            return self.go_on(tracer, LoadingRate { state, rate }, modes, None);
-        }
-        match after_event(&mut tracer.system, &state, &self.piece, &points, (self.direction, self.rises)) {
-            NextPiece::Goes { rate, modes, twins, open } => {
-                self.note_twins(tracer, twins);
-                self.go_on(tracer, LoadingRate { state, rate }, modes, open)
-            }
-            NextPiece::Nothing { why, none_rises, proved } => Some(self.end_at_event(tracer, &why, none_rises, proved)),
-        }
-    }
-
-    /// Goes on along a rate from the present state, with blocks and bonds that yield as the rate asks for.
-    fn go_on(
-        &mut self,
-        tracer: &mut Tracer,
-        found: LoadingRate,
-        modes: Vec<ContactMode>,
-        open: Option<String>,
-    ) -> Option<LoadStepEnding> {
+        let length = AHEAD * self.first;
+        let state = facing_ahead(&mut tracer.system, &here, &self.piece.tangent, length).unwrap_or(here);
         let was = self.rises;
-        let LoadingRate { mut state, rate } = found;
-        state.mode = modes;
-        let Some(mut piece) = Piece::new(&tracer.system, &state, &rate) else {
-            return Some(self.end_at_event(tracer, "the rate that leads on does not move", false, false));
-        };
-        if !tracer.system.laws.responses.is_empty() {
-            let here = State { mode: state.mode.clone(), ..tracer.state.clone() };
-            if let Some(found) = loading_rate(&mut tracer.system, &here, &piece) {
-                state = found.state;
-                piece = Piece::new(&tracer.system, &state, &found.rate)?;
+        let found = after_event(&mut tracer.system, &state, &self.piece, &hits, (self.direction, was));
+        let (piece, modes, open) = match found {
+            NextPiece::Piece { piece, modes, twins, open } => {
+                self.note_twins(tracer, twins);
+                (piece, modes, open)
             }
-        }
-        self.enter(tracer, piece, &state);
+            NextPiece::Nothing { why, none_rises, proved } => {
+                return Some(self.end_at_event(tracer, &why, none_rises, proved));
+            }
+        };
+        self.enter(tracer, piece, modes);
         self.rises = self.goes_up(tracer, &self.piece.tangent.clone());
         if let Some(ending) = self.plateau(tracer) {
             return Some(ending);
         }
-        if was == self.rises {
-            return self.after(tracer);
+        match was == self.rises {
+            true => self.after(tracer),
+            false => {
+                if was {
+                    tracer.limit.unproven = open.or(tracer.limit.unproven.take());
+                }
+                self.at_turn(tracer, was)
+            }
         }
-        if was {
-            tracer.limit.unproven = open.or(tracer.limit.unproven.take());
-        }
-        self.at_turn(tracer, was)
     }
 
     /// The monitors that end at the present state. After a piece of no length a point was missing from the event: the path is
@@ -635,14 +541,12 @@ impl<'d> Run<'d> {
         end_path(tracer, if proved { Status::LimitPoint } else { Status::Stalled }, why)
     }
 
-    /// Takes the modes of the next piece over, and the tangents of its bonds.
-    fn enter(&mut self, tracer: &mut Tracer, piece: Piece, next: &State) {
+    /// Takes the modes of the next piece over.
+    fn enter(&mut self, tracer: &mut Tracer, piece: Piece, modes: Vec<ContactMode>) {
         let before = tracer.state.clone();
-        tracer.state.mode.clone_from(&next.mode);
-        for (own, next) in tracer.state.updates.points.iter_mut().zip(&next.updates.points) {
-            (own.tangent, own.branch) = (next.tangent, next.branch);
-        }
-        tracer.record.events.extend(events(&tracer.system, tracer.load_step, &before, &tracer.state));
+        let after = State { mode: modes, ..before.clone() };
+        tracer.record.events.extend(events(&tracer.system, tracer.load_step, &before, &after));
+        tracer.state = after;
         self.piece = piece;
     }
 
@@ -669,7 +573,7 @@ impl<'d> Run<'d> {
                 "the load stands still, which is not proved to be its greatest".into(),
             );
         }
-        if !found.moved.into_iter().all(|state| commit(tracer, state)) {
+        if !commit(tracer, found.moved) {
             return LoadStepEnding::Ended;
         }
         end_path(tracer, Status::Collapse, "the structure moves on under a constant load".into())
