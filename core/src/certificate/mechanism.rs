@@ -88,12 +88,12 @@ pub struct Mechanism {
     /// Every joint that crushes over more than [`CRUSHES`] of its height, and every joint next to which a block
     /// of a material that yields has crushed, over whatever share; the kind counts shares above [`CRUSHES`].
     pub crushing: Vec<Crushing>,
-    /// Where on a path it moves; `None` for limit analysis.
+    /// Its place on a path; `None` for limit analysis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at: Option<MechanismPlace>,
 }
 
-/// Where on a path a mechanism moves.
+/// The place of a mechanism on a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MechanismPlace {

@@ -173,7 +173,7 @@ pub struct RunRequest {
     pub resume: bool,
     /// Whether stored cases that are not wanted stay in the results.
     pub keep: bool,
-    /// The texts that an earlier run has left: results.json, path_proofs.jsonl, and a line of JSON for each case that was finished
+    /// The texts that are in the folder already: results.json, path_proofs.jsonl, and a line of JSON for each case that was finished
     /// after them. Only cases of this very study count, whatever the folder held.
     pub stored: Option<[String; 3]>,
     /// Version of the program, for results.json.
