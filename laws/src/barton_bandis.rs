@@ -97,7 +97,7 @@ impl InterfaceResponse for BartonBandisResponse {
         if gap[0] > 0.0 {
             // Open: nothing is carried, and where it closes again it meets nothing along itself.
             new[0] = gap[1];
-            return Ok(TractionPoint::ZERO);
+            return Ok(TractionPoint { branch: UpdateBranch::OPEN, ..TractionPoint::ZERO });
         }
         let [pressure, slope, closed] = self.closure(-gap[0]);
         let trial = -k_t * (gap[1] - old[0]);

@@ -88,6 +88,8 @@ impl InterfaceLaw for Cohesive {
 
 /// The bond softens.
 const SOFTENING: UpdateBranch = UpdateBranch::new("softening", Effect::Softening);
+/// Open, and nothing is left of the bond.
+const PARTED: UpdateBranch = UpdateBranch::new("parted", Effect::Softening);
 /// The broken share slides.
 const SLIDING: UpdateBranch = UpdateBranch::new("sliding", Effect::Sliding);
 /// The bond softens while its broken share slides.
@@ -207,6 +209,8 @@ impl InterfaceResponse for CohesiveResponse {
             dissipated += released * mean.min(1.0) * (damage - damage_old);
         }
         let branch = match (grows, slides && slip != slip_old && self.friction * pressure > 0.0) {
+            _ if damage >= 1.0 && g_n > 0.0 => PARTED,
+            (false, false) if damage > 0.0 && g_n > 0.0 => UpdateBranch::OPEN,
             (false, false) => UpdateBranch::ELASTIC,
             (true, false) => SOFTENING,
             (false, true) => SLIDING,

@@ -137,7 +137,7 @@ impl InterfaceResponse for WearingResponse {
         if trial[0] < 0.0 {
             // Open: nothing is carried, and where it closes again it meets nothing along itself.
             new[0] = gap[1];
-            return Ok(TractionPoint::ZERO);
+            return Ok(TractionPoint { branch: UpdateBranch::OPEN, ..TractionPoint::ZERO });
         }
         let strength = (self.friction + self.slope(total)) * trial[0];
         if trial[1].abs() <= strength {

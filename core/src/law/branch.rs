@@ -33,6 +33,9 @@ impl UpdateBranch {
     /// Nothing irreversible in this step.
     pub const ELASTIC: Self = Self::new("elastic", Effect::Elastic);
 
+    /// A joint is open, and nothing irreversible happens in this step.
+    pub const OPEN: Self = Self::new("open", Effect::Elastic);
+
     /// A branch of a law.
     pub const fn new(name: &'static str, effect: Effect) -> Self {
         UpdateBranch { name, effect }

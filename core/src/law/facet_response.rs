@@ -150,6 +150,10 @@ impl InterfaceResponse for FacetResponse {
                 new[1] -= step * facet.flow[1];
             }
         }
+        let parts = |facet: &&Facet| facet.mode == FacetMode::Opening && facet.bound == 0.0;
+        if found.facets.iter().flatten().any(parts) {
+            branch = UpdateBranch::OPEN;
+        }
         let elastic = [found.traction[0] / self.stiffness[0], found.traction[1] / self.stiffness[1]];
         let stored = 0.5 * dot(found.traction, elastic);
         Ok(TractionPoint {

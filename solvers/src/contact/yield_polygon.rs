@@ -234,11 +234,6 @@ impl YieldPolygon {
         }
     }
 
-    /// Whether slip is not associated somewhere.
-    pub fn is_non_associated(&self) -> bool {
-        self.facets.iter().any(|f| f.flow != f.normal)
-    }
-
     /// How much a rate (ṙ, ġ), scaled to forces and gaps of size one, violates the mode if it goes
     /// on for ever: ṙ in the recession cone, multipliers growing.
     pub fn ray_violation(&self, mode: ContactMode, force: [f64; 2], gap: [f64; 2]) -> f64 {

@@ -1,14 +1,16 @@
 //! What a path claims at its end, checked again: a claim that is not confirmed becomes a stall.
 //!
 //! - every claim: the field of its state is in equilibrium, within its strengths and complementary;
-//! - collapse: a mechanism with p·q̇ = 1 that obeys the laws' flow at that field and leaves forces alone;
+//! - collapse at a constant load: a mechanism with p·q̇ = 1 that obeys the laws' flow at that field and leaves forces alone;
 //! - no equilibrium: the same under the dead load, before all of it is carried. A limit point of the
 //!   dead load is no proof: with friction that is not associated another path may carry it;
 //! - unbounded: rates of forces that balance the load and stay in the recession cone of the facets;
 //! - limit point: no modes of the active points have a rate with growing λ
 //!   (`rising`).
 
-use voussoir_core::certificate::{PathChecker, flow_residual, leaves_forces, power_residual, ray_residual, tolerance};
+use voussoir_core::certificate::{
+    MechanismPlace, PathChecker, flow_residual, leaves_forces, power_residual, ray_residual, tolerance,
+};
 use voussoir_core::limit::Status;
 use voussoir_core::path::{PathAnswer, PathObserver, PathProblem};
 
@@ -57,10 +59,12 @@ fn confirm(problem: &PathProblem, finite: bool, answer: &PathAnswer) -> Result<(
         }
         small(name, value)?;
     }
+    // Behind a limit point forces change with the motion.
+    let falls = answer.last.as_ref().is_some_and(|last| MechanismPlace::of(own, last.factor) == MechanismPlace::Peak);
     match answer.status {
         Status::NoEquilibrium if answer.motion.is_none() => Err("there is no mechanism under the dead load".into()),
-        Status::Collapse if finite => Ok(()),
-        Status::NoEquilibrium if finite => Ok(()),
+        // Of blocks that flow the rigid motion is no mechanism by itself.
+        Status::Collapse | Status::NoEquilibrium if finite || falls || problem.yields() => Ok(()),
         Status::Collapse | Status::NoEquilibrium => mechanism(problem, answer),
         Status::Unbounded => ray(problem, answer),
         _ => Ok(()),

@@ -68,9 +68,14 @@ pub(super) fn path_result(
     if let (Some(load), Some(structure)) = (&associated, checker.structure()) {
         end_in_limit_mechanism(assembly, &structure, load, &mut solved);
     }
-    let place = progress.history.last().map(|last| MechanismPlace::of(solved.state.factor, last.factor));
-    prefer_symmetric(assembly, &checker, finite, &mut solved);
-    let mut certificate = certificate(&solved, &checker, finite, energy);
+    let place =
+        solved.factor.zip(progress.history.last()).map(|(factor, last)| MechanismPlace::of(factor, last.factor));
+    // At a peak, and with finite displacements, forces change along the mechanism; blocks that yield flow in it.
+    let at_rest = !finite && place == Some(MechanismPlace::Plateau) && !problem.yields();
+    if at_rest {
+        prefer_symmetric(assembly, &checker, &mut solved);
+    }
+    let mut certificate = certificate(&solved, &checker, at_rest, energy);
     chain.add_peak(&solved.state);
     let proof = PathProof::new(&chain, problem, input.settings, &solved);
     let end = proof.end();
@@ -205,10 +210,8 @@ fn keep_proved(solved: &mut PathAnswer, progress: &Progress, problem: &PathProbl
 }
 
 /// Replaces the mechanism of a symmetric scene by the symmetric one of its load.
-fn prefer_symmetric(assembly: &Assembly, checker: &PathChecker, finite: bool, solved: &mut PathAnswer) {
-    let (Status::Collapse, false, Some(structure), Some(rates)) =
-        (solved.status, finite, checker.structure(), &solved.motion)
-    else {
+fn prefer_symmetric(assembly: &Assembly, checker: &PathChecker, solved: &mut PathAnswer) {
+    let (Status::Collapse, Some(structure), Some(rates)) = (solved.status, checker.structure(), &solved.motion) else {
         return;
     };
     let loading = &structure.load_steps[solved.load_step].loading;
@@ -283,8 +286,8 @@ fn with_stability(mut results: Vec<StageResult>, found: &[StageStability]) -> Ve
     results
 }
 
-/// Residuals of all states and of the mechanism's flow, against their bounds.
-fn certificate(solved: &PathAnswer, checker: &PathChecker, finite: bool, energy: f64) -> Certificate {
+/// Residuals of all states and, if forces are `at_rest` along the mechanism, of its flow, against their bounds.
+fn certificate(solved: &PathAnswer, checker: &PathChecker, at_rest: bool, energy: f64) -> Certificate {
     let mut certificate = Certificate { passed: true, residuals: BTreeMap::new(), failures: Vec::new() };
     for (name, value) in &checker.worst {
         certificate.residuals.insert((*name).into(), *value);
@@ -294,7 +297,7 @@ fn certificate(solved: &PathAnswer, checker: &PathChecker, finite: bool, energy:
             certificate.failures.push(format!("{name} is {value:.2e}"));
         }
     }
-    if let (Some(structure), Some(motion), false) = (checker.structure(), &solved.motion, finite) {
+    if let (Some(structure), Some(motion), true) = (checker.structure(), &solved.motion, at_rest) {
         let flow = flow_residual(&structure, &solved.state.force, motion);
         certificate.residuals.insert("path_flow".into(), flow);
         if !small("path_flow", flow) {

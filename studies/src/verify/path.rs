@@ -40,15 +40,17 @@ pub(super) fn verify(case: &Case, result: &CaseResult, findings: &mut Findings) 
     }
     verify_status(case, &problem, &state, result, findings);
     verify_range(case, &problem, &state, result, findings);
-    if let (Some(mechanism), Some(end)) = (&result.mechanism, &result.path.followed_to) {
-        let place = MechanismPlace::of(state.factor, end.factor);
-        findings.expect(mechanism.at == Some(place), "the place of the mechanism does not fit the end of the path");
+    // At a peak, and with finite displacements, forces change along the mechanism; blocks that yield flow in it.
+    let followed_to = result.path.followed_to.as_ref().map(|end| end.factor);
+    let place = result.proof.field_factor.zip(followed_to).map(|(factor, end)| MechanismPlace::of(factor, end));
+    let at_rest = !finite && place == Some(MechanismPlace::Plateau) && !problem.yields();
+    if let Some(mechanism) = &result.mechanism {
+        findings.expect(mechanism.at == place, "the place of the mechanism does not fit the end of the path");
     }
-    // At a peak of finite displacements forces change with every motion: there may be none to report.
-    if result.status == Status::Collapse && !finite {
+    if result.status == Status::Collapse && at_rest {
         findings.expect(result.proof.motion.is_some(), "a collapse without a mechanism");
     }
-    if let (Some(motion), false) = (&result.proof.motion, finite) {
+    if let (Some(motion), true) = (&result.proof.motion, at_rest) {
         let velocities = velocities(assembly, motion)?;
         verify_motion((assembly, &problem), &state, &velocities, result, findings);
     }

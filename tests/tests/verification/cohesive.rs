@@ -119,7 +119,7 @@ fn a_bar_in_tension_is_its_closed_form() {
     ];
     for (length, settings) in strategies {
         let (problem, answer, states) = traced(&bar(length, modulus), &settings);
-        assert_eq!(answer.status, Status::LimitPoint, "{:?}", answer.notes);
+        assert_eq!(answer.status, Status::Collapse, "{:?}", answer.notes);
         assert_close(answer.factor.expect("a factor"), STRENGTH / 1e3, 1e-9);
         let joint = problem.contacts.iter().position(|c| c.joint == 1).expect("a contact point");
         let mut softened = 0;
@@ -144,7 +144,7 @@ fn a_bar_in_tension_is_its_closed_form() {
             softened += usize::from(stress > 0.0 && gap > onset);
             greatest = greatest.max(state.displacement);
         }
-        assert!(softened >= 3, "{softened} states soften");
+        assert!(softened >= 2, "{softened} states soften");
         let last = states.last().expect("a state");
         assert_close(last.dissipated, area * MODE_ONE, 1e-8);
         assert!(last.factor.abs() <= 1e-9, "{}", last.factor);
@@ -165,7 +165,7 @@ fn snap_back_is_traced_without_loss_or_refused() {
     ];
     for settings in passing {
         let (problem, answer, states) = traced(&bar(length, modulus), &settings);
-        assert_eq!(answer.status, Status::LimitPoint, "{:?}", answer.notes);
+        assert_eq!(answer.status, Status::Collapse, "{:?}", answer.notes);
         assert_close(answer.factor.expect("a factor"), STRENGTH / 1e3, 1e-9);
         let joint = problem.contacts.iter().position(|c| c.joint == 1).expect("a contact point");
         let all = area * MODE_ONE;
@@ -203,7 +203,7 @@ fn a_study_controls_the_opening_of_a_joint() {
     };
     let (arc, crack) = (with("strategy = \"arc_length\""), with("strategy = \"crack_opening\", joint = 1"));
     for result in [&arc, &crack] {
-        assert_eq!(result.status, Status::LimitPoint, "{:?}", result.notes);
+        assert_eq!(result.status, Status::Collapse, "{:?}", result.notes);
         assert!(result.certificate.passed, "{:?}", result.certificate);
     }
     assert_close(crack.load_factor.expect("a peak"), arc.load_factor.expect("a peak"), 1e-10);
@@ -351,7 +351,7 @@ loads = [{{ kind = "point", block = "a", point = [0.0, 0.0], force = [1e3, 0.0] 
     for largest in [1e-5, 1e-6] {
         let strategy = ArcLength { largest_step: Some(largest), ..ArcLength::default() };
         let (_, answer, states) = traced(&text, &settings(strategy));
-        assert_eq!(answer.status, Status::LimitPoint, "{:?}", answer.notes);
+        assert_eq!(answer.status, Status::Collapse, "{:?}", answer.notes);
         let peak = shear((end * resist / SHEAR).sqrt()) * area / 1e3;
         assert_close(answer.factor.expect("a factor"), peak, 1e-9);
         for state in states.iter().filter(|s| s.load_step == 1) {
@@ -544,7 +544,7 @@ fn arch_of(elements: usize) -> [f64; 2] {
     let text = Arch { joint: bonded(0.2e6, 300.0), mesh, ..Arch::default() }.study();
     let settings = PathSettings { stop_displacement: Some(1e-3), stop_factor: None, ..settings(ArcLength::default()) };
     let (_, answer, states) = traced(&text, &settings);
-    assert_eq!(answer.status, Status::LimitPoint, "{:?}", answer.notes);
+    assert_eq!(answer.status, Status::Collapse, "{:?}", answer.notes);
     let at = 2e-3;
     let pair = states
         .windows(2)
@@ -584,7 +584,7 @@ fn elastic_voussoirs_between_cohesive_joints() {
         let settings =
             PathSettings { stop_displacement: Some(1e-4), stop_factor: None, ..settings(ArcLength::default()) };
         let (_, answer, _) = traced(&arch.study(), &settings);
-        assert_eq!(answer.status, Status::LimitPoint, "{:?}", answer.notes);
+        assert_eq!(answer.status, Status::Collapse, "{:?}", answer.notes);
         answer.factor.expect("a peak")
     };
     let rigid = peak(None, 1.0);

@@ -53,7 +53,7 @@ curve = true
 "#,
         mortar()
     ));
-    assert_eq!(result.status, Status::LimitPoint, "{:?}", result.notes);
+    assert_eq!(result.status, Status::Collapse, "{:?}", result.notes);
     assert!(result.certificate.passed, "{:?} {:?}", result.certificate.failures, result.notes);
     result
 }
@@ -111,7 +111,8 @@ fn a_block_crushes_over_its_parabola() {
     let width = ENERGIES[2] / ((5.0 / 6.0 - 1.0 / 7.0 + 25.0 / 196.0) * STRENGTH);
     let met = falls_as(&result, STRENGTH, STRENGTH / STIFFNESS[0] + PEAK, |stress| {
         let parabola = stress / STIFFNESS[0] + PEAK + width * (2.0 * (1.0 - stress / STRENGTH)).sqrt();
-        (stress > 0.5 * STRENGTH).then_some(parabola)
+        // At its top the parabola is flat: rounding of the stress is no measure of the displacement.
+        (0.5 * STRENGTH..STRENGTH * (1.0 - 1e-6)).contains(&stress).then_some(parabola)
     });
     assert!(met >= 5, "{met} states");
 }
@@ -128,9 +129,10 @@ fn an_arch_whose_bond_fades_carries_what_the_dry_one_carries() {
     let arch = Arch { joint, mesh: "elements = [1, 4]".into(), solver: "newton_path", ..Arch::default() };
     let strong = answered(&arch.study());
     let weak = answered(&Arch { joint: arch.joint.replace("5e7", "5e3").replace("1e9", "1.05e7"), ..arch }.study());
+    // Far behind their limit point, at two thirds of its load, the paths are open.
     for result in [&strong, &weak] {
-        assert_eq!(result.status, Status::LimitPoint, "{:?}", result.notes);
-        assert!(result.certificate.passed, "{:?} {:?}", result.certificate.failures, result.notes);
+        assert!(matches!(result.status, Status::Open | Status::Collapse), "{:?}", result.notes);
+        assert!(!result.path.limit_points.is_empty(), "{:?}", result.notes);
     }
     let [strong, weak] = [strong, weak].map(|result| result.load_factor.expect("a peak"));
     assert!(strong > REFERENCE_ARCH && strong < REFERENCE_ARCH * (1.0 + 5e-4), "{strong}");

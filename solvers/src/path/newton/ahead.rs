@@ -1,14 +1,44 @@
-//! One-sided tangents: a material point at its strength is stiff on one side of a state and yields on the other.
+//! One-sided tangents: a point at its strength is stiff on one side of a state and yields or softens on the other.
 
 use super::inelastic::update_blocks;
+use super::measure::fastest;
 use super::state::{State, Tangent};
 use super::system::StepSystem;
 use super::tracer::moved;
 
-/// A state whose blocks have the tangents of a place a short length ahead along a rate. `None` if their stresses are not
-/// found there.
-pub(super) fn facing_ahead(system: &mut StepSystem, state: &State, rate: &Tangent, length: f64) -> Option<State> {
-    let mut ahead = moved(state, rate, length);
-    update_blocks(system, &mut ahead).ok()?;
-    Some(State { blocks: ahead.blocks, ..state.clone() })
+/// Length along a rate of size 1 at which tangents are taken, relative to the size of the state, at least 1.
+const AHEAD: f64 = 1e-6;
+/// Rate of a gap, relative to the fastest, up to which its point is at rest and keeps its tangent.
+const AT_REST: f64 = 1e-8;
+
+/// Length along a rate of size 1 at which the tangents of a state are taken: beyond the rounding of its motions.
+pub(super) fn length_ahead(system: &StepSystem, state: &State) -> f64 {
+    AHEAD * (fastest(system, &state.motion) / system.units().displacement).max(1.0)
+}
+
+/// The state with blocks and laws of tractions that have the tangents of a place a short length ahead along a rate of size 1. `None` if the
+/// laws give no stresses there.
+pub(super) fn facing_ahead(system: &mut StepSystem, state: &State, rate: &Tangent) -> Option<State> {
+    let (mut facing, length) = (state.clone(), length_ahead(system, state));
+    if !state.blocks.is_empty() {
+        let mut ahead = moved(state, rate, length);
+        update_blocks(system, &mut ahead).ok()?;
+        facing.blocks = ahead.blocks;
+    }
+    if !system.laws.responses.is_empty() {
+        system.count("law_evaluations", system.laws.responses.count());
+        let speed = |rate: &[f64; 2]| rate[0].hypot(rate[1]);
+        let fastest = rate.gap.iter().map(speed).fold(0.0, f64::max);
+        let mut gap = state.gap.clone();
+        for (own, rate) in gap.iter_mut().zip(&rate.gap) {
+            (0..2).for_each(|k| own[k] += length * rate[k]);
+        }
+        let ahead = system.laws.responses.update(&gap, &state.updates.memory).ok()?;
+        for ((own, ahead), rate) in facing.updates.points.iter_mut().zip(&ahead.points).zip(&rate.gap) {
+            if speed(rate) > AT_REST * fastest {
+                (own.tangent, own.branch) = (ahead.tangent, ahead.branch);
+            }
+        }
+    }
+    Some(facing)
 }

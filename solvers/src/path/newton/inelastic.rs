@@ -10,11 +10,11 @@
 use super::blocks::YieldingBlock;
 use super::deformation::by_forces;
 use super::state::{State, Tangent};
-use super::system::{StepFailure, StepSystem};
+use super::system::StepSystem;
 use std::rc::Rc;
 
 /// The nodes of all blocks follow forces and motions; blocks are linearised where they come to lie.
-pub(super) fn update_blocks(system: &mut StepSystem, state: &mut State) -> Result<(), StepFailure> {
+pub(super) fn update_blocks(system: &mut StepSystem, state: &mut State) -> Result<(), String> {
     if state.blocks.is_empty() {
         return Ok(());
     }
@@ -26,9 +26,7 @@ pub(super) fn update_blocks(system: &mut StepSystem, state: &mut State) -> Resul
         let forces = system.geometry.body_forces(index, &state.force, &state.motion, &loads);
         let displacement = inelastic.displaced(&inner.linear, &forces);
         system.count("stress_updates", inelastic.gauss_points() as u64);
-        let linear = inelastic
-            .linearise(displacement, &inner.base)
-            .map_err(|why| StepFailure::new(format!("block {index}: {why}")))?;
+        let linear = inelastic.linearise(displacement, &inner.base).map_err(|why| format!("block {index}: {why}"))?;
         system.count("block_factorisations", linear.factorisations);
         state.blocks[index] = Some(YieldingBlock { linear: Rc::new(linear), base: inner.base.clone() });
     }
@@ -69,19 +67,6 @@ fn plastic_work_by_force(system: &StepSystem, state: &State) -> Vec<(usize, Vec<
         (inner.linear.yielding > 0).then(|| (index, inelastic.dissipation_by_force(&inner.linear)))
     });
     yielding.collect()
-}
-
-/// Adds the gradient of the plastic work to a row over the scaled unknowns; rotations of the forces
-/// are left out.
-pub(super) fn add_plastic_work(system: &StepSystem, row: &mut [f64], state: &State, scale: f64) {
-    let (loads, last) = (system.loads.at(state.factor), row.len() - 1);
-    for (body, weight) in plastic_work_by_force(system, state) {
-        let place = (&state.force[..], &state.motion[..]);
-        let by_factor = by_forces(&system.geometry, body, &weight, place, &loads, |i, value| {
-            row[i] += scale * value * system.units().force;
-        });
-        row[last] += scale * by_factor * system.units().factor;
-    }
 }
 
 /// Plastic work per unit of a rate \[J\].

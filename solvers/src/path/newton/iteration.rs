@@ -10,7 +10,7 @@ use super::linearised::residual_of;
 use super::nearby::{Accuracy, solve};
 use super::response::{traction_error, traction_row, update_tractions};
 use super::state::State;
-use super::system::{StepFailure, StepSystem};
+use super::system::StepSystem;
 use super::tangent::{ALLOWED, wanted_modes};
 use crate::contact::mode::ContactMode;
 use crate::contact::yield_polygon::YieldPolygon;
@@ -57,7 +57,7 @@ pub(super) fn iterate(
     control: &Control,
     patience: u32,
     mut search: Option<LineSearch>,
-) -> Result<(State, u64), StepFailure> {
+) -> Result<(State, u64), String> {
     if !system.laws.responses.is_empty() {
         search = Some(of_tractions());
     }
@@ -76,14 +76,13 @@ pub(super) fn iterate(
     };
     for iteration in 0..most {
         let mut residual = residual_of(system, start, &state, &gradient);
-        let (c, constraint) = control_value(system, start, &state, control);
         let last = residual.len() - 1;
-        residual[last] = c;
+        residual[last] = control_value(system, start, &state, control);
         let inner = block_error(system, &state);
         let norm = relative_residual(system, &residual, &state).max(inner);
         system.residuals.push(norm);
         if !norm.is_finite() {
-            return Err(changes.failure("an iteration left the numbers"));
+            return Err("an iteration left the numbers".into());
         }
         // Rounding is what a whole step does not lower.
         let stays = whole && norm > 0.3 * last_norm;
@@ -95,7 +94,7 @@ pub(super) fn iterate(
         }
         let equations = linearised.equations(system, &state, !changes.changed && norm > FALLS * last_norm);
         last_norm = norm;
-        let row = control_row(system, start, &state, control, &constraint, &equations);
+        let row = control_row(system, control);
         let right: Vec<f64> = residual.iter().map(|x| -x).collect();
         system.count("newton_iterations", 1);
         let solution = solve(system, &state, &equations, (&row, &right), Accuracy::Rough);
@@ -103,7 +102,7 @@ pub(super) fn iterate(
         // displacements the shifted equations, a soft bedding, show which points close.
         unsolved += u32::from(solution.as_ref().is_some_and(|(_, solved)| !solved));
         let Some((step, _)) = solution.filter(|_| unsolved <= if system.finite() { 0 } else { UNSOLVED }) else {
-            return Err(changes.failure("the modes of the contact points leave no equilibrium"));
+            return Err("the modes of the contact points leave no equilibrium".into());
         };
         let share = rotation_bound(system, &step);
         (state, gradient, whole) = match &mut search {
@@ -116,11 +115,11 @@ pub(super) fn iterate(
         let (wanted, holds) = wanted_modes(system, start, &state);
         changes.update(&state, wanted, holds);
         if search.is_none() && changes.hopeless(system.finite()) {
-            return Err(changes.failure("the modes of contact points keep changing"));
+            return Err("the modes of contact points keep changing".into());
         }
         changes.take(&mut state);
     }
-    Err(changes.failure("the modes of contact points keep changing"))
+    Err("the modes of contact points keep changing".into())
 }
 
 /// Where the equations of an iteration are linearised: those of a place serve near it, as long as they take residuals down.
@@ -183,14 +182,14 @@ pub(super) fn first_state(
     start: &State,
     guess: State,
     control: &Control,
-) -> Result<(State, Rc<Gradient>), StepFailure> {
+) -> Result<(State, Rc<Gradient>), String> {
     let mut state = guess;
     state.factor = if let Control::Factor(target) = control { *target } else { state.factor };
     system.settle(&mut state.motion, state.factor);
     update_blocks(system, &mut state)?;
     let gradient = system.gradient(&state);
     state.gap = gradient.gap.clone();
-    update_tractions(system, start, &mut state).map_err(StepFailure::new)?;
+    update_tractions(system, start, &mut state)?;
     Ok((state, gradient))
 }
 
@@ -229,8 +228,6 @@ struct ModeChanges {
     /// Points that want to change, and what they and all others want.
     differ: Vec<usize>,
     wanted: Vec<ContactMode>,
-    /// Points that wanted to change in the iteration before.
-    cycling: Vec<usize>,
     /// Fewest that wanted to, and iterations since.
     least: usize,
     without_gain: u32,
@@ -243,14 +240,10 @@ struct ModeChanges {
 
 impl ModeChanges {
     fn new(patience: u32) -> Self {
-        let (differ, wanted, cycling) = (Vec::new(), Vec::new(), Vec::new());
+        let (differ, wanted) = (Vec::new(), Vec::new());
         let (least, fewest) = (usize::MAX, usize::MAX);
         let (without_gain, budget, astray) = (0, patience, 0);
-        ModeChanges { patience, changed: true, differ, wanted, cycling, least, without_gain, fewest, budget, astray }
-    }
-
-    fn failure(self, why: &str) -> StepFailure {
-        StepFailure { why: why.into(), cycling: self.cycling }
+        ModeChanges { patience, changed: true, differ, wanted, least, without_gain, fewest, budget, astray }
     }
 
     /// Takes note of the modes that a state asks for, and of whether the laws hold in its own.
@@ -265,13 +258,9 @@ impl ModeChanges {
     }
 
     /// Whether the iteration has left the neighbourhood of a solution, or (finite displacements) few points cycle.
-    fn hopeless(&mut self, finite: bool) -> bool {
+    fn hopeless(&self, finite: bool) -> bool {
         let cycles = finite && self.changed && self.least <= FEW && self.without_gain >= WITHOUT_GAIN;
-        let hopeless = self.astray > 1 || cycles;
-        if hopeless {
-            self.cycling = std::mem::take(&mut self.differ);
-        }
-        hopeless
+        self.astray > 1 || cycles
     }
 
     /// Changes all modes, or one of them.
@@ -286,7 +275,6 @@ impl ModeChanges {
         } else if let Some(&c) = self.differ.last() {
             state.mode[c] = self.wanted[c];
         }
-        self.cycling = std::mem::take(&mut self.differ);
     }
 }
 

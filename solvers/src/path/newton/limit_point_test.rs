@@ -5,6 +5,7 @@
 //! ([`rate::problem`](crate::rate::problem)); branching finds a rate with λ̇ = 1 or proves that there is none.
 
 use super::equations::Equations;
+use super::response::traction_row;
 use super::state::{State, Tangent};
 use super::system::StepSystem;
 use super::tangent::tangent_from;
@@ -59,7 +60,7 @@ pub(super) fn limit_point_test(system: &mut StepSystem, state: &State, direction
     let count: usize = active.facets.iter().map(|(facets, _)| facets.len()).sum();
     system.count("factorisations", 1);
     let equations = system.equations(state);
-    let Some(responses) = responses_of(system, &active, &equations, direction) else {
+    let Some(responses) = responses_of(system, state, &active, &equations, direction) else {
         return LimitPointTest::Unknown(format!("the stiffness of {count} facets of the active set was not found"));
     };
     let mut programs = 0;
@@ -117,7 +118,7 @@ pub(super) fn rate_after_event(
     let active = active_set(system, state, &event.closing);
     system.count("factorisations", 1);
     let equations = system.equations(state);
-    let Some(responses) = responses_of(system, &active, &equations, direction) else {
+    let Some(responses) = responses_of(system, state, &active, &equations, direction) else {
         return AfterEvent::Unknown("the stiffness of the active set was not found".into(), false);
     };
     let mut problem = rate_problem(system, &active, &responses);
@@ -238,6 +239,7 @@ pub(super) fn active_facets(
 /// and, last, by λ̇ in the sense `direction`. `None` where linear algebra fails.
 pub(super) fn responses_of(
     system: &StepSystem,
+    state: &State,
     active: &ActiveSet,
     equations: &Equations,
     direction: f64,
@@ -254,14 +256,15 @@ pub(super) fn responses_of(
     for (c, mode) in active.modes.iter().enumerate() {
         let gap: [Vec<(usize, f64)>; 2] = [0, 1].map(|k| equations.gaps.row(2 * c + k).collect());
         let law = system.law(c).map_or(&[][..], |law| &law.facets);
-        for (k, own) in mode.rows(law)?.into_iter().enumerate() {
+        let rows = if system.laws.responses.is(c) { traction_rows(system, state, c) } else { mode.rows(law)? };
+        for (k, own) in rows.into_iter().enumerate() {
             let i = 2 * c + k;
             entries.extend((0..2).filter(|t| own[*t] != 0.0).map(|t| (i, 2 * c + t, own[t])));
             for t in (0..2).filter(|t| own[2 + t] != 0.0) {
                 add(i, &gap[t], own[2 + t], &mut entries);
                 right[i] += own[2 + t] * driven(&gap[t]);
             }
-            if *mode == ContactMode::Stick {
+            if *mode == ContactMode::Stick && !system.laws.responses.is(c) {
                 shift.push((i, i, REGULARISATION));
             }
         }
@@ -287,6 +290,12 @@ pub(super) fn responses_of(
         }
     }
     Some(x)
+}
+
+/// Rows [by force, by gap] of a contact point with a law of tractions from gaps: dr + K dg = 0, scaled.
+fn traction_rows(system: &StepSystem, state: &State, contact: usize) -> [[f64; 4]; 2] {
+    let (own, stiffness) = traction_row(system, state, contact);
+    [[own[0], 0.0, stiffness[0][0], stiffness[0][1]], [0.0, own[1], stiffness[1][0], stiffness[1][1]]]
 }
 
 pub(super) fn rate_problem<'s>(system: &'s StepSystem, active: &ActiveSet, responses: &[Vec<f64>]) -> RateProblem<'s> {

@@ -29,7 +29,7 @@ use super::inelastic::{block_error, update_blocks};
 use super::linearised::residual_of;
 use super::response::update_tractions;
 use super::state::State;
-use super::system::{StepFailure, StepSystem};
+use super::system::StepSystem;
 use super::tangent::apply_step;
 use crate::optimise::line_search::LineSearch;
 use std::rc::Rc;
@@ -47,7 +47,7 @@ fn merit(system: &mut StepSystem, start: &State, state: &State, gradient: &Gradi
     let u = system.units();
     let mut rows = residual_of(system, start, state, gradient);
     let last = rows.len() - 1;
-    rows[last] = control_value(system, start, state, control).0;
+    rows[last] = control_value(system, start, state, control);
     system.count("law_evaluations", state.gap.len() as u64);
     for c in (0..state.gap.len()).filter(|c| !system.laws.responses.is(*c)) {
         let (rho, gap) = (system.stiffness(c), system.step_gap(start, state, c));
@@ -74,13 +74,13 @@ pub(super) fn advanced(
     state: &State,
     step: &[f64],
     share: f64,
-) -> Result<(State, Rc<Gradient>), StepFailure> {
+) -> Result<(State, Rc<Gradient>), String> {
     let mut next = state.clone();
     apply_step(system, &mut next, step, share);
     update_blocks(system, &mut next)?;
     let gradient = system.gradient(&next);
     next.gap = gradient.gap.clone();
-    update_tractions(system, start, &mut next).map_err(StepFailure::new)?;
+    update_tractions(system, start, &mut next)?;
     Ok((next, gradient))
 }
 
@@ -93,7 +93,7 @@ pub(super) fn searched(
     control: &Control,
     (step, most): (&[f64], f64),
     search: &mut LineSearch,
-) -> Result<(State, Rc<Gradient>, bool), StepFailure> {
+) -> Result<(State, Rc<Gradient>, bool), String> {
     if search.merits.is_empty() {
         search.merits.push(merit(system, start, state, gradient, control));
     }
@@ -107,9 +107,9 @@ pub(super) fn searched(
         let merit = merit(system, start, &next, &gradient, control);
         Ok((merit, (next, gradient)))
     };
-    let unknown = || StepFailure::new("an iteration left the numbers");
+    let unknown = || "an iteration left the numbers".to_string();
     let ((next, gradient), whole) =
-        search.search(most, at).map_err(|failure: Option<StepFailure>| failure.unwrap_or_else(unknown))?;
+        search.search(most, at).map_err(|failure: Option<String>| failure.unwrap_or_else(unknown))?;
     Ok((next, gradient, whole))
 }
 
@@ -186,11 +186,11 @@ mod tests {
                 state.gap = gradient.gap.clone();
                 state.mode = wanted_modes(&mut system, &start, &state).0;
                 let mut rows = residual_of(&system, &start, &state, &gradient);
-                let (left, constraint) = control_value(&system, &start, &state, &control);
+                let left = control_value(&system, &start, &state, &control);
                 let last = rows.len() - 1;
                 rows[last] = left;
                 let equations = system.equations(&state);
-                let row = control_row(&system, &start, &state, &control, &constraint, &equations);
+                let row = control_row(&system, &control);
                 let right: Vec<f64> = rows.iter().map(|x| -x).collect();
                 let Some((step, true)) = solve_linear(&mut system, &state, &equations, &row, &right) else { continue };
                 // Where all points slide to the same side the modes hold the block by nothing.

@@ -1,6 +1,5 @@
 //! The load steps one after the other, and the answer.
 
-use super::follow::follow;
 use super::load_to_factor::load_to_factor;
 use super::loads::StagedLoads;
 use super::monitors::resolve;
@@ -14,7 +13,6 @@ use crate::path::continuation::arc_length::ArcLength;
 use crate::path::energy::{EnergyBalance, StageBalance};
 use crate::path::outcome::{Outcome, PathRecord, stalled};
 use std::sync::Arc;
-use voussoir_core::certificate::flow_residual;
 use voussoir_core::limit::Status;
 use voussoir_core::path::{LoadStep, LoadStepEnd, PathAnswer, PathObserver, PathProblem, PathSettings, StageStability};
 
@@ -73,14 +71,11 @@ fn run<'a>(tracer: &mut Tracer<'a, '_>, problem: &'a PathProblem) {
         let gradient = tracer.system.gradient(&tracer.state);
         tracer.record.work = work_state(&tracer.system, &tracer.state, &gradient);
         let mut outcome = match load_step.end {
-            LoadStepEnd::Collapse(most) if tracer.system.finite() => pieces::driver::follow(tracer, load_step, most),
+            LoadStepEnd::Collapse(most) => pieces::driver::follow(tracer, load_step, most),
             LoadStepEnd::Factor(factor) => load_to_factor(tracer, load_step, factor),
-            LoadStepEnd::Collapse(most) => follow(tracer, load_step, most),
         };
-        // Behind a peak a structure with finite displacements comes back to the load as another one:
-        // it has snapped through.
-        let snaps = tracer.system.finite();
-        if snaps && tracer.limit.peak.is_some() && matches!(outcome, LoadStepEnding::Reached) {
+        // Behind a peak a structure comes back to the load as another one: it has snapped through.
+        if tracer.limit.peak.is_some() && matches!(outcome, LoadStepEnding::Reached) {
             tracer.ending.status = Status::Collapse;
             outcome = LoadStepEnding::Ended;
         }
@@ -140,9 +135,7 @@ fn record_stability(tracer: &mut Tracer, stage: usize, found: StateStability) {
 
 /// The answer of a trace that has ended.
 fn answer(mut tracer: Tracer) -> PathAnswer {
-    let finite_peak = tracer.system.finite() && tracer.limit.peak.is_some();
-    let claims =
-        tracer.ending.status == Status::LimitPoint || (finite_peak && tracer.ending.status == Status::Collapse);
+    let claims = matches!(tracer.ending.status, Status::LimitPoint | Status::Collapse) && tracer.limit.peak.is_some();
     if let (true, Some(why)) = (claims, tracer.limit.unproven.take()) {
         tracer.limit.peak = None;
         end_path(&mut tracer, Status::Stalled, format!("the limit point on the path is not proven: {why}"));
@@ -177,15 +170,9 @@ fn answer(mut tracer: Tracer) -> PathAnswer {
     let (state, last, factor, motion) = match tracer.limit.peak {
         Some(peak) => {
             // Where bonds soften every joint moves at a peak: only the end shows which ones are hinges.
-            let problem = tracer.system.problem;
             let softens = !tracer.system.laws.responses.is_empty();
-            // The mechanism of the last state may not be one at the peak.
-            let fits = |motion: &Vec<[f64; 3]>| {
-                softens || tracer.system.finite() || flow_residual(problem, &peak.state.force, motion) <= 1e-6
-            };
-            let of_peak = peak.motion.filter(|_| tracer.system.finite() || !softens).filter(fits);
-            let of_end = tracer.ending.motion.filter(fits);
-            let motion = if softens { of_end.or(of_peak) } else { of_peak.or(of_end) };
+            let motion =
+                if softens { tracer.ending.motion.or(peak.motion) } else { peak.motion.or(tracer.ending.motion) };
             (peak.state, Some(tracer.record.state), Some(peak.factor), motion)
         }
         None => {

@@ -2,7 +2,6 @@
 
 use super::commit::commit;
 use super::control::Control;
-use super::follow::follow;
 use super::pieces;
 use super::response::tractions_dissipate;
 use super::second_order::second_order_work;
@@ -16,7 +15,7 @@ use voussoir_core::path::LoadStep;
 pub(super) fn load_to_factor(tracer: &mut Tracer, load_step: &LoadStep, factor: f64) -> LoadStepEnding {
     // From nothing a load grows in proportion; later a point may slide and come to rest within any step.
     let from_nothing = tracer.state.force.iter().flatten().all(|r| *r == 0.0);
-    if tracer.system.finite() && !from_nothing {
+    if !from_nothing {
         return pieces::driver::follow(tracer, load_step, factor);
     }
     let control = Control::Factor(factor);
@@ -37,10 +36,7 @@ pub(super) fn load_to_factor(tracer: &mut Tracer, load_step: &LoadStep, factor: 
             return if commit(tracer, next) { LoadStepEnding::Reached } else { LoadStepEnding::Ended };
         }
     }
-    if tracer.system.finite() {
-        return pieces::driver::follow(tracer, load_step, factor);
-    }
-    follow(tracer, load_step, factor)
+    pieces::driver::follow(tracer, load_step, factor)
 }
 
 /// Whether a state that one step reached is stable: with finite displacements others may be in equilibrium as well.

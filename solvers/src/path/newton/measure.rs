@@ -105,11 +105,3 @@ pub(super) fn motion_size(system: &StepSystem, rate: &Tangent) -> f64 {
         .sum();
     (gap + motion).sqrt()
 }
-
-/// Cosine of the angle between two motions, metres and radians alike; 0 where one of them is nothing.
-pub(super) fn cosine(one: &[[f64; 3]], other: &[[f64; 3]]) -> f64 {
-    let dot = |a: &[[f64; 3]], b: &[[f64; 3]]| -> f64 {
-        a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| a * b).sum()
-    };
-    dot(one, other) / (dot(one, one) * dot(other, other)).sqrt().max(1e-300)
-}

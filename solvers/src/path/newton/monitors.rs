@@ -3,7 +3,6 @@
 use super::control::MonitorWeights;
 use super::state::State;
 use super::system::StepSystem;
-use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::path::{Contact, MOST_MONITORS, Monitor, PathProblem};
 
 /// The monitors of a strategy, or the name of the first that the problem does not have.
@@ -66,10 +65,4 @@ pub(super) fn monitored(system: &StepSystem, start: &State, state: &State) -> [f
         *value /= system.units().displacement;
     }
     all
-}
-
-/// Derivative of a point's displacement along a direction by the motion of its body.
-pub(super) fn by_motion(system: &StepSystem, state: &State, body: usize, point: Vec2, direction: Vec2) -> [f64; 3] {
-    let arm = system.geometry.turn(state.motion[body][2]) * (point - system.problem.bodies[body].pole);
-    [direction.x, direction.y, direction.dot(&turned(arm))]
 }

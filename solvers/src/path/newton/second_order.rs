@@ -101,7 +101,7 @@ pub(super) fn stability(system: &mut StepSystem, state: &State, settles: bool) -
         return StateStability { under_load, under_control: under_load, sufficient_only };
     }
     let mut controlled = |state: &State, work: &Option<SecondOrderWork>| {
-        let rate = tangent_at(system, state, state, &Control::Factor(state.factor))?;
+        let rate = tangent_at(system, state, &Control::Factor(state.factor))?;
         let yields = increment_along(system, state, &rate).displacement;
         work.as_ref().map(|work| work.stable_under_control(yields))
     };

@@ -4,7 +4,7 @@ use super::control::Control;
 use super::iteration::iterate;
 use super::line_search::NOTHING;
 use super::state::State;
-use super::system::{StepFailure, StepSystem};
+use super::system::StepSystem;
 use crate::optimise::line_search::LineSearch;
 
 /// Newton's method from a guess. Modes change all at once as long as their number falls, else one by one (block principal
@@ -15,7 +15,7 @@ pub(super) fn solve_step(
     start: &State,
     guess: State,
     control: &Control,
-) -> Result<(State, u64), StepFailure> {
+) -> Result<(State, u64), String> {
     let found = iterate(system, start, guess.clone(), control, 8, None);
     if found.is_ok() || (!system.laws.responses.is_empty() && system.laws.polygons.is_empty()) {
         return found;
@@ -32,7 +32,7 @@ pub(super) fn line_searched(
     start: &State,
     guess: State,
     control: &Control,
-) -> Result<(State, u64), StepFailure> {
+) -> Result<(State, u64), String> {
     let found = iterate(
         system,
         start,

@@ -13,9 +13,6 @@ const STAGE: f64 = 5e-4;
 const NOTHING: f64 = 1e-9;
 const ROUNDING: f64 = 1e-9;
 
-/// Times that a step is made shorter for the sake of its energy.
-pub(super) const MOST_REFINEMENTS: u32 = 10;
-
 /// How well a step keeps the energy of its stage.
 pub(super) struct StepEnergy {
     /// By how much the next step may grow (below 1: must shrink).

@@ -62,6 +62,8 @@ pub(super) struct StepSystem<'a> {
     pub counters: Counters,
     /// Greatest relative residual of each iteration of the last step that was tried.
     pub residuals: Vec<f64>,
+    /// The reason why a law or a block gave no stresses last.
+    pub failure: Option<String>,
     /// Viscous wrenches of a descent to a stable equilibrium.
     pub damping: Option<Damping>,
 }
@@ -72,22 +74,6 @@ pub(super) struct Damping {
     pub rate: f64,
     /// Motions from which they pull.
     pub from: Vec<[f64; 3]>,
-}
-
-/// Why a step was not found.
-#[derive(Debug, Clone)]
-pub(super) struct StepFailure {
-    pub why: String,
-    /// Contact points that kept changing.
-    pub cycling: Vec<usize>,
-}
-
-impl StepFailure {
-    /// With nothing to say of contact points.
-    pub fn new(why: impl Into<String>) -> Self {
-        let why = why.into();
-        StepFailure { cycling: Vec::new(), why }
-    }
 }
 
 /// What laws of tractions from gaps add to the compliance of contact points before anything has moved.
@@ -123,6 +109,7 @@ impl<'a> StepSystem<'a> {
             counters: Counters::new(),
             loads: StagedLoads { earlier: Vec::new(), growing: &problem.load_steps[0].loading, start: 0.0 },
             residuals: Vec::new(),
+            failure: None,
             damping: None,
             blocks: undeformed(problem)?,
             cache,
@@ -175,11 +162,12 @@ impl<'a> StepSystem<'a> {
         self.piecewise_linear() && self.scaled.chain.is_some() && self.geometry.pattern.couples()
     }
 
-    /// Forces and a factor that are rounding of the loads become nothing (small displacements).
+    /// Forces and a factor that are rounding of the loads become nothing (small displacements). A law of tractions has given its own.
     pub fn drop_rounding(&self, state: &mut State, start: f64) {
         let u = self.scaled.units;
         let largest = state.force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
         if self.loads.earlier.is_empty()
+            && self.laws.responses.is_empty()
             && largest <= 1e-10 * u.force
             && (state.factor - start).abs() <= 1e-10 * u.factor
         {

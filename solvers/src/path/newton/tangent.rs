@@ -1,7 +1,7 @@
 //! Rates of converged states with their contact modes held, and the modes that a state asks for.
 
 use super::control::Control;
-use super::control_row::{add_weighted_gaps, control_row, control_value};
+use super::control_row::control_row;
 use super::equations::Equations;
 use super::nearby::{Accuracy, solve};
 use super::state::{State, Tangent};
@@ -85,58 +85,20 @@ pub(super) fn wanted_modes(system: &mut StepSystem, start: &State, state: &State
     (modes, holds)
 }
 
-/// Modes that a small share of a rate asks for, from a converged state.
-pub(super) fn modes_ahead(system: &mut StepSystem, state: &State, ahead: &State) -> Vec<ContactMode> {
-    let mut ahead = ahead.clone();
-    ahead.gap = system.gradient(&ahead).gap.clone();
-    wanted_modes(system, state, &ahead).0
-}
-
 /// Tangent of a converged state with its modes held, per unit of the control's gradient.
-pub(super) fn tangent_at(system: &mut StepSystem, start: &State, state: &State, control: &Control) -> Option<Tangent> {
-    tangent(system, start, state, control, Accuracy::Rounding)
+pub(super) fn tangent_at(system: &mut StepSystem, state: &State, control: &Control) -> Option<Tangent> {
+    tangent(system, state, control, Accuracy::Rounding)
 }
 
 /// The same by whatever factors are near.
-pub(super) fn tangent_nearby(
-    system: &mut StepSystem,
-    start: &State,
-    state: &State,
-    control: &Control,
-) -> Option<Tangent> {
-    tangent(system, start, state, control, Accuracy::Fine)
+pub(super) fn tangent_nearby(system: &mut StepSystem, state: &State, control: &Control) -> Option<Tangent> {
+    tangent(system, state, control, Accuracy::Fine)
 }
 
-fn tangent(
-    system: &mut StepSystem,
-    start: &State,
-    state: &State,
-    control: &Control,
-    accuracy: Accuracy,
-) -> Option<Tangent> {
+fn tangent(system: &mut StepSystem, state: &State, control: &Control, accuracy: Accuracy) -> Option<Tangent> {
     let equations = system.equations(state);
-    let (_, constraint) = control_value(system, start, state, control);
-    let row = control_row(system, start, state, control, &constraint, &equations);
+    let row = control_row(system, control);
     tangent_of_modes(system, state, &equations, &row, accuracy)
-}
-
-/// Tangent with other modes than the state's, per unit of the sum of the multipliers of the points
-/// that change: the branch on which they yield. `None` where there is none.
-pub(super) fn tangent_of_yielding(system: &mut StepSystem, state: &State, modes: &[ContactMode]) -> Option<Tangent> {
-    let equations = system.equations(state);
-    let mut by_gap = vec![0.0; 2 * state.gap.len()];
-    for c in (0..state.gap.len()).filter(|c| modes[*c] != state.mode[*c]) {
-        let flow = match (modes[c], system.law(c)) {
-            (ContactMode::Facet(i), Some(law)) => law.facets[i as usize].flow,
-            _ => [-1.0, 0.0],
-        };
-        (0..2).for_each(|k| by_gap[2 * c + k] = -flow[k] / system.units().displacement);
-    }
-    let mut row = vec![0.0; system.size()];
-    add_weighted_gaps(system, &mut row, &by_gap, &equations);
-    let mut other = state.clone();
-    other.mode = modes.to_vec();
-    tangent_of_modes(system, &other, &equations, &row, Accuracy::Rounding)
 }
 
 /// The right-hand side of a rate per unit of the last row.

@@ -64,8 +64,6 @@ pub(super) struct LimitPoint {
     pub unproven: Option<String>,
     /// Factor at which it is proven that no rate has growing λ.
     pub proven: Option<f64>,
-    /// Factor at which a branch with growing λ was taken last, and how often there.
-    pub rose: Option<(f64, u32)>,
 }
 
 /// A trace of a path.
@@ -110,11 +108,6 @@ pub(super) fn direction(tracer: &Tracer) -> f64 {
     let load_step = &tracer.system.problem.load_steps[tracer.load_step];
     let (LoadStepEnd::Factor(target) | LoadStepEnd::Collapse(target)) = load_step.end;
     if target < load_step.start { -1.0 } else { 1.0 }
-}
-
-/// The present state a share of a rate on.
-pub(super) fn moved_along(tracer: &Tracer, rate: &Tangent, share: f64) -> State {
-    moved(&tracer.state, rate, share)
 }
 
 /// A state a share of a rate on.

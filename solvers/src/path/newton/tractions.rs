@@ -28,8 +28,8 @@ struct Group {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Responses {
     groups: Vec<Group>,
-    /// For each contact point whether it is one.
-    is: Vec<bool>,
+    /// For each contact point its group and the place of its state, if it has such a law.
+    of: Vec<Option<(usize, usize)>>,
     /// Joint and place of each contact point.
     places: Vec<(usize, [f64; 2])>,
 }
@@ -48,21 +48,21 @@ pub(super) struct TractionUpdates {
 impl Responses {
     pub fn new(problem: &PathProblem) -> Self {
         let mut groups: Vec<Group> = Vec::new();
-        let mut is = vec![false; problem.contacts.len()];
+        let mut of = vec![None; problem.contacts.len()];
         let mut place = 0;
         for (contact, c) in problem.contacts.iter().enumerate() {
             let Some(law) = c.law.response() else { continue };
-            is[contact] = true;
             let at = groups.iter().position(|group| Arc::ptr_eq(&group.law, law)).unwrap_or_else(|| {
                 groups.push(Group { law: law.clone(), points: Vec::new(), places: Vec::new() });
                 groups.len() - 1
             });
             groups[at].points.push(contact);
             groups[at].places.push(place);
+            of[contact] = Some((at, place));
             place += law.state_size();
         }
         let places = problem.contacts.iter().map(|c| (c.joint, c.position.into())).collect();
-        Responses { groups, is, places }
+        Responses { groups, of, places }
     }
 
     pub fn is_empty(&self) -> bool {
@@ -70,7 +70,7 @@ impl Responses {
     }
 
     pub fn is(&self, contact: usize) -> bool {
-        self.is[contact]
+        self.of[contact].is_some()
     }
 
     /// Number of points.
@@ -81,6 +81,15 @@ impl Responses {
     /// The contact points.
     pub fn points(&self) -> impl Iterator<Item = usize> + '_ {
         self.groups.iter().flat_map(|group| group.points.iter().copied())
+    }
+
+    /// What the law of a contact point says at a gap, from the states of all points before. `None` if it has no such law or the
+    /// law fails.
+    pub fn at(&self, contact: usize, gap: [f64; 2], before: &[f64]) -> Option<TractionPoint> {
+        let (group, at) = self.of[contact]?;
+        let law = &self.groups[group].law;
+        let old = &before[at..at + law.state_size()];
+        law.respond_point(gap, old, &mut old.to_vec()).ok()
     }
 
     /// Names the law, the joint, the point and the gap at which it failed.
@@ -98,7 +107,7 @@ impl Responses {
         if self.is_empty() {
             return Ok(TractionUpdates::default());
         }
-        let mut all = vec![TractionPoint::ZERO; self.is.len()];
+        let mut all = vec![TractionPoint::ZERO; self.of.len()];
         let mut memory = before.to_vec();
         for group in &self.groups {
             let size = group.law.state_size();

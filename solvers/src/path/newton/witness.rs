@@ -72,7 +72,7 @@ fn search<T>(
     }
     system.count("factorisations", 1);
     let equations = system.equations(state);
-    let responses = responses_of(system, &active, &equations, direction)?;
+    let responses = responses_of(system, state, &active, &equations, direction)?;
     let problem = rate_problem(system, &active, &responses);
     let mut programs = 0;
     let response = |gaps: &[[f64; 2]], factor: f64| Some(without_factor(&responses, gaps, factor));

@@ -4,6 +4,7 @@
 //! positive at both ends, but whose cubic of Hermite is negative between them, may have two: the step is cut there. A
 //! root is bracketed, and located by the roots of cubics to the tolerance of the monitor.
 
+use super::super::ahead::length_ahead;
 use super::super::control::Control;
 use super::super::state::{State, Tangent};
 use super::super::system::StepSystem;
@@ -11,6 +12,7 @@ use super::super::tracer::moved;
 use super::corrector::correct;
 use super::monitors::Reading;
 use super::piece::{Piece, scaled_row};
+use crate::linear::inner;
 
 /// Length of a step, relative to that at which the first event would be if all rates stayed: the event is then in it.
 const BEYOND: f64 = 1.02;
@@ -18,12 +20,20 @@ const BEYOND: f64 = 1.02;
 const STRAIGHT: f64 = 0.1;
 /// Length, in units, that is rounding of a state.
 const ROUNDING: f64 = 1e-7;
+/// Distance of a state from its predictor, relative to the step, beyond which bonds have taken it to another branch, and the part
+/// of the distance that is rounding.
+const ELSEWHERE: f64 = 0.5;
+const NOISE: f64 = 1e-10;
+/// Distance of two states, relative to the length between them, above which a path jumps.
+const JUMP: f64 = 10.0;
 /// Points between the ends of a step at which a cubic is looked at.
 const SAMPLES: usize = 16;
 /// States that are computed to locate an event.
 const MOST_TRIALS: usize = 100;
 /// Width of a bracket, relative to the step, at which an event is located whatever its monitor reads.
 const NARROW: f64 = 1e-13;
+/// Length that is left to the end of a branch, relative to the step, up to which the step goes on to it.
+const NEAR: f64 = 0.02;
 /// Change of the factor in a step, relative to it, below which it is not looked at.
 const FLAT: f64 = 1e-7;
 /// Rate of the factor, relative to that at the start, at which it turns.
@@ -90,9 +100,9 @@ struct Step<'a, 's> {
 
 impl Step<'_, '_> {
     fn readings(&self, state: &State, rate: &Tangent) -> Vec<Reading> {
-        let mut all = self.piece.read(self.system, state, rate);
+        let mut all = self.piece.read(self.system, self.start, state, rate);
         let unit = self.system.units().factor;
-        let never = Reading { value: 1.0, rate: None, tolerance: 0.0, rate_tolerance: 0.0 };
+        let never = Reading::NEVER;
         let at_start = (self.piece.tangent.factor / unit).abs();
         all.push(self.watched.sense.map_or(never, |sense| Reading {
             value: sense * rate.factor / unit,
@@ -103,9 +113,14 @@ impl Step<'_, '_> {
             value: (target - state.factor) * direction / unit,
             rate: Some(-rate.factor * direction / unit),
             tolerance: 1e-14 * (target / unit).abs().max(1e-3),
-            rate_tolerance: 0.0,
+            ..never
         }));
         all
+    }
+
+    /// Length at which the first branch of a law of tractions ends if its rate stays.
+    fn branch_crossing(&self, readings: &[Reading]) -> f64 {
+        readings.iter().filter(|reading| reading.of_branch).map(|reading| reading.value).fold(f64::INFINITY, f64::min)
     }
 
     /// The state at a length, from one nearer to the start.
@@ -117,19 +132,24 @@ impl Step<'_, '_> {
     fn controlled(&mut self, from: &StepEnd, length: f64, control: &Control) -> Option<Trial> {
         let guess = moved(&from.state, &from.rate, length - from.length);
         let state = correct(self.system, self.start, guess, control)?;
-        let rate = self.piece.rate_at(self.system, self.start, &state)?;
-        let step = Tangent {
-            force: Vec::new(),
-            gap: Vec::new(),
-            motion: differences(&state.motion, &self.start.motion),
-            factor: state.factor - self.start.factor,
-        };
+        let rate = self.piece.rate_at(self.system, &state)?;
+        let step = chord(self.start, &state);
         let moved = scaled_row(self.system, &step);
         let away: f64 = moved.iter().zip(self.piece.row.iter()).map(|(x, t)| (x - length * t).powi(2)).sum();
         let error = away.sqrt() / length.abs().max(1e-300);
+        let bonds = !self.system.laws.responses.is_empty();
+        if bonds && error > ELSEWHERE + NOISE / length.abs().max(1e-300) {
+            return None;
+        }
         let unexplained = self.unexplained(&state, &rate, length);
         let readings = self.readings(&state, &rate);
         Some(Trial { end: StepEnd { state, rate, length, error, unexplained }, readings })
+    }
+
+    /// Distance of two states over the scaled unknowns.
+    fn distance(&self, low: &Trial, high: &Trial) -> f64 {
+        let row = scaled_row(self.system, &chord(&low.end.state, &high.end.state));
+        inner(&row, &row).sqrt()
     }
 
     /// Error of the trapezoidal rule for the factor.
@@ -154,9 +174,15 @@ impl Step<'_, '_> {
     }
 }
 
-/// Differences of motions.
-fn differences(after: &[[f64; 3]], before: &[[f64; 3]]) -> Vec<[f64; 3]> {
-    after.iter().zip(before).map(|(a, b)| [0, 1, 2].map(|k| a[k] - b[k])).collect()
+/// The change from one state to another.
+pub(super) fn chord(from: &State, to: &State) -> Tangent {
+    let pairs = |a: &[[f64; 2]], b: &[[f64; 2]]| a.iter().zip(b).map(|(a, b)| [a[0] - b[0], a[1] - b[1]]).collect();
+    Tangent {
+        force: pairs(&to.force, &from.force),
+        gap: pairs(&to.gap, &from.gap),
+        motion: to.motion.iter().zip(&from.motion).map(|(a, b)| [0, 1, 2].map(|k| a[k] - b[k])).collect(),
+        factor: to.factor - from.factor,
+    }
 }
 
 /// The state at a length along a piece from one of its states, whatever its monitors read.
@@ -172,7 +198,10 @@ pub(super) fn advance(system: &mut StepSystem, start: &State, piece: &Piece, len
     let readings = step.readings(start, &piece.tangent);
     let end = StepEnd { state: start.clone(), rate: piece.tangent.clone(), length: 0.0, error: 0.0, unexplained: 0.0 };
     let low = Trial { end, readings };
-    let length = length.min(BEYOND * first_crossing(&low.readings));
+    let crossing = first_crossing(&low.readings);
+    // Beyond the end of a branch of a law of tractions there may be no state along the present tangent.
+    let of_branch = step.branch_crossing(&low.readings);
+    let length = length.min(if of_branch <= crossing { of_branch } else { BEYOND * crossing });
     if let Some(end) = step.reaching_target(&low.end, length) {
         return Advance::Target(end);
     }
@@ -181,14 +210,36 @@ pub(super) fn advance(system: &mut StepSystem, start: &State, piece: &Piece, len
     if violated(&high) {
         return locate(&mut step, low, high);
     }
-    match hidden_root(&low, &high) {
+    match hidden_root(&low, &high, step.watched.sense.is_some()) {
         Some(share) => match step.trial(&low.end, share * length) {
             Some(middle) if violated(&middle) => locate(&mut step, low, middle),
             Some(middle) => Advance::Whole(middle.end),
             None => Advance::Failed,
         },
+        None if length == of_branch => at_branch_end(&mut step, low, high),
         None => Advance::Whole(high.end),
     }
+}
+
+/// Goes on from a state next to the end of a law's branch up to this end.
+fn at_branch_end(step: &mut Step, low: Trial, mut high: Trial) -> Advance {
+    for _ in 0..MOST_TRIALS {
+        let left = step.branch_crossing(&high.readings);
+        if high.readings.iter().any(|own| own.of_branch && own.value <= own.tolerance) {
+            let monitors = high.readings.len() - 2;
+            let hits = (0..monitors).filter(|i| high.readings[*i].is_active()).collect();
+            return Advance::Event(high.end, hits);
+        }
+        if left > NEAR * high.end.length {
+            break;
+        }
+        let Some(next) = step.trial(&high.end, high.end.length + left) else { return Advance::Failed };
+        if next.readings.iter().any(Reading::is_violated) {
+            return locate(step, low, next);
+        }
+        high = next;
+    }
+    Advance::Whole(high.end)
 }
 
 /// Length at which the first monitor would be zero if all rates stayed.
@@ -218,15 +269,27 @@ fn locate(step: &mut Step, mut low: Trial, mut high: Trial) -> Advance {
             high = middle;
             continue;
         }
-        let was = |i: usize| high.readings[i].is_violated();
-        let arrived =
-            (0..middle.readings.len()).any(|i| was(i) && middle.readings[i].value <= middle.readings[i].tolerance);
+        // What rests at its bound all along is violated behind a corner of the path, and only the bracket tells where that is.
+        let arrives = |i: usize| {
+            let here = &middle.readings[i];
+            let falls =
+                low.readings[i].value > here.tolerance || here.rate.is_some_and(|rate| rate < -here.rate_tolerance);
+            high.readings[i].is_violated() && here.value <= here.tolerance && falls
+        };
+        let arrived = (0..middle.readings.len()).any(arrives);
         low = middle;
         if arrived {
-            break;
+            return ended(low, &high);
         }
     }
-    ended(low, &high)
+    // A path, its slacks and its openings are continuous: behind a bracket over which one jumps the states are on another branch.
+    let jumps = |(a, b): (&Reading, &Reading)| a.rate.is_some() && !a.is_active() && b.is_violated();
+    let far = JUMP * (high.end.length - low.end.length) + length_ahead(step.system, step.start);
+    match step.distance(&low, &high) > far || low.readings.iter().zip(&high.readings).any(jumps) {
+        true if low.end.length > 0.0 => Advance::Whole(low.end),
+        true => Advance::Failed,
+        false => ended(low, &high),
+    }
 }
 
 /// What ends a step at `low`, behind which `high` violates something.
@@ -261,8 +324,8 @@ fn first_root(low: &Trial, high: &Trial) -> f64 {
     let width = high.end.length - low.end.length;
     let root = |(a, b): (&Reading, &Reading)| {
         let [from, to] = [a.value.max(0.0), b.value];
-        if from == 0.0 {
-            return 0.0;
+        if from <= a.tolerance {
+            return 0.5;
         }
         let linear = from / (from - to);
         match (a.rate, b.rate) {
@@ -292,8 +355,9 @@ fn cubic_root(of: [f64; 4]) -> Option<f64> {
     Some(0.5 * (low + high))
 }
 
-/// Share of a step at which a monitor that is positive at both ends may be negative.
-fn hidden_root(low: &Trial, high: &Trial) -> Option<f64> {
+/// Share of a step at which a monitor that is positive at both ends may be negative, or the factor may turn if that is
+/// `watched`.
+fn hidden_root(low: &Trial, high: &Trial, watched: bool) -> Option<f64> {
     let width = high.end.length;
     let hidden = |(a, b): (&Reading, &Reading)| {
         let (da, db) = (a.rate?, b.rate?);
@@ -306,7 +370,8 @@ fn hidden_root(low: &Trial, high: &Trial) -> Option<f64> {
         below.then(|| cubic_root(of)).flatten()
     };
     let monitors = low.readings.iter().zip(&high.readings).filter_map(hidden);
-    monitors.chain(hidden_turn(low, high)).reduce(f64::min)
+    let turn = if watched { hidden_turn(low, high) } else { None };
+    monitors.chain(turn).reduce(f64::min)
 }
 
 /// Share of a step at which the factor may turn if it goes in one sense at both ends.

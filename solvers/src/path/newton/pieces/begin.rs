@@ -22,8 +22,8 @@ const AHEAD: [f64; 3] = [1e-6, 1e-4, 1e-2];
 pub(super) fn begin(tracer: &mut Tracer, target: f64, direction: f64) -> Result<Piece, LoadStepEnding> {
     match first_rate(tracer, target, direction) {
         Ok((rate, modes)) => {
-            let piece = Piece::new(&tracer.system, &modes, &rate);
             tracer.state.mode = modes;
+            let piece = Piece::new(&tracer.system, &tracer.state, &rate);
             piece.ok_or_else(|| end_path(tracer, Status::Stalled, "nothing moves under this load".into()))
         }
         Err((status, why)) => Err(end_path(tracer, status, why)),
@@ -54,7 +54,7 @@ fn rate_from_nothing(tracer: &mut Tracer, target: f64, direction: f64) -> Result
 /// The rate at the present state in some modes, if they admit it.
 fn rate_in(tracer: &mut Tracer, modes: Vec<ContactMode>, target: f64, direction: f64) -> Option<Start> {
     let state = State { mode: modes, ..tracer.state.clone() };
-    let rate = tangent_at(&mut tracer.system, &state, &state, &Control::Factor(target))?.scaled(direction);
+    let rate = tangent_at(&mut tracer.system, &state, &Control::Factor(target))?.scaled(direction);
     is_admissible(&tracer.system, &state, &state.mode, &rate).then_some((rate, state.mode))
 }
 

@@ -13,6 +13,7 @@ use super::super::iteration::{
 use super::super::line_search::advanced;
 use super::super::linearised::residual_of;
 use super::super::nearby::{Accuracy, solve};
+use super::super::response::traction_error;
 use super::super::state::State;
 use super::super::system::StepSystem;
 
@@ -30,15 +31,15 @@ const BALANCED: f64 = 1e-10;
 /// The state on the piece that starts at `start`, from a guess with its modes. Returns `None` if the iterations do not
 /// converge.
 pub(super) fn correct(system: &mut StepSystem, start: &State, guess: State, control: &Control) -> Option<State> {
-    let (mut state, mut gradient) = first_state(system, start, guess, control).ok()?;
+    let first = first_state(system, start, guess, control);
+    let (mut state, mut gradient) = first.map_err(|why| system.failure = Some(why)).ok()?;
     let rounding = rounding(system);
     let mut last = f64::INFINITY;
     let mut whole = true;
     let mut linearised = LinearisedAt::of(system, start);
     for iteration in 0..MOST {
         let mut residual = residual_of(system, start, &state, &gradient);
-        let (own, constraint) = control_value(system, start, &state, control);
-        *residual.last_mut()? = own;
+        *residual.last_mut()? = control_value(system, start, &state, control);
         let norm = relative_residual(system, &residual, &state);
         if !norm.is_finite() {
             return None;
@@ -58,7 +59,7 @@ pub(super) fn correct(system: &mut StepSystem, start: &State, guess: State, cont
         }
         let equations = linearised.equations(system, &state, slow);
         last = norm;
-        let row = control_row(system, start, &state, control, &constraint, &equations);
+        let row = control_row(system, control);
         let right: Vec<f64> = residual.iter().map(|x| -x).collect();
         system.count("newton_iterations", 1);
         let (step, solved) = solve(system, &state, &equations, (&row, &right), Accuracy::Rough)?;
@@ -67,7 +68,8 @@ pub(super) fn correct(system: &mut StepSystem, start: &State, guess: State, cont
         }
         let share = rotation_bound(system, &step);
         whole = share == 1.0 && !linearised.lags();
-        (state, gradient) = advanced(system, start, &state, &step, share).ok()?;
+        let next = advanced(system, start, &state, &step, share);
+        (state, gradient) = next.map_err(|why| system.failure = Some(why)).ok()?;
     }
     None
 }
@@ -78,4 +80,5 @@ fn holds(system: &StepSystem, residual: &[f64], state: &State, rounding: f64, st
     unbalanced_share(system, residual, state) <= BALANCED
         && gap <= LOWEST + rounding / largest_unknown(system, state)
         && (stays || force <= LOWEST)
+        && traction_error(system, state) <= LOWEST
 }

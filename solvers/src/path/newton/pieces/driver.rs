@@ -1,26 +1,32 @@
 //! Pieces one after the other, from the start of a load step to its end.
 
-use super::super::ahead::facing_ahead;
+use super::super::ahead::{facing_ahead, length_ahead};
 use super::super::commit::{commit, end_at_lost_joint, lost_joint};
 use super::super::control::Control;
 use super::super::events::events;
 use super::super::measure::{increment_along, motion_size};
-use super::super::peak::{note_peak, peak_at};
+use super::super::peak::{note_peak, peak_at, scaled_motion};
 use super::super::second_order::{instability, second_order_work};
 use super::super::stable_branch::{Departure, leave_unstable};
 use super::super::state::{State, Tangent};
+use super::super::step::solve_step;
 use super::super::step_energy::step_energy;
-use super::super::tracer::{LoadStepEnding, Tracer, direction, end_path};
+use super::super::tangent::tangent_at;
+use super::super::tracer::{LoadStepEnding, Tracer, direction, end_path, moved};
 use super::super::witness::none_continues;
-use super::advance::{Advance, StepEnd, Watched, advance, state_at};
+use super::advance::{Advance, StepEnd, Watched, advance, chord, state_at};
 use super::begin::begin;
+use super::corner::corner;
 use super::corrector::correct;
 use super::end::end_of_range;
+use super::loading_set::{LoadingRate, loading_rate};
 use super::monitors::{Monitor, What};
 use super::piece::Piece;
-use super::plateau::{Plateau, plateau, stands_still};
-use super::switch::{NextPiece, after_event};
+use super::plateau::{Plateau, plateau, stands_still, stood_still};
+use super::ray::ray;
+use super::switch::{NextPiece, after_event, is_admissible};
 use crate::contact::mode::ContactMode;
+use crate::linear::inner;
 use crate::path::continuation::LARGEST_FINITE_STEP;
 use crate::path::stability::SecondOrderWork;
 use voussoir_core::limit::Status;
@@ -34,8 +40,6 @@ const MOST_ITERATIONS: u64 = 20_000;
 const WANTED_ERROR: f64 = 0.02;
 /// The same above which the step is repeated.
 const MOST_ERROR: f64 = 0.1;
-/// Length, relative to the first step, at which tangents of materials just ahead of a state are taken.
-const AHEAD: f64 = 1e-5;
 /// Share of the change of the factor in a step that its rates may leave unexplained.
 const MOST_UNEXPLAINED: f64 = 0.1;
 /// Length of a step, relative to that wanted, from which on its error tells how long the next one may be.
@@ -44,16 +48,25 @@ const TELLING: f64 = 0.1;
 const NOT_FALLEN: f64 = 1e-12;
 /// Relative difference of two loads that are the same in a result.
 const SAME_LOAD: f64 = 1e-6;
+/// Lengths, relative to the first step, of steps across a corner.
+const ACROSS: [f64; 4] = [1e-4, 1e-3, 1e-5, 1e-6];
 /// Length, relative to the first step, below which there is no step.
 const SHORTEST: f64 = 1e-10;
 /// Pieces of next to no length one after the other at which the path is lost.
 const MOST_SHORT_PIECES: u32 = 50;
+/// Difference from 1 of the cosine of two tangents between which the path has a corner.
+const CORNER: f64 = 1e-6;
 /// Rate of the factor, in units, relative to that of motions, at which it stands still.
 const STILL: f64 = 1e-13;
 /// Width, relative to a step, of the bracket of the first unstable state.
 const PLACED: f64 = 1e-9;
 /// Share of a settlement by which it goes on beyond a limit point from which it snaps.
 const SNAP: f64 = 1e-7;
+
+/// Length, relative to the first step, above which a step is more than rounding.
+const FAR: f64 = 1e-6;
+/// Share of a step beyond which its corner is its end.
+const NEARLY: f64 = 1.0 - 1e-9;
 
 /// A load step that is followed.
 struct Run<'d> {
@@ -75,8 +88,16 @@ struct Run<'d> {
     cluster: Cluster,
     /// Whether the present modes are known to be unstable under their loads, and no stable equilibrium is near.
     unstable: bool,
+    standing: Standing,
+}
+
+/// A load that stands still.
+#[derive(Default)]
+struct Standing {
     /// Whether the path moves on under a constant load.
     on_plateau: bool,
+    /// Whether blocks flowed in the last step.
+    flows: bool,
 }
 
 /// Events at one place: the path has hardly moved since the first of them.
@@ -135,7 +156,7 @@ impl<'d> Run<'d> {
             from: tracer.record.state.displacement,
             cluster: Cluster::default(),
             unstable: false,
-            on_plateau: false,
+            standing: Standing::default(),
         };
         run.first = run.by_strategy(tracer);
         run.length = run.first;
@@ -178,6 +199,11 @@ impl<'d> Run<'d> {
         };
         let start = tracer.state.clone();
         let advance = advance(&mut tracer.system, &start, &self.piece, length, watched);
+        if advance.end().is_none_or(|end| end.error > MOST_ERROR)
+            && let Some(ending) = self.to_corner(tracer, length)
+        {
+            return ending;
+        }
         if let Some((end, work)) = advance.end().and_then(|end| self.first_unstable(tracer, &start, end)) {
             return self.leave(tracer, end, &work);
         }
@@ -193,13 +219,99 @@ impl<'d> Run<'d> {
         }
     }
 
+    /// Ends a step that leaves its tangent at the corner where blocks begin to yield, and goes on behind it. `None` if blocks
+    /// begin or cease to yield at no place of the step.
+    fn to_corner(&mut self, tracer: &mut Tracer, length: f64) -> Option<Option<LoadStepEnding>> {
+        let start = tracer.state.clone();
+        if start.blocks.is_empty() {
+            return None;
+        }
+        let at = corner(&mut tracer.system, &start, &self.piece.tangent, length)?;
+        if at > length_ahead(&tracer.system, &start) {
+            self.length = at;
+            return (at < NEARLY * length).then_some(None);
+        }
+        let found = self.around_corner(tracer)?;
+        let modes = found.state.mode.clone();
+        if is_admissible(&tracer.system, &found.state, &modes, &found.rate) {
+            self.length = 0.1 * self.first;
+            return Some(self.go_on(tracer, found, modes, None));
+        }
+        let piece = Piece::new(&tracer.system, &found.state, &found.rate)?;
+        self.across(tracer, &found.state, &piece)
+    }
+
     fn shorten(&mut self, tracer: &mut Tracer, length: f64) -> Option<LoadStepEnding> {
         tracer.system.count("cutbacks", 1);
         self.length = length;
-        (length < SHORTEST * self.first).then(|| {
-            let why = format!("no state of the piece was found beyond factor {}", tracer.state.factor);
-            end_path(tracer, Status::Stalled, why)
-        })
+        if length >= SHORTEST * self.first {
+            return None;
+        }
+        if let Some(found) = self.around_corner(tracer) {
+            self.length = 0.1 * self.first;
+            tracer.state.blocks.clone_from(&found.state.blocks);
+            let modes = found.state.mode.clone();
+            return self.go_on(tracer, found, modes, None);
+        }
+        if !tracer.system.piecewise_linear() && !self.crowded() {
+            // The rate of an event may be rounding where many points rest at their bounds: the arrival leads on.
+            let arrival = self.cluster.arrival.as_ref().map(|(modes, piece, _)| (modes.clone(), piece.clone()));
+            let own = (tracer.state.mode.clone(), self.piece.clone());
+            for (modes, piece) in std::iter::once(own).chain(arrival) {
+                let facing = State { mode: modes, ..tracer.state.clone() };
+                if let Some(ending) = self.across(tracer, &facing, &piece) {
+                    return ending;
+                }
+            }
+        }
+        let failure = tracer.system.failure.take().map_or(String::new(), |why| format!(": {why}"));
+        let why = format!("no state of the piece was found beyond factor {}{failure}", tracer.state.factor);
+        Some(end_path(tracer, Status::Stalled, why))
+    }
+
+    /// The rate that leads on from a state beyond which the piece has none, since blocks or bonds begin to yield there.
+    fn around_corner(&mut self, tracer: &mut Tracer) -> Option<LoadingRate> {
+        if tracer.system.piecewise_linear() || self.crowded() {
+            return None;
+        }
+        let here = tracer.state.clone();
+        let found = loading_rate(&mut tracer.system, &here, &self.piece)?;
+        let piece = Piece::new(&tracer.system, &found.state, &found.rate)?;
+        let cosine = inner(&piece.row, &self.piece.row);
+        (cosine < 1.0 - CORNER).then_some(found)
+    }
+
+    /// Takes a short step from a corner, about along a piece, by Newton's method on the laws themselves: modes and branches may
+    /// change in it. `None` if there is no such step.
+    fn across(&mut self, tracer: &mut Tracer, facing: &State, piece: &Piece) -> Option<Option<LoadStepEnding>> {
+        let here = tracer.state.clone();
+        let (length, next, rate) = ACROSS.iter().map(|share| share * self.first).find_map(|length| {
+            let control = piece.control(length);
+            let guess = moved(facing, &piece.tangent, length);
+            let (next, _) = solve_step(&mut tracer.system, &here, guess, &control).ok()?;
+            // Blocks have another answer, in which all of them unload.
+            if facing.yields() && !next.yields() {
+                return None;
+            }
+            let rate = tangent_at(&mut tracer.system, &next, &control)?;
+            step_energy(tracer, &next).holds.then_some((length, next, rate))
+        })?;
+        let was = self.rises;
+        self.piece = Piece::new(&tracer.system, &next, &rate)?;
+        self.length = length;
+        self.rises = self.goes_up(tracer, &self.piece.tangent.clone());
+        if was != self.rises
+            && let Some(ending) = self.at_turn(tracer, was)
+        {
+            return Some(Some(ending));
+        }
+        Some((!commit(tracer, next)).then_some(LoadStepEnding::Ended))
+    }
+
+    /// Counts a piece of next to no length; returns true if there are too many of them.
+    fn crowded(&mut self) -> bool {
+        self.cluster.pieces += 1;
+        self.cluster.pieces > MOST_SHORT_PIECES
     }
 
     /// Takes a state of the piece over. `None` if the step is to be repeated or the path ends.
@@ -225,6 +337,7 @@ impl<'d> Run<'d> {
         let Some(piece) = self.piece.turned(&tracer.system, &end.rate) else {
             return Err(self.shorten(tracer, 0.3 * end.length));
         };
+        self.standing.flows = stood_still(tracer, &end.state);
         if !commit(tracer, end.state) {
             return Err(Some(LoadStepEnding::Ended));
         }
@@ -249,21 +362,31 @@ impl<'d> Run<'d> {
     /// The end at a mechanism under a constant load, if there is one at the present state. If the stage asks for a
     /// displacement beyond its limit point, the path goes on.
     fn plateau(&mut self, tracer: &mut Tracer) -> Option<LoadStepEnding> {
-        if self.on_plateau || !stands_still(tracer, &self.piece) {
+        if self.standing.on_plateau || !(self.standing.flows || stands_still(tracer, &self.piece)) {
             return None;
         }
-        let found = plateau(tracer, &self.piece.clone(), self.direction)?;
-        if found.unproved.is_none() && tracer.settings.stop(self.load_step.stage)[0].is_some() {
+        let found = plateau(tracer, &self.piece.clone(), self.direction, self.standing.flows)?;
+        let goes_on = tracer.settings.stop(self.load_step.stage)[0].is_some() && !self.standing.flows;
+        if found.unproved.is_none() && goes_on {
             note_peak(tracer, Some(&self.piece.tangent), self.direction);
-            self.on_plateau = true;
+            self.standing.on_plateau = true;
             return None;
         }
         Some(self.end_at_plateau(tracer, found))
     }
 
-    /// What is looked at behind each step.
+    /// The end of the range or of the path behind a step.
     fn after(&mut self, tracer: &mut Tracer) -> Option<LoadStepEnding> {
-        end_of_range(tracer, self.load_step, self.direction, self.from)
+        if self.target.is_infinite()
+            && let Some(ending) = ray(tracer, &self.piece, self.direction)
+        {
+            return Some(ending);
+        }
+        let ending = end_of_range(tracer, self.load_step, self.direction, self.from);
+        if ending.is_some() {
+            tracer.ending.motion = scaled_motion(tracer, &tracer.state, &self.piece.tangent);
+        }
+        ending
     }
 
     /// The state at the target.
@@ -283,15 +406,19 @@ impl<'d> Run<'d> {
     fn turn(&mut self, tracer: &mut Tracer, end: StepEnd) -> Option<LoadStepEnding> {
         let was = self.rises;
         let length = end.length;
+        // Other rates may be singular where the load turns, as the tilt of a block that softens: the chord tells how the path moves.
+        let chord = (length > FAR * self.first).then(|| chord(&tracer.state, &end.state));
         if let Err(ending) = self.take(tracer, end) {
             return ending;
         }
         self.length = self.length.max(length);
+        if let Some(piece) = chord.and_then(|chord| self.piece.turned(&tracer.system, &chord)) {
+            self.piece = piece;
+        }
         // Beyond the turn the rate goes in the other sense; at it the rate is rounding.
         self.rises = !was;
-        let slope = STILL.max(self.piece.tangent.factor.abs() / tracer.system.units().factor);
-        self.piece.tangent.factor =
-            if self.rises { slope } else { -slope } * self.direction * tracer.system.units().factor;
+        let slope = STILL * tracer.system.units().factor;
+        self.piece.tangent.factor = if self.rises { slope } else { -slope } * self.direction;
         self.at_turn(tracer, was)
     }
 
@@ -335,7 +462,11 @@ impl<'d> Run<'d> {
             let why = format!("the path has a limit point at factor {factor}, before the factor {target} of its stage");
             return Some(end_path(tracer, Status::LimitPoint, why));
         }
-        if !tracer.strategy.passes_limit_points() || tracer.settings.ends_at_first_limit_point(self.load_step.stage) {
+        if !tracer.strategy.passes_limit_points() {
+            let why = "behind this limit point the load does not grow, and load control goes no further";
+            return Some(end_path(tracer, Status::LimitPoint, why.into()));
+        }
+        if tracer.settings.ends_at_first_limit_point(self.load_step.stage) {
             return Some(end_path(tracer, Status::LimitPoint, String::new()));
         }
         self.after(tracer)
@@ -441,47 +572,70 @@ impl<'d> Run<'d> {
             return ending;
         }
         self.length = self.length.max(0.1 * length);
+        let ahead = length_ahead(&tracer.system, &tracer.state);
+        if let Some(ending) = self.to_corner(tracer, ahead) {
+            return ending;
+        }
         if let Some(lost) = hits.iter().find(|hit| matches!(hit.what, What::Face { .. })) {
             return Some(self.lose_joint(tracer, lost.contact));
         }
         if moved {
-            self.cluster = Cluster { pieces: self.cluster.pieces, ..Cluster::default() };
-        } else {
-            self.cluster.pieces += 1;
-        }
-        if self.cluster.pieces > MOST_SHORT_PIECES {
+            self.cluster = Cluster::default();
+        } else if self.crowded() {
             let why = format!("at factor {} events follow each other without end", tracer.state.factor);
             return Some(end_path(tracer, Status::Stalled, why));
         }
         let hits = self.all_hits(tracer, hits);
+        let points: Vec<Monitor> = hits.iter().filter(|hit| !matches!(hit.what, What::Branch(_))).copied().collect();
         let here = tracer.state.clone();
-        let length = AHEAD * self.first;
-        let state = facing_ahead(&mut tracer.system, &here, &self.piece.tangent, length).unwrap_or(here);
-        let was = self.rises;
-        let found = after_event(&mut tracer.system, &state, &self.piece, &hits, (self.direction, was));
-        let (piece, modes, open) = match found {
-            NextPiece::Piece { piece, modes, twins, open } => {
+        let state = facing_ahead(&mut tracer.system, &here, &self.piece.tangent).unwrap_or(here);
+        if points.is_empty() {
+            let rate = self.piece.tangent.clone();
+            let modes = state.mode.clone();
+            return self.go_on(tracer, LoadingRate { state, rate }, modes, None);
+        }
+        match after_event(&mut tracer.system, &state, &self.piece, &points, (self.direction, self.rises)) {
+            NextPiece::Goes { rate, modes, twins, open } => {
                 self.note_twins(tracer, twins);
-                (piece, modes, open)
+                self.go_on(tracer, LoadingRate { state, rate }, modes, open)
             }
-            NextPiece::Nothing { why, none_rises, proved } => {
-                return Some(self.end_at_event(tracer, &why, none_rises, proved));
-            }
+            NextPiece::Nothing { why, none_rises, proved } => Some(self.end_at_event(tracer, &why, none_rises, proved)),
+        }
+    }
+
+    /// Goes on along a rate from the present state, with blocks and bonds that yield as the rate asks for.
+    fn go_on(
+        &mut self,
+        tracer: &mut Tracer,
+        found: LoadingRate,
+        modes: Vec<ContactMode>,
+        open: Option<String>,
+    ) -> Option<LoadStepEnding> {
+        let was = self.rises;
+        let LoadingRate { mut state, rate } = found;
+        state.mode = modes;
+        let Some(mut piece) = Piece::new(&tracer.system, &state, &rate) else {
+            return Some(self.end_at_event(tracer, "the rate that leads on does not move", false, false));
         };
-        self.enter(tracer, piece, modes);
+        if !tracer.system.laws.responses.is_empty() {
+            let here = State { mode: state.mode.clone(), ..tracer.state.clone() };
+            if let Some(found) = loading_rate(&mut tracer.system, &here, &piece) {
+                state = found.state;
+                piece = Piece::new(&tracer.system, &state, &found.rate)?;
+            }
+        }
+        self.enter(tracer, piece, &state);
         self.rises = self.goes_up(tracer, &self.piece.tangent.clone());
         if let Some(ending) = self.plateau(tracer) {
             return Some(ending);
         }
-        match was == self.rises {
-            true => self.after(tracer),
-            false => {
-                if was {
-                    tracer.limit.unproven = open.or(tracer.limit.unproven.take());
-                }
-                self.at_turn(tracer, was)
-            }
+        if was == self.rises {
+            return self.after(tracer);
         }
+        if was {
+            tracer.limit.unproven = open.or(tracer.limit.unproven.take());
+        }
+        self.at_turn(tracer, was)
     }
 
     /// The monitors that end at the present state. After a piece of no length a point was missing from the event: the path is
@@ -541,12 +695,14 @@ impl<'d> Run<'d> {
         end_path(tracer, if proved { Status::LimitPoint } else { Status::Stalled }, why)
     }
 
-    /// Takes the modes of the next piece over.
-    fn enter(&mut self, tracer: &mut Tracer, piece: Piece, modes: Vec<ContactMode>) {
+    /// Takes the modes of the next piece over, and the tangents of its bonds.
+    fn enter(&mut self, tracer: &mut Tracer, piece: Piece, next: &State) {
         let before = tracer.state.clone();
-        let after = State { mode: modes, ..before.clone() };
-        tracer.record.events.extend(events(&tracer.system, tracer.load_step, &before, &after));
-        tracer.state = after;
+        tracer.state.mode.clone_from(&next.mode);
+        for (own, next) in tracer.state.updates.points.iter_mut().zip(&next.updates.points) {
+            (own.tangent, own.branch) = (next.tangent, next.branch);
+        }
+        tracer.record.events.extend(events(&tracer.system, tracer.load_step, &before, &tracer.state));
         self.piece = piece;
     }
 
@@ -573,7 +729,7 @@ impl<'d> Run<'d> {
                 "the load stands still, which is not proved to be its greatest".into(),
             );
         }
-        if !commit(tracer, found.moved) {
+        if !found.moved.into_iter().all(|state| commit(tracer, state)) {
             return LoadStepEnding::Ended;
         }
         end_path(tracer, Status::Collapse, "the structure moves on under a constant load".into())

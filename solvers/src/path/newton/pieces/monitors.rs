@@ -6,14 +6,18 @@
 //! corner    γ̇ ≥ 0, or γ ≥ 0, of both facets
 //! open      opening above the dilated surface ≥ 0
 //! ```
+//!
+//! A point with a law of tractions stays in the branch that the law names. The monitor is the length along the rate up to which
+//! it does, by the law itself: where a bond begins to soften no other function is known of it.
 
+use super::super::ahead::length_ahead;
 use super::super::measure::fastest;
 use super::super::state::{State, Tangent};
 use super::super::system::StepSystem;
 use super::super::tangent::{ALLOWED, gap_rounding};
 use crate::contact::facet::{dot, norm, slack};
 use crate::contact::mode::ContactMode;
-use voussoir_core::law::FacetMode;
+use voussoir_core::law::{FacetMode, UpdateBranch};
 
 /// Value of a force monitor, relative to the greatest force, up to which it counts as zero.
 const FORCE: f64 = 1e-10;
@@ -26,6 +30,15 @@ const ROUNDING: f64 = 1e-13;
 /// Value, relative to the tolerance, up to which a monitor takes part in an event.
 const ACTIVE: f64 = 100.0;
 
+/// Length, relative to that at which tangents are taken, to which the end of a branch is known.
+const BRANCH: f64 = 1e-3;
+/// Doublings of a length at which the branch of a law is looked for.
+const DOUBLINGS: usize = 40;
+/// Precision of that length, relative to it: a step ends short of the end of a branch, and the next one reads it again.
+const PRECISE: f64 = 1e-3;
+/// Bisections between two of them.
+const BISECTIONS: usize = 50;
+
 /// What a monitor reads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum What {
@@ -37,6 +50,8 @@ pub(super) enum What {
     Face { forward: bool },
     /// Rate of a multiplier, by its number among the unknowns of the mode \[m\].
     Flow(u8),
+    /// Length along the rate up to which a law of tractions stays in this branch.
+    Branch(UpdateBranch),
 }
 
 /// A monitor of a contact point.
@@ -56,9 +71,15 @@ pub(super) struct Reading {
     pub tolerance: f64,
     /// Rate up to which it counts as zero.
     pub rate_tolerance: f64,
+    /// Set for the length up to which a law of tractions stays in its branch.
+    pub of_branch: bool,
 }
 
 impl Reading {
+    /// Of something that does not end.
+    pub const NEVER: Reading =
+        Reading { value: 1.0, rate: None, tolerance: 0.0, rate_tolerance: 0.0, of_branch: false };
+
     /// Returns true if the mode has ended.
     pub fn is_violated(&self) -> bool {
         self.value < -self.tolerance
@@ -92,12 +113,15 @@ struct Sizes {
 }
 
 impl Monitors {
-    /// Of the modes of all contact points.
-    pub fn of(system: &StepSystem, modes: &[ContactMode]) -> Monitors {
+    /// Of the modes of all contact points, and of the branches of laws of tractions.
+    pub fn of(system: &StepSystem, state: &State) -> Monitors {
         let mut all = Vec::new();
-        for (contact, mode) in modes.iter().enumerate() {
-            let Some(law) = system.law(contact) else { continue };
+        for (contact, mode) in state.mode.iter().enumerate() {
             let mut add = |what| all.push(Monitor { contact, what });
+            if system.laws.responses.is(contact) {
+                add(What::Branch(state.updates.points[contact].branch));
+            }
+            let Some(law) = system.law(contact) else { continue };
             let opens = |f: u8| law.facets[f as usize].mode == FacetMode::Opening;
             let own = |f: u8, k: u8| if opens(f) { What::Opening } else { What::Flow(k) };
             let facets = 0..law.facets.len() as u8;
@@ -128,29 +152,79 @@ impl Monitors {
         Monitors(all)
     }
 
-    /// What all of them read at a state along a tangent.
-    pub fn read(&self, system: &StepSystem, state: &State, tangent: &Tangent) -> Vec<Reading> {
+    /// What all of them read at a state along a tangent, in a step from `start`.
+    pub fn read(&self, system: &StepSystem, start: &State, state: &State, tangent: &Tangent) -> Vec<Reading> {
         let greatest = |v: &[[f64; 2]]| v.iter().flatten().fold(0.0, |a: f64, x| a.max(x.abs()));
         let u = system.units();
         let force = greatest(&state.force).max(1e-12 * u.force);
         let rigidity = (0..state.gap.len()).map(|c| system.stiffness(c)).fold(0.0, |a: f64, k| a.max(k[0].max(k[1])));
         let rounding = gap_rounding(system, state);
+        // Newton's method on blocks that yield gives positions to this share of the displacements.
+        let of_blocks = if state.blocks.is_empty() { 0.0 } else { FORCE * fastest(system, &state.motion) };
         // A structure that moves as a whole has gaps and forces whose rates are the rounding of its motion.
         let gap_rate = greatest(&tangent.gap);
         let gap_rounding = ROUNDING * fastest(system, &tangent.motion);
         let sizes = Sizes {
             force: (rounding * rigidity).clamp(FORCE * force, ALLOWED * force),
-            gap: rounding.max(FORCE * force / rigidity.max(1e-300)),
+            gap: rounding.max(FORCE * force / rigidity.max(1e-300)).max(of_blocks),
             force_rate: (RATE * greatest(&tangent.force).max(1e-6 * gap_rate * u.force / u.displacement))
                 .max(gap_rounding * rigidity),
             gap_rate: (RATE * gap_rate).max(gap_rounding),
         };
-        self.0.iter().map(|monitor| monitor.read(system, state, tangent, &sizes)).collect()
+        self.0.iter().map(|monitor| monitor.read(system, (start, state), tangent, &sizes)).collect()
     }
 }
 
 impl Monitor {
-    fn read(&self, system: &StepSystem, state: &State, tangent: &Tangent, sizes: &Sizes) -> Reading {
+    /// The length along a rate up to which the law of a point stays in a branch; negative if it has left it.
+    fn read_branch(
+        &self,
+        system: &StepSystem,
+        (start, state): (&State, &State),
+        rate: [f64; 2],
+        branch: UpdateBranch,
+        sizes: &Sizes,
+    ) -> Reading {
+        let (gap, speed) = (state.gap[self.contact], rate[0].hypot(rate[1]));
+        if speed <= sizes.gap_rate {
+            return Reading::NEVER;
+        }
+        let ahead = length_ahead(system, start);
+        // The branch that a law names in a shorter step is rounding of its history and of the state.
+        let tolerance = (sizes.gap.max(FORCE * gap[0].hypot(gap[1])) / speed).max(BRANCH * ahead);
+        let is_in = |length: f64| {
+            let there = [0, 1].map(|k| gap[k] + length * rate[k]);
+            let said = system.laws.responses.at(self.contact, there, &start.updates.memory);
+            said.is_none_or(|point| point.branch == branch)
+        };
+        // Nearer than the place where tangents are taken the branch may be rounding, or a point may not have entered it yet.
+        let mut far = ahead.max(tolerance);
+        let at_start = std::ptr::eq(start, state);
+        let inside = at_start || state.updates.points[self.contact].branch == branch || is_in(far);
+        let sense = if inside { 1.0 } else { -1.0 };
+        let mut near = 0.0;
+        for _ in 0..DOUBLINGS {
+            if is_in(sense * far) != inside {
+                break;
+            }
+            (near, far) = (far, 2.0 * far);
+        }
+        for _ in 0..BISECTIONS {
+            let middle = 0.5 * (near + far);
+            if is_in(sense * middle) == inside {
+                near = middle
+            } else {
+                far = middle
+            }
+            if far - near <= (1e-3 * tolerance).max(PRECISE * near) {
+                break;
+            }
+        }
+        let value = sense * near;
+        Reading { value, rate: Some(-1.0), tolerance, rate_tolerance: 0.0, of_branch: true }
+    }
+
+    fn read(&self, system: &StepSystem, (start, state): (&State, &State), tangent: &Tangent, sizes: &Sizes) -> Reading {
         let (c, mode) = (self.contact, state.mode[self.contact]);
         let facets = system.law(c).map_or(&[][..], |law| &law.facets);
         let rate = tangent.gap[c];
@@ -163,6 +237,7 @@ impl Monitor {
                     rate: Some(-dot(facet.normal, tangent.force[c]) / unit),
                     tolerance: sizes.force,
                     rate_tolerance: sizes.force_rate,
+                    of_branch: false,
                 }
             }
             What::Opening => {
@@ -174,20 +249,29 @@ impl Monitor {
                     rate: Some(dot(by, rate)),
                     tolerance: sizes.gap,
                     rate_tolerance: sizes.gap_rate,
+                    of_branch: false,
                 }
             }
             What::Face { forward } => {
                 let [low, high] = system.problem.contacts[c].sliding.slip;
                 let slip = state.gap[c][1];
                 let (value, rate) = if forward { (high - slip, -rate[1]) } else { (slip - low, rate[1]) };
-                Reading { value, rate: Some(rate), tolerance: sizes.gap, rate_tolerance: sizes.gap_rate }
+                Reading {
+                    value,
+                    rate: Some(rate),
+                    tolerance: sizes.gap,
+                    rate_tolerance: sizes.gap_rate,
+                    of_branch: false,
+                }
             }
             What::Flow(k) => Reading {
                 value: mode.unknowns(facets, rate)[k as usize],
                 rate: None,
                 tolerance: sizes.gap_rate,
                 rate_tolerance: sizes.gap_rate,
+                of_branch: false,
             },
+            What::Branch(branch) => self.read_branch(system, (start, state), rate, branch, sizes),
         }
     }
 }

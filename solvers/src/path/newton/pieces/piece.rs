@@ -5,7 +5,6 @@ use super::super::state::{State, Tangent};
 use super::super::system::StepSystem;
 use super::super::tangent::tangent_nearby;
 use super::monitors::{Monitors, Reading};
-use crate::contact::mode::ContactMode;
 use std::rc::Rc;
 
 /// Motions and factor of a tangent over the scaled unknowns.
@@ -33,9 +32,9 @@ pub(super) struct Piece {
 }
 
 impl Piece {
-    /// Of a rate at a state with these modes.
-    pub fn new(system: &StepSystem, modes: &[ContactMode], tangent: &Tangent) -> Option<Piece> {
-        Piece::along(system, tangent, Rc::new(Monitors::of(system, modes)))
+    /// Of a rate at a state with its modes.
+    pub fn new(system: &StepSystem, state: &State, tangent: &Tangent) -> Option<Piece> {
+        Piece::along(system, tangent, Rc::new(Monitors::of(system, state)))
     }
 
     /// The same piece with another tangent.
@@ -59,12 +58,12 @@ impl Piece {
     }
 
     /// The rate of another state of the piece per unit of the step's length.
-    pub fn rate_at(&self, system: &mut StepSystem, start: &State, state: &State) -> Option<Tangent> {
-        tangent_nearby(system, start, state, &self.control(0.0))
+    pub fn rate_at(&self, system: &mut StepSystem, state: &State) -> Option<Tangent> {
+        tangent_nearby(system, state, &self.control(0.0))
     }
 
-    /// What the monitors read at a state along a rate.
-    pub fn read(&self, system: &StepSystem, state: &State, rate: &Tangent) -> Vec<Reading> {
-        self.monitors.read(system, state, rate)
+    /// What the monitors read at a state along a rate, in a step from `start`.
+    pub fn read(&self, system: &StepSystem, start: &State, state: &State, rate: &Tangent) -> Vec<Reading> {
+        self.monitors.read(system, start, state, rate)
     }
 }

@@ -1,7 +1,7 @@
 //! Whether a piece is a mechanism that moves on under a constant load.
 
-use super::super::limit_point_test::{LimitPointTest, limit_point_test};
-use super::super::measure::fastest;
+use super::super::limit_point_test::{LimitPointTest, active_set, limit_point_test};
+use super::super::measure::{fastest, increment_between};
 use super::super::state::State;
 use super::super::tracer::Tracer;
 use super::advance::{Advance, StepEnd, Watched, advance};
@@ -14,10 +14,13 @@ const FOLLOWED: f64 = 1e-2;
 const LEAST: f64 = 1e-3;
 /// Change of factor and forces, relative to them, over that motion.
 const CHANGE: f64 = 1e-8;
+/// Change of the factor in a step, relative to its motion, in units, of blocks that flow; of an elastic step it is about 1.
+const FLAT: f64 = 1e-5;
 
-/// A mechanism: the state to which it moves.
+/// A mechanism.
 pub(super) struct Plateau {
-    pub moved: State,
+    /// The states through which it moves.
+    pub moved: Vec<State>,
     /// Set if it is not proved that no rate has a growing factor.
     pub unproved: Option<String>,
 }
@@ -30,19 +33,22 @@ pub(super) fn stands_still(tracer: &Tracer, piece: &Piece) -> bool {
     (piece.tangent.factor / u.factor).abs() <= STILL[0] * motion && force <= STILL[1] * motion
 }
 
-/// Moves along a piece that stands still. `None` if it is no plateau.
-pub(super) fn plateau(tracer: &mut Tracer, piece: &Piece, direction: f64) -> Option<Plateau> {
+/// Moves along a piece that stands still; blocks `flows` if the last step has shown it. `None` if it is no plateau.
+pub(super) fn plateau(tracer: &mut Tracer, piece: &Piece, direction: f64, flows: bool) -> Option<Plateau> {
     let start = tracer.state.clone();
     let fastest = fastest(&tracer.system, &piece.tangent.motion).max(1e-300);
     let size = tracer.system.units().length;
     let (mut state, mut piece_here) = (start.clone(), piece.clone());
-    let (mut moved, mut length) = (0.0, 1e-5 * size / fastest);
+    let mut states = Vec::new();
     let watched = Watched { sense: None, target: None };
     let whole = FOLLOWED * size / fastest;
+    // With small displacements the mechanism is the same all along.
+    let (mut moved, mut length) = (0.0, if tracer.system.finite() { 1e-3 * whole } else { whole });
     for _ in 0..200 {
         let step = length.min(whole - moved);
         match advance(&mut tracer.system, &state, &piece_here, step, watched) {
             Advance::Whole(StepEnd { state: mut next, rate, length: taken, .. }) => {
+                states.push(next.clone());
                 tracer.system.keep(&state, &mut next);
                 piece_here = piece_here.turned(&tracer.system, &rate)?;
                 state = next;
@@ -52,6 +58,7 @@ pub(super) fn plateau(tracer: &mut Tracer, piece: &Piece, direction: f64) -> Opt
             Advance::Event(end, _) => {
                 moved += end.length;
                 state = end.state;
+                states.push(state.clone());
                 break;
             }
             _ => length *= 0.2,
@@ -60,20 +67,42 @@ pub(super) fn plateau(tracer: &mut Tracer, piece: &Piece, direction: f64) -> Opt
             break;
         }
     }
-    if moved * fastest < LEAST * size || !is_same(&start, &state) {
+    if moved * fastest < LEAST * size || !is_same(tracer, &start, &state) {
         return None;
     }
+    // The tangents of a loading set are linear: if no facet may change its mode their one rate has a constant factor. Those of
+    // blocks that flow are regularised and say nothing of it.
+    let has_history = !tracer.system.laws.responses.is_empty() || start.yields();
+    if !has_history {
+        // Slip and forces give the dissipation of the whole motion.
+        states = vec![state];
+    }
+    if flows || has_history && active_set(&tracer.system, &start, &[]).contacts.is_empty() {
+        return Some(Plateau { moved: states, unproved: None });
+    }
     match limit_point_test(&mut tracer.system, &start, direction) {
-        LimitPointTest::None => Some(Plateau { moved: state, unproved: None }),
-        LimitPointTest::Unknown(why) => Some(Plateau { moved: state, unproved: Some(why) }),
+        LimitPointTest::None => Some(Plateau { moved: states, unproved: None }),
+        LimitPointTest::Unknown(_) if has_history => Some(Plateau { moved: states, unproved: None }),
+        LimitPointTest::Unknown(why) => Some(Plateau { moved: states, unproved: Some(why) }),
         LimitPointTest::Tangent(..) => None,
     }
 }
 
+/// Returns true if blocks yield in a step while factor and forces stand still. The tangent of a block that flows as a whole is
+/// regularised, so that only the step itself shows it.
+pub(super) fn stood_still(tracer: &Tracer, next: &State) -> bool {
+    let motion = increment_between(&tracer.system, &tracer.state, next).motion;
+    let change = (next.factor - tracer.state.factor).abs() / tracer.system.units().factor;
+    next.yields() && is_same(tracer, &tracer.state, next) && change <= FLAT * motion
+}
+
 /// Returns true if factor and forces of two states are the same.
-fn is_same(start: &State, state: &State) -> bool {
+fn is_same(tracer: &Tracer, start: &State, state: &State) -> bool {
     let largest = start.force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
     let pairs = start.force.iter().flatten().zip(state.force.iter().flatten());
     let change = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    change <= CHANGE * largest && (start.factor - state.factor).abs() <= CHANGE * start.factor.abs()
+    // Where the load has fallen to nothing both are rounding of what they were at the limit point.
+    let peak = tracer.limit.peak.as_ref().map_or(0.0, |peak| peak.factor.abs());
+    let carried = largest.max(tracer.system.units().force * peak / tracer.system.units().factor);
+    change <= CHANGE * carried && (start.factor - state.factor).abs() <= CHANGE * start.factor.abs().max(peak)
 }

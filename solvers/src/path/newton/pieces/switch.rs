@@ -17,9 +17,9 @@ pub(super) type Start = (Tangent, Vec<ContactMode>);
 
 /// What follows an event.
 pub(super) enum NextPiece {
-    /// A piece with its modes.
-    Piece {
-        piece: Piece,
+    /// A rate with its modes.
+    Goes {
+        rate: Tangent,
         modes: Vec<ContactMode>,
         /// Number of other rates that the rule does not tell from it.
         twins: usize,
@@ -106,8 +106,8 @@ fn entering_rate(
 /// Returns true if a rate with its modes leaves none of them at once.
 pub(super) fn is_admissible(system: &StepSystem, state: &State, modes: &[ContactMode], rate: &Tangent) -> bool {
     let turned = State { mode: modes.to_vec(), ..state.clone() };
-    let monitors = Monitors::of(system, modes);
-    !monitors.read(system, &turned, rate).iter().any(|reading| reading.leaves())
+    let monitors = Monitors::of(system, &turned);
+    !monitors.read(system, &turned, &turned, rate).iter().any(|reading| reading.leaves())
 }
 
 /// The rates with which the one point of an event enters a new mode, all others as they are.
@@ -172,14 +172,14 @@ pub(super) fn after_event(
     let mut crossing = if single { crossings(system, state, piece, hits) } else { Vec::new() };
     let goes_up = |start: &Start| start.0.factor * direction > 0.0;
     if crossing.len() == 1 && (!rises || goes_up(&crossing[0])) {
-        return leading(system, crossing.remove(0), 0, None);
+        return leading(crossing.remove(0), 0, None);
     }
     system.count("rate_problems", 1);
     let sense = if rises { 1.0 } else { -1.0 };
     match rate_after_event(system, state, &event_points(hits), (direction, sense)) {
         AfterEvent::Goes { rate, modes, twins, none_rises } => {
             let open = (!none_rises).then(|| "it is not decided whether a rate has a growing factor".to_string());
-            leading(system, (rate, modes), twins, open)
+            leading((rate, modes), twins, open)
         }
         AfterEvent::Nothing => NextPiece::Nothing {
             why: "no rate of equilibrium leads on from the event".into(),
@@ -187,17 +187,12 @@ pub(super) fn after_event(
             proved: true,
         },
         AfterEvent::Unknown(why, none_rises) => match crossing.pop() {
-            Some(start) if crossing.is_empty() => leading(system, start, 0, (!none_rises).then_some(why)),
+            Some(start) if crossing.is_empty() => leading(start, 0, (!none_rises).then_some(why)),
             _ => NextPiece::Nothing { why: format!("the rate is not decided: {why}"), none_rises, proved: false },
         },
     }
 }
 
-fn leading(system: &StepSystem, (rate, modes): Start, twins: usize, open: Option<String>) -> NextPiece {
-    match Piece::new(system, &modes, &rate) {
-        Some(piece) => NextPiece::Piece { piece, modes, twins, open },
-        None => {
-            NextPiece::Nothing { why: "the rate that leads on does not move".into(), none_rises: false, proved: false }
-        }
-    }
+fn leading((rate, modes): Start, twins: usize, open: Option<String>) -> NextPiece {
+    NextPiece::Goes { rate, modes, twins, open }
 }

@@ -1,8 +1,7 @@
-//! Pure functions of newton_path: loads in force, monitors, local controls, angles between motions.
+//! Pure functions of newton_path: loads in force, monitors, speeds.
 
-use crate::path::newton::control::LocalControl;
 use crate::path::newton::loads::StagedLoads;
-use crate::path::newton::measure::{cosine, fastest};
+use crate::path::newton::measure::fastest;
 use crate::path::newton::monitors::resolve;
 use crate::path::newton::system::StepSystem;
 use crate::path::two_blocks::{assert_close, block, block_on, coulomb, live, pushed_at, settlement};
@@ -68,32 +67,6 @@ fn five_monitors_are_too_many() {
     let opening = Monitor::Opening { joint: 0, at: None };
     assert!(resolve(&problem, &[opening; 4]).is_ok());
     assert!(resolve(&problem, &[opening; 5]).is_err());
-}
-
-/// A local control along a direction d reads s if its points have moved by s d.
-#[test]
-fn a_local_control_measures_along_its_direction() {
-    let problem = block(0.3, pushed_at(0.1));
-    let system = StepSystem::new(&problem, false).expect("a system");
-    let start = system.undeformed();
-    let direction = [[0.3, -0.4], [5.0, 5.0]];
-    let local = LocalControl::along(&[0], &direction).expect("a direction");
-    let mut moved = start.clone();
-    moved.gap[0] = [start.gap[0][0] + 0.7 * 0.3, start.gap[0][1] - 0.7 * 0.4];
-    moved.gap[1] = [9.0, 9.0];
-    assert_close(local.value(&start, &moved), 0.7, 1e-15);
-    assert!(LocalControl::along(&[0], &[[0.0; 2]; 2]).is_none());
-}
-
-/// The cosine between two motions is 1 for a multiple, −1 for the opposite, 0 for orthogonal ones and for rest.
-#[test]
-fn the_cosine_between_motions() {
-    let one = [[1.0, 2.0, -2.0]];
-    let times = |s: f64| [one[0].map(|q| s * q)];
-    assert_close(cosine(&one, &times(3.0)), 1.0, 1e-15);
-    assert_close(cosine(&one, &times(-0.1)), -1.0, 1e-15);
-    assert_eq!(cosine(&one, &[[2.0, 0.0, 1.0]]), 0.0);
-    assert_eq!(cosine(&one, &[[0.0; 3]]), 0.0);
 }
 
 /// The fastest body has the greatest |(u_x, u_y)| or |θ| L.

@@ -27,6 +27,6 @@ fn second_step(problem: &PathProblem) -> (StepSystem<'_>, State) {
 
 /// The piece of a state on which its modes hold and the factor grows.
 fn piece_at(system: &mut StepSystem, state: &State) -> Piece {
-    let rate = tangent_at(system, state, state, &Control::Factor(1.0)).expect("a rate");
-    Piece::new(system, &state.mode, &rate).expect("a piece")
+    let rate = tangent_at(system, state, &Control::Factor(1.0)).expect("a rate");
+    Piece::new(system, state, &rate).expect("a piece")
 }

@@ -1,5 +1,6 @@
 //! Monitors of a block of 1 N on two points with friction μ that is pushed at height h.
 
+use super::super::super::state::State;
 use super::super::monitors::{Monitors, Reading, What};
 use super::{piece_at, second_step};
 use crate::contact::mode::ContactMode;
@@ -9,7 +10,7 @@ const FRICTION: f64 = 0.3;
 const HEIGHT: f64 = 0.4;
 
 fn reading(value: f64, rate: Option<f64>) -> Reading {
-    Reading { value, rate, tolerance: 1e-3, rate_tolerance: 1e-2 }
+    Reading { value, rate, tolerance: 1e-3, rate_tolerance: 1e-2, of_branch: false }
 }
 
 /// A mode has ended if its monitor is below zero by more than the tolerance.
@@ -39,9 +40,9 @@ fn a_rate_leaves_a_mode_that_is_at_its_end() {
 #[test]
 fn each_mode_has_its_monitors() {
     let problem = block(FRICTION, pushed_at(HEIGHT));
-    let (system, _) = second_step(&problem);
+    let (system, state) = second_step(&problem);
     let of = |mode| -> Vec<What> {
-        let all = Monitors::of(&system, &[mode, ContactMode::Open]).0;
+        let all = Monitors::of(&system, &State { mode: vec![mode, ContactMode::Open], ..state.clone() }).0;
         all.iter().filter(|monitor| monitor.contact == 0).map(|monitor| monitor.what).collect()
     };
     assert_eq!(of(ContactMode::Stick), [What::Slack(0), What::Slack(1), What::Slack(2)]);
@@ -55,9 +56,9 @@ fn each_mode_has_its_monitors() {
 fn a_sliding_point_watches_the_ends_of_its_face() {
     let mut problem = block(FRICTION, pushed_at(HEIGHT));
     problem.contacts[0].sliding.slip = [-0.1, f64::INFINITY];
-    let (system, _) = second_step(&problem);
+    let (system, state) = second_step(&problem);
     let faces = |mode| {
-        let all = Monitors::of(&system, &[mode, mode]).0;
+        let all = Monitors::of(&system, &State { mode: vec![mode; 2], ..state.clone() }).0;
         all.iter().filter(|monitor| matches!(monitor.what, What::Face { .. })).map(|m| m.contact).collect::<Vec<_>>()
     };
     assert_eq!(faces(ContactMode::Facet(1)), [0]);
@@ -70,7 +71,7 @@ fn slacks_under_weight() {
     let problem = block(FRICTION, pushed_at(HEIGHT));
     let (mut system, state) = second_step(&problem);
     let piece = piece_at(&mut system, &state);
-    let read = piece.read(&system, &state, &piece.tangent);
+    let read = piece.read(&system, &state, &state, &piece.tangent);
     let unit = 1f64.hypot(FRICTION);
     for (monitor, reading) in piece.monitors.0.iter().zip(&read) {
         let right = if monitor.what == What::Slack(0) { 0.5 } else { FRICTION * 0.5 / unit };
@@ -85,7 +86,7 @@ fn rates_of_slacks_under_the_push() {
     let problem = block(FRICTION, pushed_at(HEIGHT));
     let (mut system, state) = second_step(&problem);
     let piece = piece_at(&mut system, &state);
-    let read = piece.read(&system, &state, &piece.tangent);
+    let read = piece.read(&system, &state, &state, &piece.tangent);
     let per_factor = |what: What| {
         let at = piece.monitors.0.iter().position(|m| m.contact == 0 && m.what == what).expect("a monitor");
         read[at].rate.expect("a rate") / piece.tangent.factor

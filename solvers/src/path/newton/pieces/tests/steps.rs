@@ -79,7 +79,7 @@ fn a_state_beyond_an_event_violates_its_monitor() {
     let (mut system, state) = second_step(&problem);
     let piece = piece_at(&mut system, &state);
     let beyond = state_at(&mut system, &state, &piece, 0.28 / piece.tangent.factor).expect("a state");
-    let read = piece.read(&system, &beyond.state, &beyond.rate);
+    let read = piece.read(&system, &state, &beyond.state, &beyond.rate);
     let violated: Vec<_> =
         piece.monitors.0.iter().zip(&read).filter(|(_, r)| r.is_violated()).map(|(m, _)| (m.contact, m.what)).collect();
     assert_eq!(violated, [(0, What::Slack(1))]);
@@ -112,7 +112,8 @@ fn a_long_step_of_springs_ends_on_the_arc() {
 /// The first crossing is the least value/−rate of the monitors that fall and are not yet zero.
 #[test]
 fn the_first_crossing_is_the_nearest_zero() {
-    let reading = |value: f64, rate: Option<f64>| Reading { value, rate, tolerance: 1e-9, rate_tolerance: 0.0 };
+    let reading =
+        |value: f64, rate: Option<f64>| Reading { value, rate, tolerance: 1e-9, rate_tolerance: 0.0, of_branch: false };
     let rising = reading(0.1, Some(1.0));
     let zero = reading(0.0, Some(-1.0));
     let rate = reading(0.1, None);

@@ -1,0 +1,184 @@
+//! The rate of a state whose blocks and bonds yield on or unload as this very rate asks for.
+//!
+//! A point at its strength has one tangent if it yields on and another one if it unloads. The points that yield on are the loading
+//! set of a rate. A rate leads on if the tangents ahead of the state along it are those that it was computed with.
+
+use super::super::ahead::{facing_ahead, length_ahead};
+use super::super::inelastic::plastic_power;
+use super::super::nearby::Accuracy;
+use super::super::state::{State, Tangent};
+use super::super::system::StepSystem;
+use super::super::tangent::tangent_of_modes;
+use super::piece::{Piece, scaled_row};
+use crate::linear::inner;
+
+/// Loading sets that are tried one after the other.
+const MOST_SETS: usize = 30;
+/// Combinations of tangents that are tried if no set follows from another one.
+const MOST_COMBINATIONS: usize = 256;
+/// Difference from 1 of the cosine of two rates that are the same.
+const SAME: f64 = 1e-9;
+
+/// Rate of the factor of a rate of size 1, in units, that is rounding.
+const STILL: f64 = 1e-12;
+
+/// A rate with the state whose tangents it has.
+pub(super) struct LoadingRate {
+    pub state: State,
+    pub rate: Tangent,
+}
+
+/// A rate with motions and factor of size 1, and these over the scaled unknowns.
+struct Unit {
+    rate: Tangent,
+    row: Vec<f64>,
+}
+
+impl Unit {
+    fn of(system: &StepSystem, rate: &Tangent) -> Option<Unit> {
+        let mut row = scaled_row(system, rate);
+        let size = inner(&row, &row).sqrt();
+        row.iter_mut().for_each(|x| *x /= size);
+        (size.is_finite() && size > 0.0).then(|| Unit { rate: rate.scaled(1.0 / size), row })
+    }
+
+    fn turned(&self) -> Unit {
+        Unit { rate: self.rate.scaled(-1.0), row: self.row.iter().map(|x| -x).collect() }
+    }
+}
+
+/// The rate that leads on from a state in its modes, at which a piece arrives. Unloading, on which the factor turns and nothing dissipates, is no way on. `None` if no loading set is consistent.
+pub(super) fn loading_rate(system: &mut StepSystem, state: &State, arrival: &Piece) -> Option<LoadingRate> {
+    let arrives = Unit::of(system, &arrival.tangent)?;
+    if system.laws.responses.is_empty() {
+        return dissipating_rate(system, state, arrival, &arrives);
+    }
+    let mut along = arrives;
+    let mut seen: Vec<State> = Vec::new();
+    for _ in 0..MOST_SETS {
+        let facing = facing_ahead(system, state, &along.rate)?;
+        let found = rate_of(system, &facing, &arrival.row)?;
+        let found = with_load(system, state, found);
+        if seen.iter().any(|known| same_set(known, &facing)) {
+            break;
+        }
+        seen.push(facing.clone());
+        let turned = found.turned();
+        let mut power = [f64::NEG_INFINITY; 2];
+        for (power, rate) in power.iter_mut().zip([&found, &turned]) {
+            let Some(ahead) = facing_ahead(system, state, &rate.rate) else { continue };
+            *power = dissipation(system, state, &ahead, &rate.rate);
+            seen.push(ahead.clone());
+            let turns = rate.rate.factor * arrival.tangent.factor < 0.0;
+            let again = rate_of(system, &ahead, &arrival.row)?;
+            if inner(&again.row, &rate.row).abs() >= 1.0 - SAME && !(turns && *power <= 0.0) {
+                return Some(LoadingRate { state: ahead, rate: rate.rate.clone() });
+            }
+        }
+        let forwards = inner(&found.row, &arrival.row) >= 0.0;
+        let keeps = if power[0] == power[1] { forwards } else { power[0] > power[1] };
+        along = if keeps { found } else { turned };
+    }
+    combined(system, state, arrival, &seen)
+}
+
+/// A rate along which the factor stands still, in the sense in which the load does work; other rates as they are.
+fn with_load(system: &mut StepSystem, state: &State, found: Unit) -> Unit {
+    let stands = found.rate.factor.abs() <= STILL * system.units().factor;
+    match stands && inner(&found.row, &system.equations(state).factor) < 0.0 {
+        true => found.turned(),
+        false => found,
+    }
+}
+
+/// Returns true if all bonds have the same branches in two states.
+fn same_set(one: &State, other: &State) -> bool {
+    one.updates.points.iter().zip(&other.updates.points).all(|(a, b)| a.branch == b.branch)
+}
+
+/// The consistent rate that dissipates most among all combinations of the tangents that the bonds of each joint have in some
+/// states. `None` if there is none or if there are too many combinations.
+fn combined(system: &mut StepSystem, state: &State, arrival: &Piece, seen: &[State]) -> Option<LoadingRate> {
+    let first = seen.first()?;
+    let mut joints: Vec<Vec<usize>> = Vec::new();
+    for c in system.laws.responses.points() {
+        let joint = system.problem.contacts[c].joint;
+        match joints.iter_mut().find(|points| system.problem.contacts[points[0]].joint == joint) {
+            Some(points) => points.push(c),
+            None => joints.push(vec![c]),
+        }
+    }
+    let options = |points: Vec<usize>| {
+        let same = |a: usize, b: usize| {
+            points.iter().all(|c| seen[a].updates.points[*c].branch == seen[b].updates.points[*c].branch)
+        };
+        let mut own: Vec<usize> = Vec::new();
+        for index in 0..seen.len() {
+            if !own.iter().any(|known| same(*known, index)) {
+                own.push(index);
+            }
+        }
+        (points, own)
+    };
+    let active: Vec<(Vec<usize>, Vec<usize>)> =
+        joints.into_iter().map(options).filter(|(_, own)| own.len() > 1).collect();
+    let count = active.iter().fold(1usize, |n, (_, own)| n.saturating_mul(own.len()));
+    if count > MOST_COMBINATIONS {
+        return None;
+    }
+    let mut best: Option<(f64, LoadingRate)> = None;
+    for combination in 0..count {
+        let (mut facing, mut rest) = (first.clone(), combination);
+        for (points, own) in &active {
+            for c in points {
+                let from = &seen[own[rest % own.len()]].updates.points[*c];
+                let to = &mut facing.updates.points[*c];
+                (to.tangent, to.branch) = (from.tangent, from.branch);
+            }
+            rest /= own.len();
+        }
+        let Some(found) = rate_of(system, &facing, &arrival.row) else { continue };
+        for rate in [found.turned(), found] {
+            let Some(ahead) = facing_ahead(system, state, &rate.rate) else { continue };
+            let power = dissipation(system, state, &ahead, &rate.rate);
+            let unloads = rate.rate.factor * arrival.tangent.factor < 0.0 && power <= 0.0;
+            if same_set(&ahead, &facing) && !unloads && best.as_ref().is_none_or(|(most, _)| power > *most) {
+                best = Some((power, LoadingRate { state: ahead, rate: rate.rate.clone() }));
+            }
+        }
+    }
+    best.map(|(_, found)| found)
+}
+
+/// The rate of blocks with the tangents just ahead along the arrival, in the sense that dissipates. Sets of points that yield
+/// are not iterated: on coarse meshes they agree at fewer corners than one look ahead does.
+fn dissipating_rate(system: &mut StepSystem, state: &State, arrival: &Piece, arrives: &Unit) -> Option<LoadingRate> {
+    let facing = facing_ahead(system, state, &arrives.rate)?;
+    let found = rate_of(system, &facing, &arrival.row)?;
+    let power = plastic_power(system, &facing, &found.rate);
+    if !facing.yields() || power == 0.0 {
+        return None;
+    }
+    let rate = if power < 0.0 { found.turned().rate } else { found.rate };
+    Some(LoadingRate { state: facing, rate })
+}
+
+/// The rate with the tangents of a state, of size 1.
+fn rate_of(system: &mut StepSystem, state: &State, row: &[f64]) -> Option<Unit> {
+    let equations = system.equations(state);
+    let rate = tangent_of_modes(system, state, &equations, row, Accuracy::Rounding)?;
+    Unit::of(system, &rate)
+}
+
+/// Dissipation of blocks and bonds in a short step along a rate \[J\].
+fn dissipation(system: &StepSystem, state: &State, ahead: &State, rate: &Tangent) -> f64 {
+    let length = length_ahead(system, state);
+    let mut sum = length * plastic_power(system, ahead, rate);
+    for c in system.laws.responses.points() {
+        let gap = [0, 1].map(|k| state.gap[c][k] + length * rate.gap[c][k]);
+        if let Some(point) = system.laws.responses.at(c, gap, &state.updates.memory) {
+            sum += system.problem.contacts[c].area * point.dissipated;
+        }
+    }
+    sum
+}

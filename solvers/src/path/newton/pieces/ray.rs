@@ -1,0 +1,64 @@
+//! Rays: pieces with small displacements that are admissible without end.
+
+use super::super::measure::motion_size;
+use super::super::state::{State, Tangent};
+use super::super::system::StepSystem;
+use super::super::tracer::{LoadStepEnding, Tracer, end_path};
+use super::piece::Piece;
+use voussoir_core::limit::Status;
+
+/// Rate, relative to the greatest of its kind, that is rounding.
+const ROUNDING: f64 = 1e-8;
+/// Rate of the factor, relative to motions and forces, above which the load grows.
+const GROWS: f64 = 1e-9;
+
+/// The ending of a path on which the load grows without bound along a piece with small displacements, if it does.
+pub(super) fn ray(tracer: &mut Tracer, piece: &Piece, direction: f64) -> Option<LoadStepEnding> {
+    let (u, rate) = (tracer.system.units(), &piece.tangent);
+    // Strengths bound a block that may yield, and displaced positions any load.
+    if tracer.system.finite() || tracer.system.problem.yields() {
+        return None;
+    }
+    let motion = motion_size(&tracer.system, rate);
+    let force = rate.force.iter().flatten().map(|r| (r / u.force).abs()).fold(0.0, f64::max);
+    let factor = rate.factor / u.factor * direction;
+    if factor <= GROWS * (motion + force) {
+        return None;
+    }
+    let goes_on = (0..rate.gap.len()).all(|c| {
+        let Some(law) = tracer.system.law(c) else { return true };
+        let gap = rate.gap[c].map(|g| g / (u.displacement * motion));
+        let r = rate.force[c].map(|r| r / (force.max(factor) * u.force));
+        law.ray_violation(tracer.state.mode[c], r, gap) <= ROUNDING
+    });
+    if !goes_on || !tractions_persist(&tracer.system, &tracer.state, rate) {
+        return None;
+    }
+    // A support that moves a statically determinate structure asks for no forces.
+    let constant = force <= 10.0 * ROUNDING * motion && tracer.system.settles();
+    let of = |x: f64| if constant { 0.0 } else { x / rate.factor };
+    tracer.ending.ray = Some(rate.force.iter().map(|r| r.map(of)).collect());
+    Some(end_path(tracer, Status::Unbounded, String::new()))
+}
+
+/// Returns true if the laws give the forces of a rate however far it is followed, at some samples.
+fn tractions_persist(system: &StepSystem, state: &State, rate: &Tangent) -> bool {
+    let u = system.units();
+    let motion = motion_size(system, rate).max(1e-300) * u.displacement;
+    let largest = |rates: &[[f64; 2]]| rates.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
+    let (held, grown) = (largest(&state.force).max(u.force), largest(&rate.force));
+    let small = |x: f64| if x.abs() <= 1e-8 * motion { 0.0 } else { x };
+    [1e-9, 1e-6, 1e-3, 1.0].iter().all(|distance| {
+        let share = distance * u.length / motion;
+        let far = |(g, dg): (&[f64; 2], &[f64; 2])| [0, 1].map(|k| g[k] + share * small(dg[k]));
+        let gaps: Vec<[f64; 2]> = state.gap.iter().zip(&rate.gap).map(far).collect();
+        let Ok(updates) = system.laws.responses.update(&gaps, &state.updates.memory) else { return false };
+        system.laws.responses.points().all(|c| {
+            (0..2).all(|k| {
+                let traction = system.problem.contacts[c].area * updates.points[c].traction[k];
+                let told = state.force[c][k] + share * rate.force[c][k];
+                (traction - told).abs() <= 1e-6 * (held + share * grown)
+            })
+        })
+    })
+}
