@@ -47,12 +47,12 @@ mod termination;
 mod tracer;
 mod tractions;
 mod trial;
-mod twins;
 mod witness;
 
 use self::monitors::resolve;
 use super::event::{self, is_piecewise_linear};
 use super::outcome::stalled;
+use super::twins;
 use serde::{Deserialize, Serialize};
 use voussoir_core::path::{PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver};
 use voussoir_core::plugin::{Capability, Card, PluginKind};
