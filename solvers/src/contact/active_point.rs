@@ -24,8 +24,6 @@ pub struct ActivePoint<'a> {
     pub apex: bool,
     /// Its present mode, or that of the facet where it has just arrived.
     pub guess: ContactMode,
-    /// Whether it has just arrived.
-    pub hit: bool,
     /// Unit of its stiffness.
     pub stiffness: f64,
 }

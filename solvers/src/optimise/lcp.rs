@@ -1,7 +1,7 @@
 //! Lemke's pivoting for linear complementarity problems: w = q + M z ≥ 0, z ≥ 0, z·w = 0.
 //!
 //! Lemke (1965), with a lexicographic ratio test, so that degenerate ties cannot cycle. A secondary ray proves
-//! that there is no solution only for copositive-plus matrices; others need [`branching`](super::branching).
+//! that there is no solution only for copositive-plus matrices.
 
 use nalgebra::{DMatrix, DVector};
 

@@ -1,6 +1,5 @@
 //! Optimisation without a word of masonry: dense linear programs, linear complementarity problems, random numbers.
 
-pub(crate) mod branching;
 pub(crate) mod dense_simplex;
 pub(crate) mod lcg;
 pub(crate) mod lcp;

@@ -2,9 +2,11 @@
 //! from the response of the structure.
 
 use super::system::System;
+use crate::contact::active_point::ActivePoint;
 use crate::linear::largest;
 use crate::rate::answer::Budget;
 use crate::rate::problem::RateProblem;
+use crate::rate::proof::NoRate;
 use crate::rate::tree::search;
 use voussoir_core::path::{FarkasVector, ModeTree, NoneContinues};
 
@@ -43,10 +45,20 @@ pub(super) fn none_rises(
 ) -> Option<ModeTree> {
     let found = search(problem, 1.0, Budget::default().leaves, trials);
     let proof = found.proof.filter(|_| found.rates.is_empty())?;
+    certified(&proof, (&problem.points, system), contacts, response)
+}
+
+/// The tree of a proof over some points, which are the contact points `contacts`, that no rate raises the load.
+pub(super) fn certified(
+    proof: &NoRate,
+    (points, system): (&[ActivePoint], &System),
+    contacts: &[usize],
+    response: Response,
+) -> Option<ModeTree> {
     let vector = |alpha: &[[f64; 2]], _: f64| {
         response(alpha, 0.0).map(|x| dual_vector(system, &x, alpha, 0.0)).unwrap_or_default()
     };
-    proof.certified(problem, contacts, &vector)
+    proof.certified(points, contacts, &vector).filter(|_| proof.factor > 0.0)
 }
 
 /// The trees that prove that no rate of a problem over the contact points `contacts` continues the path. `unit`: λ for a unit of
@@ -62,7 +74,7 @@ pub(super) fn none_continues(
     };
     let mut tree = |factor: f64| {
         let proof = search(problem, factor, Budget::default().leaves, trials).proof?;
-        proof.certified(problem, contacts, &vector)
+        proof.certified(&problem.points, contacts, &vector)
     };
     Some(NoneContinues { rises: tree(1.0)?, stands: tree(0.0)?, falls: tree(-1.0)? })
 }

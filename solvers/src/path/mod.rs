@@ -10,6 +10,7 @@ mod outcome;
 mod self_check;
 mod stability;
 mod system;
+mod twins;
 
 #[cfg(test)]
 mod tests;

@@ -5,24 +5,33 @@
 //! 1. rates in the cells next to the arrival ([`neighbours`](super::neighbours));
 //! 2. on a path that does not fall, if none of them rises, all rates with λ̇ > 0. If there is one, the path goes on with
 //!    it, since the structure is in equilibrium under a growing load. A limit point needs a proof that no such rate exists;
-//! 3. if no neighbour continues, all rates with λ̇ = 0 on which the load does work, and all with λ̇ < 0.
+//! 3. if none rises, all rates with λ̇ = 0 on which the load does work; if neither such a rate nor a neighbour continues, all
+//!    with λ̇ < 0. A neighbour with λ̇ = 0 on which the load does negative work continues the path if a point of the event
+//!    enters a new mode: other loads drive it.
 //!
 //! For associated flow without softening (AᵀSA positive semidefinite) step 2 is a monotone complementarity problem, which
-//! pivoting always solves. Otherwise steps 2 and 3 are complete searches ([`tree`](super::tree)) within a budget.
+//! pivoting always solves. Otherwise steps 2 and 3 are complete searches ([`tree`](super::tree)) within a budget. If there
+//! are more combinations next to the arrival than the budget allows, pivoting and homotopy ([`homotopy`](super::homotopy)) come
+//! before the search, and the first rate that rises is followed.
 
 use super::arrival::Arrival;
 use super::choice::choose;
-use super::lcp::{monotone_rate, rate_lcp};
-use super::neighbours::{add, neighbours};
+use super::counts::{Algorithm, RateCounts};
+use super::homotopy::rate_by_homotopy;
+use super::lcp::{associated_modes, pivoted_rate, rate_lcp};
+use super::neighbours::{add, neighbours, rising_from};
 use super::order::Ordered;
 use super::problem::{Rate, RateProblem};
 use super::proof::NoRate;
-use super::solve::{Algorithm, RateCounts};
-use super::tree::{Searched, search};
+use super::tree::{Searched, search_some};
+use crate::contact::mode::ContactMode;
 use nalgebra::DMatrix;
 
 /// Asymmetry and negative eigenvalue of AᵀSA with a unit diagonal up to which the problem is monotone.
 const MONOTONE: f64 = 1e-9;
+
+/// Leaves of a search for mechanisms after which it ends if it has found one.
+const ENOUGH: usize = 256;
 
 /// Limits of the search.
 #[derive(Debug, Clone, Copy)]
@@ -89,6 +98,61 @@ pub fn answer(problem: &RateProblem, arrival: &Arrival, budget: &Budget, counts:
     RateAnswer { continuation, none_rises: found.none_rises.map(proof) }
 }
 
+/// The answer if it needs neither a proof nor a choice: the only rate in the cells next to the arrival along which the
+/// path goes on, rising if it does not fall.
+pub fn only_neighbour(problem: &RateProblem, arrival: &Arrival, budget: &Budget, trials: &mut u64) -> Neighbour {
+    let (rates, complete) = neighbours(problem, arrival, budget.combinations, trials);
+    let goes_on = |rate: &Rate| {
+        let moves_on = rate.factor > 0.0 || arrival.factor < 0.0 && (rate.factor < 0.0 || problem.leads_on(rate));
+        moves_on && arrival.continues(problem, rate)
+    };
+    let mut rates = rates.into_iter().filter(goes_on);
+    match (rates.next(), rates.next()) {
+        (None, _) => Neighbour::None,
+        (Some(rate), None) if complete && problem.is_isolated(&rate) => Neighbour::Only(rate),
+        _ => Neighbour::Several,
+    }
+}
+
+/// The result of a search for any rate with λ̇ = 1.
+pub enum RisingRate {
+    /// It is proved that no such rate exists.
+    None,
+    /// ġ and the modes.
+    Found(Vec<[f64; 2]>, Vec<ContactMode>),
+    /// Not decided, and why.
+    Undecided(String),
+}
+
+/// Finds any rate with λ̇ = 1 by a search of at most `most` leaves.
+pub fn rising_rate(problem: &RateProblem, most: u64, trials: &mut u64) -> RisingRate {
+    if let Some((rate, proof)) = pivoted_rate(problem, trials) {
+        if rate.factor > 0.0 {
+            return RisingRate::Found(rate.gaps, rate.modes);
+        }
+        if proof.is_some() {
+            return RisingRate::None;
+        }
+    }
+    let Searched { rates, open, .. } = search_some(problem, 1.0, (most as usize, 0), trials);
+    match (rates.into_iter().next(), open) {
+        (Some(rate), _) => RisingRate::Found(rate.gaps, rate.modes),
+        (None, Some(why)) => RisingRate::Undecided(why),
+        (None, None) => RisingRate::None,
+    }
+}
+
+/// Rates in the cells next to an arrival.
+#[derive(Debug, Clone)]
+pub enum Neighbour {
+    /// No rate rises.
+    None,
+    /// One rate continues the path.
+    Only(Rate),
+    /// The rule must choose.
+    Several,
+}
+
 /// The state of the search.
 struct Inquiry<'a> {
     problem: &'a RateProblem<'a>,
@@ -110,14 +174,18 @@ impl Inquiry<'_> {
         let most = if self.monotone { 0 } else { self.budget.combinations };
         let (rates, complete) = neighbours(self.problem, self.arrival, most, &mut self.counts.trials);
         self.keep(rates);
-        if (complete || self.monotone) && self.leads_on(|rate| falls || rate.factor > 0.0) {
+        // If there are too many combinations next to the arrival, there are too many for a complete search.
+        if self.leads_on(|rate| rate.factor > 0.0 || (falls && complete)) {
             return self.chosen(Algorithm::Neighbours, None);
         }
-        let (none_rises, by) = self.rising();
-        if self.leads_on(|rate| complete || rate.factor >= 0.0) {
+        let (none_rises, by) = self.rising(complete);
+        if self.leads_on(|rate| rate.factor >= 0.0 || (falls && complete)) {
             return self.chosen(by, none_rises);
         }
         let standing = self.searched(0.0);
+        if self.leads_on(|rate| rate.factor >= 0.0 || complete) {
+            return self.chosen(Algorithm::Tree, none_rises);
+        }
         let falling = self.searched(-1.0);
         if !self.rates.is_empty() {
             return self.chosen(Algorithm::Tree, none_rises);
@@ -132,37 +200,50 @@ impl Inquiry<'_> {
         RateAnswer { continuation, none_rises }
     }
 
-    /// True if a rate that its modes determine is of a kind.
+    /// True if a rate that its modes determine is of a kind. All rates of a monotone problem have the same forces.
     fn leads_on(&self, kind: impl Fn(&Rate) -> bool) -> bool {
-        self.rates.iter().any(|rate| kind(rate) && self.problem.is_isolated(rate))
+        self.rates.iter().any(|rate| kind(rate) && (self.monotone || self.problem.is_isolated(rate)))
     }
 
-    /// Adds those rates that continue the path.
+    /// Adds those rates that continue the path. With λ̇ = 0 the load does work, or a point of the event enters a new mode.
     fn keep(&mut self, rates: Vec<Rate>) {
         for rate in rates {
-            let moves_on = rate.factor != 0.0 || self.problem.leads_on(&rate);
+            let enters = || self.problem.load_resists(&rate) && self.arrival.enters(self.problem, &rate);
+            let moves_on = rate.factor != 0.0 || self.problem.leads_on(&rate) || enters();
             if moves_on && self.arrival.continues(self.problem, &rate) {
                 add(&mut self.rates, rate);
             }
         }
     }
 
-    /// Searches all rates with λ rising; returns a proof if no such rate exists.
-    fn rising(&mut self) -> (Option<NoRate>, Algorithm) {
-        if self.monotone {
-            let rate = monotone_rate(self.problem, &mut self.counts.trials);
-            let rises = rate.as_ref().is_some_and(|rate| rate.factor > 0.0);
-            self.keep(rate.into_iter().collect());
-            if rises {
-                return (None, Algorithm::Pivoting);
-            }
+    /// Searches rates with λ rising; returns a proof if no such rate exists. With `few` combinations the search is complete,
+    /// since the rate that another algorithm finds may not be the only one. Otherwise the first rate is kept.
+    fn rising(&mut self, few: bool) -> (Option<NoRate>, Algorithm) {
+        let trials = &mut self.counts.trials;
+        let modes = if few || self.monotone { None } else { associated_modes(self.problem, trials) };
+        if let Some(rate) = modes.and_then(|modes| rising_from(self.problem, modes, trials)) {
+            self.keep(vec![rate]);
+            return (None, Algorithm::Pivoting);
+        }
+        let (rate, proof) = pivoted_rate(self.problem, trials).unzip();
+        let (rises, proof) = (rate.as_ref().is_some_and(|rate| rate.factor > 0.0), proof.flatten());
+        self.keep(rate.into_iter().collect());
+        if proof.is_some() || (rises && (self.monotone || !few)) {
+            return (proof, Algorithm::Pivoting);
+        }
+        if !few && let Some(rate) = rate_by_homotopy(self.problem, &mut self.counts.trials) {
+            self.keep(vec![rate]);
+            return (None, Algorithm::Homotopy);
         }
         (self.searched(1.0), Algorithm::Tree)
     }
 
-    /// A complete search in one sense of λ; its proof if no rate continues.
+    /// A complete search in one sense of λ; its proof if no rate continues. At a constant load it ends early if it has
+    /// found a rate: forces rest in a mechanism, so that all cells of points that do not move contain it.
     fn searched(&mut self, factor: f64) -> Option<NoRate> {
-        let Searched { rates, proof, open } = search(self.problem, factor, self.budget.leaves, &mut self.counts.trials);
+        let enough = if factor == 0.0 { ENOUGH } else { usize::MAX };
+        let limits = (self.budget.leaves, enough);
+        let Searched { rates, proof, open } = search_some(self.problem, factor, limits, &mut self.counts.trials);
         let proves = factor < 0.0 || rates.is_empty();
         self.keep(rates);
         self.why_open = self.why_open.take().or(open);
@@ -172,14 +253,15 @@ impl Inquiry<'_> {
     /// The rate that the rule chooses. On a path that does not fall, rates with λ rising come first, then those at a
     /// constant load.
     fn chosen(&mut self, by: Algorithm, none_rises: Option<NoRate>) -> RateAnswer {
-        let found = std::mem::take(&mut self.rates);
-        let (isolated, mixed): (Vec<Rate>, Vec<Rate>) =
-            found.into_iter().partition(|rate| self.problem.is_isolated(rate));
-        let mut rates = if isolated.is_empty() { mixed } else { isolated };
+        let mut found = std::mem::take(&mut self.rates);
         if self.arrival.factor >= 0.0 {
-            let most = rates.iter().map(|rate| rate.factor).fold(-1.0, f64::max);
-            rates.retain(|rate| rate.factor == most);
+            let most = found.iter().map(|rate| rate.factor).fold(-1.0, f64::max);
+            found.retain(|rate| rate.factor == most);
         }
+        let alone = found.len() == 1 || self.monotone;
+        let (isolated, mixed): (Vec<Rate>, Vec<Rate>) =
+            found.into_iter().partition(|rate| alone || self.problem.is_isolated(rate));
+        let rates = if isolated.is_empty() { mixed } else { isolated };
         *self.counts.decided.entry(by).or_default() += 1;
         let continuation = match choose(self.problem, self.arrival, rates) {
             Some((rate, twins)) => Continuation::Goes { rate, twins },

@@ -43,14 +43,17 @@ impl Arrival {
         if rate.factor == self.factor && rate.modes == self.modes() {
             return true;
         }
-        let sliding = |k: usize| slides(problem, k, self.points[k].mode);
-        let each = || self.points.iter().zip(&rate.modes).enumerate();
-        let kept = |k: usize, was: ContactMode, is: ContactMode| was == is || sliding(k) && is == ContactMode::Stick;
-        let old = each().all(|(k, (point, mode))| {
-            !point.hit || kept(k, point.mode, *mode) && !(point.stops && *mode == ContactMode::Stick)
-        });
         let existed = rate.factor < 0.0 || (rate.factor > 0.0 && self.factor <= 0.0);
-        !(existed && old)
+        !existed || self.enters(problem, rate)
+    }
+
+    /// True if a point of the event takes a mode that the event makes possible.
+    pub fn enters(&self, problem: &RateProblem, rate: &Rate) -> bool {
+        let sliding = |k: usize| slides(problem, k, self.points[k].mode);
+        let kept = |k: usize, was: ContactMode, is: ContactMode| was == is || sliding(k) && is == ContactMode::Stick;
+        self.points.iter().zip(&rate.modes).enumerate().any(|(k, (point, mode))| {
+            point.hit && (!kept(k, point.mode, *mode) || point.stops && *mode == ContactMode::Stick)
+        })
     }
 
     /// Dissipation −r·ġ of a rate.

@@ -5,7 +5,6 @@ use crate::contact::facet::dot;
 use crate::contact::mode::ContactMode;
 use crate::contact::normal_fan::{Cell, NormalFan};
 use crate::contact::yield_polygon::YieldPolygon;
-use crate::optimise::lcg::Lcg;
 use voussoir_core::law::Facet;
 
 /// The cone of a point.
@@ -46,15 +45,8 @@ impl Cone {
         }
     }
 
-    /// The mode of z = ṙ − ρ ġ, with ρ the same in both directions, and its return.
-    pub fn return_map(&self, z: [f64; 2]) -> (ContactMode, [f64; 2]) {
-        let (cell, r) = self.polygon.return_map(z, [1.0; 2], 1.0);
-        (self.mode(cell), r)
-    }
-
-    /// A random place: cell, force and gap.
-    pub fn random_place(&self, random: &mut Lcg) -> (usize, [f64; 2], [f64; 2]) {
-        let z = [random.next(), random.next()];
+    /// The place of z = ṙ − ρ ġ with ρ = 1: cell, force and gap. An open point with strength has some place on its opening facet.
+    pub fn place(&self, z: [f64; 2]) -> (usize, [f64; 2], [f64; 2]) {
         let Some(open) = self.open else {
             let (cell, r) = self.polygon.return_map(z, [1.0; 2], 1.0);
             return (cell, r, [r[0] - z[0], r[1] - z[1]]);

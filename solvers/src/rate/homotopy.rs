@@ -8,24 +8,27 @@
 //! ṙ = (S − ε) ġ + s + (1 − t) e,   t from 0 to 1,
 //! ```
 //!
-//! and the path is followed from cell to cell; t may turn back. The guesses are random inside the
-//! present modes, later anywhere, so that boundaries are met one at a time; other guesses may find other
-//! solutions. ε makes mechanisms large rates instead of none; whatever comes out is only read for its
-//! modes, and those are solved and checked exactly. Sources: Ralph (1994, Math. Operations Research
-//! 19); Dirkse & Ferris (1995, Optim. Methods Software 5).
+//! and the path is followed from cell to cell; t may turn back. The guesses are random places: first inside the
+//! present modes, then anywhere. ε makes mechanisms large rates. The
+//! end of the path gives modes only: an active set begins with them, and its rate is checked. Sources: Ralph (1994, Math.
+//! Operations Research 19); Dirkse & Ferris (1995, Optim. Methods Software 5).
 
 use super::cone::Cone;
-use super::problem::RateProblem;
+use super::neighbours::rising_from;
+use super::problem::{Rate, RateProblem};
+use crate::contact::active_point::ActivePoint;
 use crate::contact::facet::dot;
 use crate::contact::mode::ContactMode;
 use crate::contact::normal_fan::Cell;
-use crate::contact::piecewise_path::{PathEnd, PiecewiseLinear, PointInCell, follow};
+use crate::contact::piecewise_path::{PiecewiseLinear, PointInCell, follow};
 use crate::linear::updated_inverse::UpdatedInverse;
 use crate::optimise::lcg::Lcg;
 use nalgebra::{DMatrix, DVector};
 
 /// ε, relative to the points' own stiffness.
 const REGULARISATION: f64 = 1e-9;
+/// Number of guesses.
+const GUESSES: u64 = 8;
 /// Random places that are tried to begin inside the present mode of a point.
 const PLACES: usize = 60;
 
@@ -109,8 +112,32 @@ impl PiecewiseLinear for RatePath<'_> {
     }
 }
 
-/// Modes near a solution with λ̇ = 1 (or near a mechanism), and its ġ, by the path from the guess of a number.
-pub fn homotopy(problem: &RateProblem, number: u64, trials: &mut u64) -> Option<(Vec<ContactMode>, Vec<[f64; 2]>)> {
+/// A rate with λ̇ = 1. `None` if no path from the guesses leads to one.
+pub fn rate_by_homotopy(problem: &RateProblem, trials: &mut u64) -> Option<Rate> {
+    (0..GUESSES).find_map(|number| {
+        let modes = modes_at_end(problem, number, trials)?;
+        rising_from(problem, modes, trials)
+    })
+}
+
+/// The places of a guess. Those of the first guess are inside the present modes, so that a path begins with few motions.
+fn places(problem: &RateProblem, cones: &[Cone], number: u64) -> Vec<(usize, [f64; 2], [f64; 2])> {
+    let mut random = Lcg::new(0x51_7CC1 + 7919 * number);
+    let mut place = |(cone, point): (&Cone, &ActivePoint)| {
+        let mut place = cone.place([random.next(), random.next()]);
+        for _ in 0..if number == 0 { PLACES } else { 0 } {
+            if cone.mode(place.0) == point.guess {
+                break;
+            }
+            place = cone.place([random.next(), random.next()]);
+        }
+        place
+    };
+    cones.iter().zip(&problem.points).map(&mut place).collect()
+}
+
+/// Modes near a solution with λ̇ = 1 by the path from the guess of a number.
+fn modes_at_end(problem: &RateProblem, number: u64, trials: &mut u64) -> Option<Vec<ContactMode>> {
     let n = 2 * problem.points.len();
     let cones: Vec<Cone> = problem.points.iter().map(Cone::new).collect();
     let unit: Vec<f64> = (0..n).map(|i| problem.points[i / 2].stiffness.sqrt()).collect();
@@ -118,34 +145,15 @@ pub fn homotopy(problem: &RateProblem, number: u64, trials: &mut u64) -> Option<
     let s = DMatrix::from_fn(n, n, |i, j| problem.s[(i, j)] / (unit[i] * unit[j]) - shift(i, j));
     let load_rate = DVector::from_fn(n, |i, _| problem.load_rate[i] / unit[i]);
     let size = load_rate.amax().max(1e-300);
-    let mut random = Lcg::new(0x51_7CC1 + 7919 * number);
-    let (mut force, mut gap) = (DVector::zeros(n), DVector::zeros(n));
-    let mut cells = Vec::with_capacity(cones.len());
-    for (k, cone) in cones.iter().enumerate() {
-        let mut place = cone.random_place(&mut random);
-        for _ in 0..if number == 0 { PLACES } else { 0 } {
-            if cone.mode(place.0) == problem.points[k].guess {
-                break;
-            }
-            place = cone.random_place(&mut random);
-        }
-        cells.push(place.0);
-        (0..2).for_each(|i| {
-            force[2 * k + i] = place.1[i] * size;
-            gap[2 * k + i] = place.2[i] * size;
-        });
-    }
+    let places = places(problem, &cones, number);
+    let force = DVector::from_fn(n, |i, _| places[i / 2].1[i % 2] * size);
+    let gap = DVector::from_fn(n, |i, _| places[i / 2].2[i % 2] * size);
+    let cells = places.iter().map(|place| place.0).collect();
     let error = &force - &s * &gap - &load_rate;
     let (force_rate, gap_rate) = (DVector::zeros(n), DVector::zeros(n));
     let equations = UpdatedInverse::zeros(n);
     let mut path = RatePath { cones: &cones, cells, s, error, force, gap, force_rate, gap_rate, equations, trials };
     (0..cones.len()).for_each(|k| path.set_rows(k));
-    // Where forces stand still on a ray, it is a mechanism.
-    let (gap, by) = match follow(&mut path, 200 + 4 * n).ok()? {
-        PathEnd::Arrived => (&path.gap, 1.0),
-        PathEnd::Ray(sense) => (&path.gap_rate, sense),
-    };
-    let modes = cones.iter().zip(&path.cells).map(|(cone, cell)| cone.mode(*cell)).collect();
-    let gaps = (0..cones.len()).map(|k| [0, 1].map(|i| by * gap[2 * k + i] / unit[2 * k + i]));
-    Some((modes, gaps.collect()))
+    follow(&mut path, 200 + 4 * n).ok()?;
+    Some(cones.iter().zip(&path.cells).map(|(cone, cell)| cone.mode(*cell)).collect())
 }

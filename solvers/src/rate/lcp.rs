@@ -6,27 +6,22 @@
 //!
 //! Klarbring (1990), Ing.-Arch. 60.
 
+use super::neighbours::settled;
 use super::problem::{Rate, RateProblem};
+use super::proof::{ModeTree, NoRate};
 use crate::contact::active_point::ActivePoint;
 use crate::contact::mode::ContactMode;
 use crate::optimise::lcp::{Lcp, LemkeResult, lemke};
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::law::{Facet, FacetMode};
 
-/// Relative tolerance of what pivoting finds.
-pub const PIVOTING: f64 = 1e-7;
 /// Share of the greatest diagonal entry of M up to which another one is rounding.
 const ROUNDING: f64 = 1e-10;
-/// Facets above which it is not pivoted.
-const MOST: usize = 900;
-
-/// What pivoting found.
-pub enum Pivoted {
-    /// Modes close to a solution.
-    Guess(Vec<ContactMode>),
-    /// A mechanism.
-    Ray(Rate),
-}
+/// Entries w and z up to which rates are excluded, where q and the diagonal of M have size one: multipliers that are
+/// rounding of zero are weighed with it.
+pub const LARGEST: f64 = 1e6;
+/// Facets up to which a problem is pivoted: its matrix is dense, and it takes about as many pivots as it has facets.
+const MOST: usize = 4000;
 
 /// The complementarity problem, each facet in its own scale. Multipliers of opening facets that are open have any
 /// sign: they are eliminated.
@@ -68,6 +63,18 @@ impl RateLcp {
     /// eliminated variables.
     pub fn eliminated_rows(&self, y: &[f64]) -> Vec<f64> {
         (&self.free.rows * DVector::from_column_slice(y)).iter().copied().collect()
+    }
+
+    /// The proof that no rate has λ̇ > 0 by the ray z of a mechanism on which the load does work. If M is
+    /// symmetric, with y = z the sum y·w − (yᵀM)·z = λ̇ y·q has no negative coefficient and a negative right-hand side.
+    fn excluded_by(&self, z: &[f64]) -> Option<NoRate> {
+        let y = DVector::from_iterator(z.len(), z.iter().map(|z| z.max(0.0)));
+        let right = y.dot(&self.lcp.constant) / self.lcp.constant.amax();
+        let against: f64 = self.lcp.matrix.tr_mul(&y).iter().map(|c| c.max(0.0)).sum();
+        let mut own: Vec<f64> = y.iter().zip(&self.unit).map(|(y, unit)| y / unit).collect();
+        own.extend(self.eliminated_rows(&own));
+        let proof = || NoRate { factor: 1.0, rows: self.all_rows(), tree: ModeTree::Contradiction(own) };
+        (right < 0.0 && LARGEST * against < -0.5 * right).then(proof)
     }
 }
 
@@ -127,65 +134,39 @@ pub fn gaps_of(problem: &RateProblem, lcp: &RateLcp, z: &[f64], factor: f64, ass
     gaps
 }
 
-/// Lemke's pivoting over all active facets, with their own flow or an associated one: modes to correct, or the ray
-/// of a mechanism.
-pub fn pivoting(problem: &RateProblem, associated: bool, trials: &mut u64) -> Option<Pivoted> {
-    let rate = rate_lcp(problem, associated).filter(|rate| rate.facets.len() <= MOST)?;
-    let Lcp { matrix: m, constant: q } = &rate.lcp;
-    let (z, ray) = match lemke(&rate.lcp, trials) {
-        LemkeResult::Solution(z) => (z, false),
-        LemkeResult::Ray(z) => (z, true),
-        LemkeResult::Unfinished => return None,
-    };
-    let z_size = z.iter().copied().fold(1e-300, f64::max);
-    if !ray {
-        let w = q + m * DVector::from_vec(z.clone());
-        let w_size = w.amax().max(1e-300);
-        let flows = |i: usize| z[i] / z_size > (w[i] / w_size).max(1e-12);
-        return Some(Pivoted::Guess(modes_of(problem, &rate.facets, flows)));
-    }
-    let mut gaps = gaps_of(problem, &rate, &z, 0.0, associated);
-    let w = m * DVector::from_vec(z.clone());
-    let moves = gaps.iter().flatten().fold(0.0, |a: f64, g| a.max(g.abs()));
-    let largest = rate.unit.iter().copied().fold(0.0, f64::max);
-    let still = w.amax() <= PIVOTING * z_size && z.iter().all(|z| *z >= -PIVOTING * z_size);
-    let rises = !associated && q.dot(&DVector::from_vec(z.clone())) > 0.0;
-    if !still || moves * largest <= PIVOTING * z_size || rises {
-        return None;
-    }
-    let modes = modes_of(problem, &rate.facets, |i| z[i] > 1e-8 * z_size);
-    // What does not flow does not move, not even by rounding.
-    for (gap, _) in gaps.iter_mut().zip(&modes).filter(|(_, mode)| **mode == ContactMode::Stick) {
-        *gap = [0.0; 2];
-    }
-    Some(Pivoted::Ray(Rate { factor: 0.0, modes, gaps }))
-}
-
-/// A rate of a monotone problem by Lemke's pivoting, which always ends: with λ̇ = 1, or the ray of a mechanism. `None`
-/// if rounding prevents it.
-pub fn monotone_rate(problem: &RateProblem, trials: &mut u64) -> Option<Rate> {
+/// A rate by Lemke's pivoting: with λ̇ = 1, or the ray of a mechanism, with the proof that no rate rises if it is one. For a
+/// monotone problem pivoting ends with one of both. `None` if it finds no rate that satisfies the laws.
+pub fn pivoted_rate(problem: &RateProblem, trials: &mut u64) -> Option<(Rate, Option<NoRate>)> {
     let lcp = rate_lcp(problem, false).filter(|lcp| lcp.facets.len() <= MOST)?;
+    let mut proof = None;
     let rate = match lemke(&lcp.lcp, trials) {
         LemkeResult::Unfinished => return None,
         LemkeResult::Solution(z) => {
             let modes = modes_of_solution(problem, &lcp, &z);
-            let exact = problem.exactly(modes.clone(), 1.0);
-            exact.unwrap_or_else(|| Rate { factor: 1.0, modes, gaps: gaps_of(problem, &lcp, &z, 1.0, false) })
+            let exact = settled(problem, modes.clone(), &vec![false; modes.len()], 1.0, trials);
+            exact.filter(|rate| rate.factor > 0.0).unwrap_or_else(|| Rate {
+                factor: 1.0,
+                modes,
+                gaps: gaps_of(problem, &lcp, &z, 1.0, false),
+            })
         }
         LemkeResult::Ray(z) => {
             let most = z.iter().copied().fold(1e-300, f64::max);
             let modes = modes_of(problem, &lcp.facets, |i| z[i] > 1e-8 * most);
+            proof = lcp.excluded_by(&z);
             let gaps = gaps_of(problem, &lcp, &z, 0.0, false);
             problem.mechanism_near(&modes, &gaps).unwrap_or(Rate { factor: 0.0, modes, gaps })
         }
     };
-    problem.admits(&rate).then_some(rate)
+    problem.admits(&rate).then_some((rate, proof))
 }
 
-/// Whether a mechanism means that the load does not grow: from nothing only where slip with
-/// associated flow does not carry it either.
-pub fn mechanism_proves(problem: &RateProblem, trials: &mut u64) -> bool {
-    !problem.from_nothing || problem.is_associated() || matches!(pivoting(problem, true, trials), Some(Pivoted::Ray(_)))
+/// Modes of the rate with associated flow and λ̇ = 1, by Lemke's pivoting. Its forces are unique, and symmetric if
+/// the structure is. `None` if pivoting finds no such rate.
+pub fn associated_modes(problem: &RateProblem, trials: &mut u64) -> Option<Vec<ContactMode>> {
+    let lcp = rate_lcp(problem, true).filter(|lcp| lcp.facets.len() <= MOST)?;
+    let LemkeResult::Solution(z) = lemke(&lcp.lcp, trials) else { return None };
+    Some(modes_of_solution(problem, &lcp, &z))
 }
 
 /// Modes of multipliers that solve the problem.

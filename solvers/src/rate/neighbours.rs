@@ -81,7 +81,7 @@ pub fn add(found: &mut Vec<Rate>, rate: Rate) {
 
 /// Primal–dual active set in one sense of λ: points that are not `held` change their modes by their inequalities.
 /// `None` if it cycles or if a held point violates its mode.
-fn settled(
+pub fn settled(
     problem: &RateProblem,
     mut modes: Vec<ContactMode>,
     held: &[bool],
@@ -111,4 +111,11 @@ fn settled(
         violations.into_iter().for_each(|(_, k, to)| modes[k] = to);
     }
     None
+}
+
+/// A rate with λ̇ = 1 by the active set from some modes. `None` if it finds none.
+pub fn rising_from(problem: &RateProblem, modes: Vec<ContactMode>, trials: &mut u64) -> Option<Rate> {
+    let free = vec![false; modes.len()];
+    let rate = settled(problem, modes, &free, 1.0, trials)?;
+    (rate.factor > 0.0 && problem.admits(&rate)).then_some(rate)
 }

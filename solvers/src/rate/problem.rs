@@ -30,21 +30,6 @@ impl Rate {
     }
 }
 
-/// What is known of the solutions.
-#[derive(Debug, Clone)]
-pub enum RateOutcome {
-    /// One was taken; how many others with growing λ there are, where that was examined.
-    Found(Rate, Option<usize>),
-    /// None with λ̇ ≥ 0 (all combinations are excluded); one with λ̇ < 0 that is no mere unloading.
-    Falling(Rate),
-    /// None at all that goes on: all combinations are excluded.
-    NoRate,
-    /// None with λ̇ > 0; whether there are others is not decided.
-    NoneRises,
-    /// Not decided; how many combinations there are.
-    Undecided(usize),
-}
-
 /// Pivot, in the units of the points, up to which a combination of modes is a mechanism.
 const SINGULAR: f64 = 1e-10;
 /// Relative tolerance of inequalities.
@@ -61,9 +46,6 @@ pub struct RateProblem<'a> {
     pub s: DMatrix<f64>,
     /// s.
     pub load_rate: DVector<f64>,
-    /// Whether nothing is loaded yet: then every sliding motion is without forces, and one that is not
-    /// associated does not prove that the load cannot be carried.
-    pub from_nothing: bool,
     /// The greatest force that λ̇ = 1 causes at any point of the structure if all points are held: forces far below it are rounding.
     pub load_force: f64,
     /// p·q̇ for a unit of λ̇ if all points are held; 0 if it is not known.
@@ -212,16 +194,19 @@ impl RateProblem<'_> {
 
     /// Whether a rate is one along which a path goes on: λ grows, or the load does work.
     pub fn leads_on(&self, rate: &Rate) -> bool {
-        // If the load causes no force at these points, its rates are rounding, and so is its work.
-        let size = rate.gaps.iter().flatten().fold(0.0, |a: f64, gap| a.max(gap.abs()));
-        let size = size * self.load_rate.amax().max(self.load_force);
-        rate.factor > 0.0 || (rate.factor == 0.0 && self.power(&rate.gaps) > INEQUALITY * size)
+        rate.factor > 0.0 || (rate.factor == 0.0 && self.power(&rate.gaps) > self.least_power(rate))
     }
 
-    /// Whether a rate with λ falling is more than unloading: a point that has just arrived flows.
-    pub fn goes_on(&self, rate: &Rate) -> bool {
-        let mut points = self.points.iter().zip(&rate.modes);
-        rate.factor < 0.0 && points.any(|(point, mode)| point.hit && *mode != ContactMode::Stick)
+    /// True if the load does negative work on a rate with λ̇ = 0: other loads drive it.
+    pub fn load_resists(&self, rate: &Rate) -> bool {
+        rate.factor == 0.0 && self.power(&rate.gaps) < -self.least_power(rate)
+    }
+
+    /// Work of the load on a rate up to which it is rounding. If the load causes no force at the points, its rates are
+    /// rounding too.
+    fn least_power(&self, rate: &Rate) -> f64 {
+        let size = rate.gaps.iter().flatten().fold(0.0, |a: f64, gap| a.max(gap.abs()));
+        INEQUALITY * size * self.load_rate.amax().max(self.load_force)
     }
 
     /// The rate of some modes with λ̇ = `factor`, where it fits them.
@@ -230,18 +215,13 @@ impl RateProblem<'_> {
         self.violations(&modes, &attempt, factor).is_empty().then(|| self.rate(&modes, &attempt, factor, factor))
     }
 
-    /// The motion at constant load that some modes allow, where the load does work on it.
+    /// The motion at constant load that some modes allow. The load does work on it or, if they allow none of this kind, resists it.
     pub fn at_constant_load(&self, modes: &[ContactMode]) -> Option<Rate> {
         let attempt = self.attempt(modes, 1.0).filter(|attempt| attempt.singular)?;
-        let fits = |sign: &f64| {
-            self.violations(modes, &attempt, *sign).is_empty() && self.leads_on(&self.rate(modes, &attempt, *sign, 0.0))
-        };
-        [1.0, -1.0].into_iter().find(fits).map(|sign| self.rate(modes, &attempt, sign, 0.0))
-    }
-
-    /// Number of combinations of modes.
-    pub fn combinations(&self) -> usize {
-        self.points.iter().fold(1usize, |n, p| n.saturating_mul(p.candidates().len()))
+        let fitting = [1.0, -1.0].into_iter().filter(|sign| self.violations(modes, &attempt, *sign).is_empty());
+        let rates: Vec<Rate> = fitting.map(|sign| self.rate(modes, &attempt, sign, 0.0)).collect();
+        let drives = |rate: &&Rate| self.leads_on(rate);
+        rates.iter().find(drives).or_else(|| rates.iter().find(|rate| self.load_resists(rate))).cloned()
     }
 
     /// Whether flow is associated.

@@ -13,7 +13,7 @@
 //!
 //! With α = −Σ y_i a_i at each point this is α·ṙ + β·ġ = λ̇ s·α, β = −Sᵀα: the form that the certificate checks.
 
-use super::problem::RateProblem;
+use crate::contact::active_point::ActivePoint;
 use voussoir_core::path::{FarkasVector, ModeTree as CertifiedTree, PointMode};
 
 /// A node of the tree.
@@ -72,24 +72,24 @@ impl ModeTree {
 }
 
 impl NoRate {
-    /// The proof in the form of the certificate, over the contact points `contacts` of the structure. `None` if a rate with
-    /// λ̇ = 0 is left; other rates that continue nothing are in modes that the path had before.
+    /// The proof in the form of the certificate, over the `points` of the problem, which are the contact points `contacts` of
+    /// the structure. `None` if a rate with λ̇ = 0 is left; other rates that continue nothing are in modes that the path had before.
     ///
     /// `vector` completes gap multipliers α of the points and the multiplier y_c to multipliers of the whole structure. If the
     /// structure is symmetric, it is the negative response of the structure to the gap rates α and to λ̇ = −y_c: y = −q̇, β = −ṙ.
     pub fn certified(
         &self,
-        problem: &RateProblem,
+        points: &[ActivePoint],
         contacts: &[usize],
         vector: &impl Fn(&[[f64; 2]], f64) -> FarkasVector,
     ) -> Option<CertifiedTree> {
-        self.certified_tree(&self.tree, problem, contacts, vector)
+        self.certified_tree(&self.tree, points, contacts, vector)
     }
 
     fn certified_tree(
         &self,
         tree: &ModeTree,
-        problem: &RateProblem,
+        points: &[ActivePoint],
         contacts: &[usize],
         vector: &impl Fn(&[[f64; 2]], f64) -> FarkasVector,
     ) -> Option<CertifiedTree> {
@@ -97,11 +97,11 @@ impl NoRate {
             ModeTree::Rate(_) => (self.factor != 0.0).then_some(CertifiedTree::Before),
             ModeTree::Contradiction(y) => {
                 let work = y.get(self.rows.len()).copied().unwrap_or_default();
-                Some(CertifiedTree::Leaf(vector(&self.force_multipliers(problem, y), work)))
+                Some(CertifiedTree::Leaf(vector(&self.force_multipliers(points, y), work)))
             }
             ModeTree::Point { point, modes } => {
                 let branch = |(mode, tree): &(PointMode, ModeTree)| {
-                    self.certified_tree(tree, problem, contacts, vector).map(|tree| (*mode, tree))
+                    self.certified_tree(tree, points, contacts, vector).map(|tree| (*mode, tree))
                 };
                 let branches: Option<Vec<_>> = modes.iter().map(branch).collect();
                 Some(CertifiedTree::Split { contact: contacts[*point], branches: branches? })
@@ -110,10 +110,10 @@ impl NoRate {
     }
 
     /// α = −Σ y_i a_i of each point.
-    fn force_multipliers(&self, problem: &RateProblem, y: &[f64]) -> Vec<[f64; 2]> {
-        let mut alpha = vec![[0.0; 2]; problem.points.len()];
+    fn force_multipliers(&self, points: &[ActivePoint], y: &[f64]) -> Vec<[f64; 2]> {
+        let mut alpha = vec![[0.0; 2]; points.len()];
         for (&(k, f), y) in self.rows.iter().zip(y) {
-            let normal = problem.points[k].facets[f].normal;
+            let normal = points[k].facets[f].normal;
             (0..2).for_each(|i| alpha[k][i] -= y * normal[i]);
         }
         alpha

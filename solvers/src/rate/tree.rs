@@ -5,7 +5,7 @@
 //! contradiction, and a contradiction that does not use the mode of a node ends that node too (conflict-directed
 //! backjumping: Prosser 1993, Computational Intelligence 9).
 
-use super::lcp::{RateLcp, gaps_of, rate_lcp};
+use super::lcp::{LARGEST, RateLcp, gaps_of, rate_lcp};
 use super::neighbours::add;
 use super::problem::{Rate, RateProblem};
 use super::proof::{ModeTree, NoRate};
@@ -16,17 +16,18 @@ use crate::optimise::dense_simplex::{Dictionary, Feasibility};
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::path::PointMode;
 
-/// Entries w and z up to which rates are excluded, where q and the diagonal of M have size one: multipliers that are
-/// rounding of zero are weighed with it.
-const LARGEST: f64 = 1e6;
 /// Coefficient, relative to the greatest, below which a contradiction does not use a fixed variable.
 const ROUNDING: f64 = 1e-14;
 /// Product of w and z, relative to the greatest of each, up to which it is zero.
 const COMPLEMENTARY: f64 = 1e-9;
 /// Cosine up to which directions are at a right angle.
 const ALONG: f64 = 1e-12;
+/// Facets up to which a problem is searched: its program is dense.
+const MOST: usize = 1200;
 /// Linear programs for each leaf of the budget.
 const PROGRAMS: u64 = 4;
+/// Entries of the program that all pivots may change: each pivot changes all of them.
+const MOST_CHANGED: u64 = 20_000_000_000;
 
 /// Result of a complete search in one sense of λ.
 pub struct Searched {
@@ -46,9 +47,17 @@ impl Searched {
 
 /// Searches all modes for rates with λ̇ = `factor`; for λ̇ = 0 the load does work on the rate. Ends after `most` leaves.
 pub fn search(problem: &RateProblem, factor: f64, most: usize, trials: &mut u64) -> Searched {
+    search_some(problem, factor, (most, usize::MAX), trials)
+}
+
+/// The same, but ends after `enough` leaves if it has found a rate.
+pub fn search_some(problem: &RateProblem, factor: f64, (most, enough): (usize, usize), trials: &mut u64) -> Searched {
     let Some(lcp) = rate_lcp(problem, false) else {
         return Searched::undecided("the points that are open with a strength are held by nothing");
     };
+    if lcp.facets.len() > MOST {
+        return Searched::undecided("there are too many facets for its dense program");
+    }
     let rows = lcp.all_rows();
     let Some(program) = Program::new(problem, &lcp, factor) else {
         let tree = ModeTree::Contradiction([vec![0.0; rows.len()], vec![1.0]].concat());
@@ -68,6 +77,7 @@ pub fn search(problem: &RateProblem, factor: f64, most: usize, trials: &mut u64)
         leaves: 0,
         programs: 0,
         most,
+        enough,
     };
     let found = search.node();
     *trials += search.programs;
@@ -235,6 +245,8 @@ struct Search<'a> {
     leaves: usize,
     programs: u64,
     most: usize,
+    /// Leaves after which it ends if it has found a rate.
+    enough: usize,
 }
 
 /// A tree and the points whose modes its contradictions use.
@@ -243,8 +255,10 @@ type Explained = (ModeTree, Vec<usize>);
 impl Search<'_> {
     fn node(&mut self) -> Result<Explained, String> {
         self.programs += 1;
-        if self.leaves >= self.most || self.programs > PROGRAMS * self.most as u64 {
-            return Err(format!("{} combinations of modes were not enough", self.most));
+        let changed = self.dictionary.pivots.saturating_mul(self.program.matrix.len() as u64);
+        let done = changed > MOST_CHANGED || self.programs > PROGRAMS * self.most as u64;
+        if done || self.leaves >= self.most {
+            return Err(format!("{} combinations of modes were not enough", self.leaves));
         }
         let found = self.dictionary.feasible();
         if let Feasibility::Reason(_) = found
@@ -255,7 +269,7 @@ impl Search<'_> {
         }
         match self.next_point(found == Feasibility::Point) {
             Some(point) => self.branch(point),
-            None => Ok(self.cell(found == Feasibility::Point)),
+            None => self.cell(found == Feasibility::Point),
         }
     }
 
@@ -283,9 +297,21 @@ impl Search<'_> {
         undecided.map(|k| (product(k), k)).reduce(|a, b| if b.0 > a.0 { b } else { a }).map(|(_, k)| k)
     }
 
+    /// The modes of a point, first those that the present point of the program nearly satisfies.
+    fn nearest_first(&self, point: usize) -> Vec<Choice> {
+        let n = self.lcp.facets.len();
+        let value = |x: usize| self.dictionary.value(x).max(0.0);
+        let most = |first: usize| (first..first + n).map(value).fold(1e-3, f64::max);
+        let sizes = [most(0), most(n)];
+        let distance = |choice: &Choice| choice.1.iter().map(|x| value(*x) / sizes[x / n]).fold(0.0, f64::max);
+        let mut choices = self.choices[point].clone();
+        choices.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+        choices
+    }
+
     fn branch(&mut self, point: usize) -> Result<Explained, String> {
         let (mut modes, mut reasons) = (Vec::new(), Vec::new());
-        for (mode, fixed) in self.choices[point].clone() {
+        for (mode, fixed) in self.nearest_first(point) {
             self.decided[point] = Some(mode);
             fixed.iter().for_each(|x| self.dictionary.fix(*x, true));
             let found = self.node();
@@ -300,19 +326,36 @@ impl Search<'_> {
         }
         reasons.sort_unstable();
         reasons.dedup();
+        let place = |mode: &PointMode| self.choices[point].iter().position(|choice| choice.0 == *mode);
+        modes.sort_by_key(|(mode, _)| place(mode));
         Ok((ModeTree::Point { point, modes }, reasons))
     }
 
     /// All points have their modes and the program has a point, or was not decided.
-    fn cell(&mut self, feasible: bool) -> Explained {
+    fn cell(&mut self, feasible: bool) -> Result<Explained, String> {
         self.leaves += 1;
         let modes: Vec<PointMode> = self.decided.iter().map(|mode| mode.unwrap_or(PointMode::Stick)).collect();
         let found = if feasible { self.rate_of_cell(&modes) } else { None };
         match found {
             Some(rate) => add(&mut self.rates, rate),
+            None if !feasible && self.only_rests(&modes) => {}
             None => self.doubtful = true,
         }
-        (ModeTree::Rate(modes), (0..self.choices.len()).collect())
+        if self.leaves >= self.enough && !self.rates.is_empty() {
+            return Err("the search ended with a rate".into());
+        }
+        Ok((ModeTree::Rate(modes), (0..self.choices.len()).collect()))
+    }
+
+    /// True if the equations of modes with λ̇ = 0 have the solution zero only.
+    fn only_rests(&self, modes: &[PointMode]) -> bool {
+        let known = |(point, mode): (&ActivePoint, &PointMode)| match mode {
+            PointMode::Vertex if !point.apex => None,
+            mode => Some(contact_mode(point, *mode, [0.0; 2])),
+        };
+        let modes: Option<Vec<ContactMode>> = self.problem.points.iter().zip(modes).map(known).collect();
+        let attempt = modes.and_then(|modes| self.problem.attempt(&modes, 0.0));
+        self.program.factor == 0.0 && attempt.is_some_and(|attempt| !attempt.singular)
     }
 
     fn rate_of_cell(&self, modes: &[PointMode]) -> Option<Rate> {

@@ -129,7 +129,7 @@ fn tried(scene: &RandomScene, tally: &mut Tally) {
     if apart && !scene.law.is_monotone() {
         tally.branches += 1;
         let named =
-            |r: &CaseResult| r.notes.iter().any(|n| n.contains("solutions") || n.contains("no rate of solution"));
+            |r: &CaseResult| r.notes.iter().any(|n| n.contains("solutions") || n.contains("proved that no rate"));
         if !named(event) && !named(newton) && !tends(scene, event, newton) {
             tally.unnamed.push(format!("{number} {:?}: event {}, Newton {}", scene.law, shown(event), shown(newton)));
         }

@@ -3,15 +3,18 @@
 
 use super::elastic_chain::by_elastic_chain;
 use super::factorisation::FactorisedModes;
-use super::point::{Point, active_points};
+use super::point::Point;
 use super::rates::{Direction, Rates, direction_of, leaving, motion_alone, residual};
 use super::schur::SchurComplement;
-use super::trace::Trace;
+use super::trace::{Log, Trace};
 use crate::contact::mode::ContactMode;
 use crate::path::system::{Load, System};
-use crate::rate::active_set::active_set;
-use crate::rate::problem::{Rate, RateOutcome};
-use crate::rate::solve::{EXAMINED, solve};
+use crate::path::twins::favoured;
+use crate::rate::answer::{Budget, Continuation, Neighbour, RateAnswer, answer, only_neighbour};
+use crate::rate::neighbours::settled;
+use crate::rate::problem::Rate;
+use crate::rate::proof::NoRate;
+use voussoir_core::path::{Branching, PathProblem};
 
 /// Relative residual of a direction above which it is solved anew.
 const RESIDUAL: f64 = 1e-12;
@@ -32,47 +35,58 @@ const DENSE: usize = 400;
 /// Rounds of the active set on the whole system, and those in which all points change at once.
 const ROUNDS: [usize; 2] = [80, 40];
 
-/// Where the path goes on.
+/// The continuation of the path.
 pub enum Next {
     /// With λ rising or standing still.
     Go(Direction),
-    /// With λ falling: nothing else is possible.
+    /// With λ falling; on a path that has risen it is proved that no rate rises.
     Falling(Direction),
-    /// Nowhere.
+    /// It is proved that no rate goes on.
     Nothing,
-    /// Not with λ rising; whether with λ standing still or falling is not decided.
-    NoneRises,
+    /// It is proved that no rate rises. It is not decided whether one stands still or falls, and why.
+    NoneRises(String),
     /// Not decided, and why.
     Lost(String),
 }
 
-/// The direction from the present state.
-pub fn next_direction(trace: &mut Trace, load: &Load) -> Next {
+/// The continuation of the path and, if it was sought and found, the proof that no rate raises the load.
+pub struct Continued {
+    pub next: Next,
+    pub none_rises: Option<NoRate>,
+}
+
+impl From<Next> for Continued {
+    fn from(next: Next) -> Self {
+        Continued { next, none_rises: None }
+    }
+}
+
+/// The direction from the present state: by the only rate next to the arrival if there is one, else by the answer to the
+/// rate problem of the whole active set.
+pub fn next_direction(trace: &mut Trace, load: &Load) -> Continued {
     trace.log.counts.rate_problems += 1;
     let points = &trace.state.points;
     let active: Vec<usize> = (0..points.len()).filter(|c| points[*c].settled().is_none()).collect();
-    // Where there are few combinations and several solutions are possible, all are examined.
-    if trace.associated || combinations(trace, &active) > EXAMINED {
-        let modes = present_modes(trace);
-        if let Some((modes, rates)) = by_elastic_chain(trace, load, &active, modes) {
-            trace.log.counts.by_force_method += 1;
-            return Next::Go(take(trace, modes, rates, load));
+    // From nothing all points are in the active set, and no rate is next to another one.
+    let many = if trace.state.x.iter().all(|v| *v == 0.0) {
+        true
+    } else {
+        match by_neighbours(trace, load, &active) {
+            Neighbourhood::Next(next) => return next.into(),
+            Neighbourhood::NotFound => active.len() > MANY && trace.state.sense > 0.0,
+            Neighbourhood::Several => false,
         }
-        if let Some(direction) = by_newcomers(trace, load, &active) {
-            return Next::Go(direction);
-        }
-    }
-    if (active.len() > MANY || trace.factors.present.is_none())
-        && let Some(direction) = on_whole_system(trace, load, &active)
-    {
-        return Next::Go(direction);
+    };
+    if many && let Some(direction) = on_whole_system(trace, load, &active) {
+        return Next::Go(direction).into();
     }
     if active.len() > DENSE && !trace.associated {
         return Next::Lost(format!(
             "the rate problem at λ = {:.9} has {} contact points in its active set, friction is not associated, and the active set on the whole system did not solve it: newton_path may",
             trace.state.factor,
             active.len()
-        ));
+        ))
+        .into();
     }
     // One attempt on the present factorisation, one on a fresh one.
     for fresh in [false, true] {
@@ -89,24 +103,20 @@ pub fn next_direction(trace: &mut Trace, load: &Load) -> Next {
             return Next::Lost(
                 "the system is singular with the contact points of the active set closed: a block is held by nothing"
                     .into(),
-            );
+            )
+            .into();
         }
         if let Some(next) = by_rate_problem(trace, load, &active) {
             return next;
         }
     }
-    Next::Lost("the stiffness of the contact points of the active set could not be found".into())
+    Next::Lost("the stiffness of the contact points of the active set could not be found".into()).into()
 }
 
 pub(super) fn factorise(trace: &mut Trace, modes: Vec<ContactMode>, refine_columns: bool) -> bool {
     trace.log.counts.factorisations += 1;
     trace.factors.present = FactorisedModes::new(&trace.system, modes, refine_columns);
     trace.factors.present.is_some()
-}
-
-fn combinations(trace: &Trace, active: &[usize]) -> usize {
-    let points = active_points(&trace.system, &trace.state.points, active);
-    points.iter().fold(1, |n: usize, point| n.saturating_mul(point.candidates().len()))
 }
 
 /// Modes of all points; those of the active set keep theirs.
@@ -140,52 +150,102 @@ fn refresh_for(trace: &mut Trace, open: &[usize], modes: &[ContactMode]) -> bool
     factorise(trace, closed, refine_columns)
 }
 
-/// The active set over the points that have just arrived somewhere and those that this moves out of their modes,
-/// while all others go on as they are. `None` where nothing with λ rising is found so.
-fn by_newcomers(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<Direction> {
-    let mut open: Vec<usize> = active.iter().copied().filter(|c| trace.state.points[*c].hit).collect();
-    loop {
-        if open.len() > MANY {
-            return None;
-        }
-        let mut modes = present_modes(trace);
-        if !refresh_for(trace, &open, &modes) {
-            return None;
-        }
-        let Trace { system, state, factors, log, .. } = &mut *trace;
-        let base = factors.present.as_mut()?;
-        let refined_columns = base.refine_columns;
-        let at = (state.load_step, load);
-        let local = SchurComplement::new((system, &state.points), base, at, &open, &modes, &mut log.counts.solves)?;
-        let guess: Vec<ContactMode> = open.iter().map(|c| modes[*c]).collect();
-        let rate = active_set(&local.rate, guess.clone(), &mut log.counts.rates.trials);
-        // A moving support does no work on a mechanism: where it can move on, it does.
-        let standing = || if load.settles { None } else { local.rate.at_constant_load(&guess) };
-        let rate = rate.or_else(standing)?;
-        let mut rates = rates_of(&local, base, at, &rate, (&open, &mut modes))?;
-        log.counts.solves += rates.refinements;
-        let forces = 2 * system.contacts;
-        if rates.factor == 0.0 {
-            rates.x[..forces].fill(0.0);
-            rates = Rates::new(system, rates.x, 0.0, load);
-            rates.worst = residual(system, &rates, load, &modes).0;
-        } else if !refined_columns && rates.nears_mechanism(forces) {
-            factors.refine_columns = true;
-            continue;
-        }
-        let moved = leaving((system, &state.points), (&rates, load), active, &modes)?;
-        if moved.is_empty() {
-            let rates = solved_anew(trace, rates, load, &modes);
-            let believed = rates.worst <= BELIEVED[0];
-            return believed.then(|| take(trace, modes, rates, load));
-        }
-        let new = moved.into_iter().map(|(_, c, _)| c).filter(|c| !open.contains(c));
-        let before = open.len();
-        open = open.iter().copied().chain(new).collect();
-        if open.len() == before {
-            return None;
+/// The continuation next to the arrival.
+enum Neighbourhood {
+    /// The only one.
+    Next(Next),
+    /// The search found no rate.
+    NotFound,
+    /// Several, or not decided.
+    Several,
+}
+
+/// The only rate next to the arrival: of a chain by its joints, else over the points of the event and those that it moves
+/// out of their modes, while all others keep theirs.
+fn by_neighbours(trace: &mut Trace, load: &Load, active: &[usize]) -> Neighbourhood {
+    // One point that arrives has one cell to go to: the present modes lead there.
+    if trace.state.sense > 0.0 && (trace.associated || trace.arrived() <= 1) {
+        let modes = present_modes(trace);
+        if let Some((modes, rates)) = by_elastic_chain(trace, load, active, modes) {
+            trace.log.counts.by_force_method += 1;
+            return Neighbourhood::Next(Next::Go(take(trace, modes, rates, load)));
         }
     }
+    let mut open: Vec<usize> =
+        active.iter().copied().filter(|c| trace.state.points[*c].arrived_from.is_some()).collect();
+    loop {
+        if open.len() > MANY {
+            return Neighbourhood::NotFound;
+        }
+        match by_newcomers(trace, load, active, &open) {
+            Some(Newcomers::Next(next)) => return Neighbourhood::Next(next),
+            Some(Newcomers::Move(points)) => open.extend(points),
+            Some(Newcomers::Again) => {}
+            Some(Newcomers::Several) => return Neighbourhood::Several,
+            None => return Neighbourhood::NotFound,
+        }
+    }
+}
+
+/// The rates next to the arrival over some open points.
+enum Newcomers {
+    Next(Next),
+    /// They move these points out of their modes.
+    Move(Vec<usize>),
+    /// A mechanism is near: the same with refined responses.
+    Again,
+    Several,
+}
+
+/// The only rate over the `open` points while all others keep their modes. `None` if no rate continues the path so.
+fn by_newcomers(trace: &mut Trace, load: &Load, active: &[usize], open: &[usize]) -> Option<Newcomers> {
+    let mut modes = present_modes(trace);
+    if !refresh_for(trace, open, &modes) {
+        return None;
+    }
+    let arrival = trace.arrival(open);
+    let Trace { system, state, factors, log, associated, .. } = &mut *trace;
+    let base = factors.present.as_mut()?;
+    let refined_columns = base.refine_columns;
+    let at = (state.load_step, load);
+    let local = SchurComplement::new((system, &state.points), base, at, open, &modes, &mut log.counts.solves)?;
+    let trials = &mut log.counts.rates.trials;
+    let rate = if *associated {
+        // All rates that rise have the same forces, and a mechanism proves that none rises. A moving support does no
+        // work on a mechanism: if it can move on, it does.
+        let (guess, free) = (open.iter().map(|c| modes[*c]).collect(), vec![false; open.len()]);
+        settled(&local.rate, guess, &free, 1.0, trials)
+            .filter(|rate| rate.factor > 0.0 || !load.settles && local.rate.leads_on(rate))?
+    } else {
+        match only_neighbour(&local.rate, &arrival, &Budget::default(), trials) {
+            Neighbour::Only(rate) => rate,
+            Neighbour::None => return None,
+            Neighbour::Several => return Some(Newcomers::Several),
+        }
+    };
+    let falls = rate.factor < 0.0;
+    let mut rates = rates_of(&local, base, at, &rate, (open, &mut modes))?;
+    log.counts.solves += rates.refinements;
+    let forces = 2 * system.contacts;
+    if rates.factor == 0.0 {
+        rates.x[..forces].fill(0.0);
+        rates = Rates::new(system, rates.x, 0.0, load);
+        rates.worst = residual(system, &rates, load, &modes).0;
+    } else if !refined_columns && rates.nears_mechanism(forces) {
+        factors.refine_columns = true;
+        return Some(Newcomers::Again);
+    }
+    let moved = leaving((system, &state.points), (&rates, load), active, &modes)?;
+    if moved.is_empty() {
+        let rates = solved_anew(trace, rates, load, &modes);
+        let believed = rates.worst <= BELIEVED[0];
+        return believed.then(|| {
+            let direction = take(trace, modes, rates, load);
+            Newcomers::Next(if falls { Next::Falling(direction) } else { Next::Go(direction) })
+        });
+    }
+    let new: Vec<usize> = moved.into_iter().map(|(_, c, _)| c).filter(|c| !open.contains(c)).collect();
+    (!new.is_empty()).then_some(Newcomers::Move(new))
 }
 
 /// Takes rates as the direction, and the modes of all points.
@@ -207,54 +267,83 @@ fn rates_of(
     Some(refined(local, base, Rates::new(local.system, x, rate.factor, at.1), at.1, modes))
 }
 
-/// The rate problem over the active set. `None` where linear algebra fails.
-fn by_rate_problem(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<Next> {
+/// The answer to the rate problem over the active set. `None` if linear algebra fails.
+fn by_rate_problem(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<Continued> {
     let mut modes = present_modes(trace);
-    let Trace { system, state, factors, log, associated, .. } = &mut *trace;
+    let arrival = trace.arrival(active);
+    let Trace { system, state, factors, log, problem, associated, .. } = &mut *trace;
     let base = factors.present.as_mut()?;
     let (at, solves) = ((state.load_step, load), &mut log.counts.solves);
     let mut local = SchurComplement::new((system, &state.points), base, at, active, &modes, solves)?;
-    local.rate.from_nothing = state.x.iter().all(|v| *v == 0.0);
-    let (rate, falling) = match solve(&local.rate, !*associated, &mut log.counts.rates) {
-        RateOutcome::Found(rate, others) => {
-            if let Some(others) = others.filter(|n| *n > 0) {
-                log.counts.bifurcations += 1;
-                if log.counts.bifurcations == 1 {
-                    log.notes.push(format!(
-                        "at λ = {:.9} the rate problem has at least {} solutions; the one taken keeps the modes of the contact points as far as it can",
-                        state.factor,
-                        others + 1
-                    ));
-                }
-            }
-            (rate, false)
+    local.measure(base, at, system.units.of_factor(problem, &problem.load_steps[state.load_step].loading))?;
+    let RateAnswer { continuation, none_rises } =
+        answer(&local.rate, &arrival, &Budget::default(), &mut log.counts.rates);
+    let (rate, twins) = match continuation {
+        Continuation::Goes { rate, twins } => (rate, twins),
+        Continuation::NoneContinues(_) => return Some(Continued { next: Next::Nothing, none_rises }),
+        Continuation::Open(why) if none_rises.is_some() => {
+            return Some(Continued { next: Next::NoneRises(why), none_rises });
         }
-        RateOutcome::Falling(rate) => (rate, true),
-        RateOutcome::NoRate => return Some(Next::Nothing),
-        RateOutcome::NoneRises => return Some(Next::NoneRises),
-        RateOutcome::Undecided(combinations) => {
-            return Some(Next::Lost(format!(
-                "the rate problem at λ = {:.9} has {} contact points in its active set ({combinations} combinations), and pivoting did not solve it; newton_path or a slightly different mesh or load may pass",
-                state.factor,
-                active.len()
-            )));
-        }
+        Continuation::Open(why) => return Some(Next::Lost(lost(state.factor, active.len(), &why)).into()),
     };
+    // A mechanism of associated flow is the proof itself.
+    let proved = none_rises.is_some() || arrival.factor < 0.0 || (*associated && rate.factor == 0.0);
+    if rate.factor <= 0.0 && !proved {
+        let why = "it is not decided whether a rate raises the load";
+        return Some(Next::Lost(lost(state.factor, active.len(), why)).into());
+    }
+    let rate = favoured_twin(&local, base, (problem, at, state.factor), rate, twins, log)?;
     let rates = rates_of(&local, base, at, &rate, (active, &mut modes))?;
     log.counts.solves += rates.refinements;
     let mut rates = solved_anew(trace, rates, load, &modes);
     if rates.factor != 0.0 && rates.worst > BELIEVED[1] {
         let Some(motion) = motion_alone((&trace.system, &trace.state.points), &rates, load, active, &modes) else {
-            return Some(Next::Lost(format!(
+            let why = format!(
                 "the rates at λ = {:.9} leave {:.1e} of their equations: the system is singular to rounding",
                 trace.state.factor, rates.worst
-            )));
+            );
+            return Some(Next::Lost(why).into());
         };
         rates = motion;
     }
     active.iter().zip(&rate.modes).for_each(|(c, mode)| trace.state.points[*c].mode = *mode);
     let direction = direction_of(&trace.system, &mut trace.state.points, rates, load);
-    Some(if falling { Next::Falling(direction) } else { Next::Go(direction) })
+    let next = if rate.factor < 0.0 { Next::Falling(direction) } else { Next::Go(direction) };
+    Some(Continued { next, none_rises })
+}
+
+fn lost(factor: f64, points: usize, why: &str) -> String {
+    format!(
+        "the rate problem at λ = {factor:.9} has {points} contact points in its active set and is not decided: {why}; a slightly different mesh or load may pass"
+    )
+}
+
+/// A rate or the one of its twins that later loads favour. Twins are noted.
+fn favoured_twin(
+    local: &SchurComplement,
+    base: &mut FactorisedModes,
+    (problem, at, factor): (&PathProblem, (usize, &Load), f64),
+    rate: Rate,
+    twins: Vec<Rate>,
+    log: &mut Log,
+) -> Option<Rate> {
+    if twins.is_empty() {
+        return Some(rate);
+    }
+    let mut rates: Vec<Rate> = std::iter::once(rate).chain(twins).collect();
+    let (system, load_step) = (local.system, at.0);
+    let motion = |rate: &Rate| {
+        let x = local.combine(base, at, rate)?;
+        Some(system.motions(&x[2 * system.contacts..]))
+    };
+    let motions: Option<Vec<Vec<[f64; 3]>>> = rates.iter().map(motion).collect();
+    let motions = motions?;
+    let motions: Vec<&[[f64; 3]]> = motions.iter().map(Vec::as_slice).collect();
+    let chosen = favoured(problem, load_step, &motions);
+    let others = rates.len() - 1;
+    log.branchings.push(Branching { load_step, factor, snaps: false, released: 0.0, twins: true });
+    log.notes.push(format!("at factor {factor} {others} other rate(s) are twins of the one that is followed"));
+    Some(rates.swap_remove(chosen))
 }
 
 /// Refined against all equations in the modes that were found: responses of single points are not,

@@ -71,6 +71,7 @@ pub fn follow_events<R: EventRun>(
         };
         let whole = step >= bound;
         run.advance(trace, &rates, (step, sense), if whole { &[] } else { &hits });
+        trace.state.sense = 1.0;
         if whole {
             trace.state.factor = target;
         }

@@ -24,9 +24,9 @@ pub fn first_modes(
     let mut trace = Trace::new(problem, settings, &mut unobserved);
     trace.state.load_step = load_step;
     let load = Load::new(&trace.system, problem, &problem.load_steps[load_step].loading).reversed_if(sense < 0.0);
-    match next_direction(&mut trace, &load) {
+    match next_direction(&mut trace, &load).next {
         Next::Go(_) => Ok(trace.state.points.into_iter().map(|point| point.mode).collect()),
-        Next::Falling(_) | Next::Nothing | Next::NoneRises => Err("no rate of equilibrium leads on".into()),
+        Next::Falling(_) | Next::Nothing | Next::NoneRises(_) => Err("no rate of equilibrium leads on".into()),
         Next::Lost(why) => Err(why),
     }
 }

@@ -1,11 +1,11 @@
 //! Following the path: from load step to load step and from event to event, and how it ends.
 
-use super::direction::{Next, next_direction};
+use super::direction::{Continued, Next, next_direction};
 use super::elastic_chain::ElasticChain;
 use super::event_run::{Followed, RECORDED};
 use super::force_method::{Sections, by_force_method};
 use super::joint_tree::by_joint_tree;
-use super::next_event::{MOMENT, SAME, advance, next_event};
+use super::next_event::{MOMENT, SAME, advance, begin_without_end, next_event};
 use super::rates::Direction;
 use super::stability::stage_stability;
 use super::trace::Trace;
@@ -14,6 +14,7 @@ use super::witness::{none_continues, none_rises, rate_witness};
 use crate::path::outcome::{Outcome, PathRecord};
 use crate::path::stability::regains_limit_point;
 use crate::path::system::Load;
+use crate::rate::proof::NoRate;
 use voussoir_core::certificate::flow_residual;
 use voussoir_core::limit::{Counters, Status};
 use voussoir_core::path::{
@@ -39,7 +40,14 @@ enum End {
     /// Not followed further, and why.
     Stalled(String),
     /// A direction without end under a load.
-    Ray(Box<Direction>, Box<Load>),
+    Ray(Box<Ray>),
+}
+
+/// A direction without end under a load, and the proof that no rate raises the load, if there is one.
+struct Ray {
+    direction: Direction,
+    load: Load,
+    proof: Option<NoRate>,
 }
 
 /// One load step while it is followed.
@@ -194,7 +202,7 @@ pub fn follow(problem: &PathProblem, settings: &PathSettings, observer: &mut dyn
 fn begin(follower: &mut Follower, load_step: usize) -> Run {
     let trace = &mut follower.trace;
     let present = &trace.problem.load_steps[load_step];
-    (trace.state.load_step, trace.state.factor) = (load_step, present.start);
+    (trace.state.load_step, trace.state.factor, trace.state.sense) = (load_step, present.start, 1.0);
     let (LoadStepEnd::Factor(target) | LoadStepEnd::Collapse(target)) = present.end;
     let sense = match present.end {
         LoadStepEnd::Factor(f) if f < present.start => -1.0,
@@ -229,7 +237,7 @@ fn step(follower: &mut Follower, run: &mut Run) -> Result<bool, End> {
         )));
     }
     let by_chain = follower.trace.log.counts.by_force_method;
-    let direction = direction(follower, run)?;
+    let (direction, proof) = direction(follower, run)?;
     let trace = &mut follower.trace;
     let by_chain = trace.log.counts.by_force_method > by_chain;
     let left = (run.target - trace.state.factor) * run.sense;
@@ -243,7 +251,8 @@ fn step(follower: &mut Follower, run: &mut Run) -> Result<bool, End> {
     let whole = bound <= step;
     let step = step.min(bound);
     if step.is_infinite() {
-        return Err(End::Ray(Box::new(direction), Box::new(run.load.clone())));
+        begin_without_end(trace, &direction);
+        return Err(End::Ray(Box::new(Ray { direction, load: run.load.clone(), proof })));
     }
     let before = trace.state.factor;
     advance(trace, &direction, step, run.sense, if whole { &[] } else { &hits });
@@ -319,34 +328,32 @@ fn try_force_method(follower: &mut Follower, run: &mut Run) -> Result<bool, End>
 }
 
 /// The direction in which the path goes on; where λ begins to fall, the limit point is noted.
-fn direction(follower: &mut Follower, run: &mut Run) -> Result<Direction, End> {
+fn direction(follower: &mut Follower, run: &mut Run) -> Result<(Direction, Option<NoRate>), End> {
     let factor = follower.trace.state.factor;
-    let excluded = "every combination of the contact points of the active set is excluded";
-    let next = next_direction(&mut follower.trace, &run.load);
-    let undecided = matches!(next, Next::NoneRises);
+    let Continued { next, none_rises: proof } = next_direction(&mut follower.trace, &run.load);
+    let mut undecided = false;
     let (direction, note) = match next {
         Next::Go(direction) => {
             follower.limits.falling &= direction.factor <= 0.0;
-            return Ok(direction);
+            return Ok((direction, proof));
         }
         Next::Falling(direction) => (
             Some(direction),
-            format!(
-                "at λ = {factor:.12} no rate of solution has λ rising or standing still: {excluded}; the path goes on with λ falling"
-            ),
+            format!("at λ = {factor:.12} it is proved that no rate has λ rising; the path goes on with λ falling"),
         ),
         Next::Nothing => (
             None,
             format!(
-                "at λ = {factor:.12} no rate of solution goes on, rising or falling: {excluded}; what follows is dynamic"
+                "at λ = {factor:.12} it is proved that no rate goes on, rising or falling; the further motion is dynamic"
             ),
         ),
-        Next::NoneRises => (
-            None,
-            format!(
-                "at λ = {factor:.12} no rate of solution has λ rising: {excluded}; whether a rate goes on with λ standing still or falling is not decided"
-            ),
-        ),
+        Next::NoneRises(why) => {
+            undecided = true;
+            let note = format!(
+                "at λ = {factor:.12} it is proved that no rate has λ rising; it is not decided whether a rate stands still or falls: {why}"
+            );
+            (None, note)
+        }
         Next::Lost(why) => return Err(End::Stalled(why)),
     };
     if run.unrecorded.events > 0 && !run.unrecorded.record(&mut follower.trace) {
@@ -357,11 +364,11 @@ fn direction(follower: &mut Follower, run: &mut Run) -> Result<Direction, End> {
     }
     if !follower.limits.falling {
         follower.limits.add(follower.trace.present(), run.sense);
-        let witness = none_rises(&mut follower.trace, &run.load);
+        let witness = none_rises(&mut follower.trace, &run.load, proof.as_ref());
         follower.witnesses.extend(witness);
     }
     match direction {
-        Some(direction) => Ok(direction),
+        Some(direction) => Ok((direction, None)),
         None if undecided => Err(End::Stalled("the path was not followed beyond its limit point".into())),
         None => {
             let witness = none_continues(&mut follower.trace, &run.load, run.sense);
@@ -381,13 +388,13 @@ fn finish(mut follower: Follower, end: End, sense: f64) -> PathAnswer {
             follower.trace.log.notes.push(why);
             Outcome::at(Status::Stalled, None)
         }
-        End::Ray(direction, load) => ray_outcome(&mut follower, &direction, &load, sense),
+        End::Ray(ray) => ray_outcome(&mut follower, &ray, sense),
     };
     answer(follower, outcome)
 }
 
 /// A direction without end: a mechanism where λ stands still, else a ray that carries any load.
-fn ray_outcome(follower: &mut Follower, direction: &Direction, load: &Load, sense: f64) -> Outcome {
+fn ray_outcome(follower: &mut Follower, Ray { direction, load, proof }: &Ray, sense: f64) -> Outcome {
     let trace = &mut follower.trace;
     let (contacts, force_unit) = (trace.system.contacts, trace.system.units.force);
     if direction.factor > 0.0 {
@@ -426,7 +433,7 @@ fn ray_outcome(follower: &mut Follower, direction: &Direction, load: &Load, sens
     };
     // With associated flow the mechanism itself is the proof.
     if matches!(outcome.status, Status::Collapse | Status::NoEquilibrium) {
-        let witness = if trace.associated { None } else { none_rises(trace, load) };
+        let witness = if trace.associated { None } else { none_rises(trace, load, proof.as_ref()) };
         follower.witnesses.extend(witness);
     }
     let trace = &mut follower.trace;
@@ -450,7 +457,7 @@ fn answer(follower: Follower, mut outcome: Outcome) -> PathAnswer {
         ("solves", log.counts.solves),
         ("rate_problems", log.counts.rate_problems),
         ("rate_trials", log.counts.rates.trials),
-        ("bifurcations", log.counts.bifurcations),
+        ("bifurcations", log.branchings.len() as u64),
         ("rate_problems_by_redundants", log.counts.by_force_method),
         ("sections_looked_at", log.counts.sections),
         ("events", log.events.len() as u64),
@@ -470,18 +477,8 @@ fn answer(follower: Follower, mut outcome: Outcome) -> PathAnswer {
         limits.proven.push(proven(&state));
     }
     let (load_step, limit_points) = (state.load_step, limits.proven);
-    let (stability, events, notes) = (log.stability, log.events, log.notes);
-    let record = PathRecord {
-        load_step,
-        state,
-        last,
-        limit_points,
-        stability,
-        events,
-        witnesses,
-        counters,
-        notes,
-        ..PathRecord::default()
-    };
+    let (stability, branchings, events, notes) = (log.stability, log.branchings, log.events, log.notes);
+    let record =
+        PathRecord { load_step, state, last, limit_points, stability, branchings, events, witnesses, counters, notes };
     outcome.unconfirmed(record)
 }

@@ -7,7 +7,7 @@ use crate::contact::facet::{dot, slack};
 use crate::contact::mode::ContactMode;
 use crate::linear::largest;
 use crate::path::events::{ContactStatus, transition};
-use voussoir_core::law::FacetMode;
+use voussoir_core::law::{Facet, FacetMode};
 use voussoir_core::path::{ContactEvent, PathEvent};
 
 /// Slacks and gaps below this (in scaled units) are events of the same moment.
@@ -96,6 +96,7 @@ pub fn advance(trace: &mut Trace, direction: &Direction, step: f64, sense: f64, 
         *x += step * rate;
     }
     trace.state.factor += sense * step * direction.factor;
+    trace.state.sense = direction.factor;
     let size = largest(&direction.x[..2 * trace.system.contacts]);
     for (c, opening_rate) in openings.into_iter().enumerate() {
         let rate = [direction.x[2 * c], direction.x[2 * c + 1]];
@@ -109,24 +110,14 @@ pub fn advance(trace: &mut Trace, direction: &Direction, step: f64, sense: f64, 
 pub fn stepped(trace: &mut Trace, c: usize, rate: [f64; 2], opening: f64, before: f64, size: f64) {
     let Some(facets) = &trace.system.facets[c] else { return };
     let was_open = trace.state.points[c].open();
-    let was_hit = std::mem::take(&mut trace.state.points[c].hit);
+    let was_hit = trace.state.points[c].arrived_from.take().is_some();
     let point = &mut trace.state.points[c];
     if !was_open && point.mode == ContactMode::Stick && point.active.is_empty() {
         return;
     }
     let flows = point.mode != ContactMode::Stick;
     point.opening = if was_open || flows { (point.opening + opening).max(0.0) } else { 0.0 };
-    let mut happened = Vec::new();
-    if !was_open && point.open() {
-        happened.push(ContactEvent::Opens);
-    }
-    // What began to flow in this step began at its start.
-    if let ContactMode::Facet(f) = point.mode
-        && was_hit
-    {
-        let status = ContactStatus::of_facet(&facets[f as usize]);
-        happened.extend(transition(ContactStatus::Sticks, status).filter(|_| status != ContactStatus::Open));
-    }
+    let mut happened = begun(point.mode, facets, was_hit, !was_open && point.open());
     // Facets that this direction leaves are active no more.
     if !(point.open() && point.apex) {
         let force = [trace.state.x[2 * c], trace.state.x[2 * c + 1]];
@@ -144,6 +135,34 @@ pub fn stepped(trace: &mut Trace, c: usize, rate: [f64; 2], opening: f64, before
     trace.log.events.extend(happened.into_iter().map(|what| PathEvent { load_step, factor, contact, what }));
 }
 
+/// The events with which a point begins a piece: it opens, or, if it has just arrived at a facet, it flows.
+fn begun(mode: ContactMode, facets: &[Facet], arrived: bool, opens: bool) -> Vec<ContactEvent> {
+    let mut happened = Vec::new();
+    if opens {
+        happened.push(ContactEvent::Opens);
+    }
+    if let ContactMode::Facet(f) = mode
+        && arrived
+    {
+        let status = ContactStatus::of_facet(&facets[f as usize]);
+        happened.extend(transition(ContactStatus::Sticks, status).filter(|_| status != ContactStatus::Open));
+    }
+    happened
+}
+
+/// Notes the events with which a piece without an end begins.
+pub fn begin_without_end(trace: &mut Trace, direction: &Direction) {
+    let least = MECHANISM * largest(direction.gaps.as_flattened());
+    let (load_step, factor) = (trace.state.load_step, trace.state.factor);
+    for (c, point) in trace.state.points.iter().enumerate() {
+        let Some(facets) = &trace.system.facets[c] else { continue };
+        let flows = point.mode != ContactMode::Stick;
+        let opens = flows && !point.open() && opening_rate(trace, c, direction.gaps[c]) > least;
+        let happened = begun(point.mode, facets, point.arrived_from.is_some(), opens);
+        trace.log.events.extend(happened.into_iter().map(|what| PathEvent { load_step, factor, contact: c, what }));
+    }
+}
+
 /// Contact points that arrive at a facet, or (`usize::MAX`) close.
 pub fn arrive(trace: &mut Trace, hits: &[(usize, usize)]) {
     let state = &mut trace.state;
@@ -151,7 +170,7 @@ pub fn arrive(trace: &mut Trace, hits: &[(usize, usize)]) {
         let Some(facets) = &trace.system.facets[c] else { continue };
         let force = state.force(c);
         let point = &mut state.points[c];
-        point.hit = true;
+        point.arrived_from.get_or_insert(point.mode);
         // At the apex all facets meet.
         let bare = || (0..facets.len()).filter(|f| facets[*f].bound <= 0.0).collect();
         if f == usize::MAX {

@@ -3,6 +3,7 @@
 use crate::contact::active_point::ActivePoint;
 use crate::contact::mode::ContactMode;
 use crate::path::system::System;
+use crate::rate::arrival::ArrivalPoint;
 use voussoir_core::law::{Facet, FacetMode};
 
 /// What is kept of a contact point between events.
@@ -14,8 +15,8 @@ pub struct Point {
     pub opening: f64,
     /// Its mode on the present piece of the path.
     pub mode: ContactMode,
-    /// Whether it has just arrived at a facet.
-    pub hit: bool,
+    /// If it is a point of the present event: its mode on the piece before.
+    pub arrived_from: Option<ContactMode>,
     /// Whether anything has been noted as having happened to it.
     pub noted: bool,
     /// Bound at the apex: opening and both senses of slip end in one corner.
@@ -36,7 +37,7 @@ impl Point {
             active: Vec::new(),
             opening: 0.0,
             mode: ContactMode::Stick,
-            hit: false,
+            arrived_from: None,
             noted: false,
             apex: false,
             opening_facet: None,
@@ -48,7 +49,7 @@ impl Point {
         let apex = ActivePoint::is_apex(facets, &active);
         let opening = system.gap[c].max(0.0);
         let mode = if opening > 0.0 && apex { ContactMode::Open } else { ContactMode::Stick };
-        Point { active, opening, mode, hit: true, apex, opening_facet, ..closed }
+        Point { active, opening, mode, arrived_from: Some(mode), apex, opening_facet, ..closed }
     }
 
     /// Whether it is open.
@@ -64,9 +65,16 @@ impl Point {
             open: if self.open() { self.opening_facet } else { None },
             apex: self.apex && self.opening_facet.is_some_and(|f| self.active.contains(&f)),
             guess: self.mode,
-            hit: self.hit,
             stiffness: self.stiffness,
         }
+    }
+
+    /// As it arrives at the present event.
+    pub fn arrival(&self, force: [f64; 2]) -> ArrivalPoint {
+        let present = || self.settled().unwrap_or(self.mode);
+        let (mode, hit) = (self.arrived_from.unwrap_or_else(present), self.arrived_from.is_some());
+        // Rates are constant on a piece: slip ends at events of other points only.
+        ArrivalPoint { mode, hit, stops: false, force }
     }
 
     /// The mode of a point that has no choice; `None` in the active set.

@@ -4,7 +4,7 @@
 use super::factorisation::FactorisedModes;
 use super::point::{Point, active_points};
 use crate::contact::mode::ContactMode;
-use crate::linear::largest;
+use crate::linear::{inner, largest};
 use crate::path::system::{Load, System};
 use crate::rate::problem::{Rate, RateProblem};
 use nalgebra::{DMatrix, DVector};
@@ -67,7 +67,6 @@ impl<'a> SchurComplement<'a> {
             points: active_points(system, all, open),
             s: DMatrix::from_fn(2 * m, 2 * m, |i, j| responses[(row(i), j)]),
             load_rate: DVector::from_fn(2 * m, |i, _| responses[(row(i), 2 * m)] + response[(row(i), 2 * n)]),
-            from_nothing: false,
             load_force: largest(&base.load_rate(system, load_step, load)?[..2 * system.contacts]),
             load_flexibility: 0.0,
             metric: None,
@@ -94,6 +93,26 @@ impl<'a> SchurComplement<'a> {
         let load_rate = base.load_rate(self.system, load_step, load)?;
         x.iter_mut().zip(load_rate).for_each(|(x, d)| *x += rate.factor * d);
         Some(x)
+    }
+
+    /// Adds the products of motions and the displacement of the load, by which the rule compares rates. `factor`: the unit
+    /// of the load factor. `None` if linear algebra fails.
+    pub fn measure(&mut self, base: &mut FactorisedModes, at: (usize, &Load), factor: f64) -> Option<()> {
+        let (n, forces) = (2 * self.open, 2 * self.system.contacts);
+        let unit = |i: usize| {
+            let gap = |k: usize| [0, 1].map(|t| f64::from(u8::from(i == 2 * k + t)));
+            let gaps = (0..self.open).map(gap).collect();
+            Rate { factor: f64::from(u8::from(i == n)), modes: Vec::new(), gaps }
+        };
+        let responses: Option<Vec<Vec<f64>>> = (0..=n).map(|i| self.combine(base, at, &unit(i))).collect();
+        let responses = responses?;
+        let own = |i: usize, j: usize| if i == n && j == n { factor.powi(-2) } else { 0.0 };
+        let product = |i: usize, j: usize| inner(&responses[i][forces..], &responses[j][forces..]) + own(i, j);
+        let (by_load, load) = (responses[n].split_at(forces), at.1);
+        self.rate.metric = Some(DMatrix::from_fn(n + 1, n + 1, product));
+        self.rate.load_flexibility =
+            inner(load.wrench.as_flattened(), by_load.1) + inner(load.gap.as_flattened(), by_load.0);
+        Some(())
     }
 
     /// What takes away what a direction leaves of the equations: one step of refinement with the points'

@@ -8,8 +8,11 @@ use super::point::Point;
 use crate::contact::facet::dot;
 use crate::path::energy::{EnergyBalance, WorkState};
 use crate::path::system::System;
-use crate::rate::solve::RateCounts;
-use voussoir_core::path::{Loading, PathEvent, PathObserver, PathProblem, PathSettings, PathState, StageStability};
+use crate::rate::arrival::Arrival;
+use crate::rate::counts::RateCounts;
+use voussoir_core::path::{
+    Branching, Loading, PathEvent, PathObserver, PathProblem, PathSettings, PathState, StageStability,
+};
 
 /// The present state in scaled units.
 pub struct State {
@@ -21,6 +24,8 @@ pub struct State {
     pub load_step: usize,
     /// λ.
     pub factor: f64,
+    /// The sense of λ on the piece before: 1, 0 or −1. It is 1 at the start of a load step.
+    pub sense: f64,
     /// Stability under the loads, if it was examined.
     pub stable_under_load: Option<bool>,
     /// Work of loads and supports, and what dissipated \[J\].
@@ -54,6 +59,8 @@ pub struct Log {
     pub counts: Counts,
     /// Stability of the states at which stages end.
     pub stability: Vec<StageStability>,
+    /// Continuations with twins.
+    pub branchings: Vec<Branching>,
     /// Remarks for the answer.
     pub notes: Vec<String>,
 }
@@ -67,10 +74,8 @@ pub struct Counts {
     pub solves: u64,
     /// Rate problems.
     pub rate_problems: u64,
-    /// Who decided those that were put to all algorithms, and how many small systems that took.
+    /// Parts of the search that decided rate problems, and the number of small systems.
     pub rates: RateCounts,
-    /// Rate problems with several solutions.
-    pub bifurcations: u64,
     /// Rate problems of the force method.
     pub by_force_method: u64,
     /// Sections whose points it examined.
@@ -115,6 +120,7 @@ impl<'a> Trace<'a> {
                 points,
                 load_step: 0,
                 factor: 0.0,
+                sense: 1.0,
                 stable_under_load: None,
                 energy: EnergyBalance::default(),
             },
@@ -123,6 +129,17 @@ impl<'a> Trace<'a> {
             log: Log::default(),
             last: None,
         }
+    }
+
+    /// Number of contact points of the present event.
+    pub fn arrived(&self) -> usize {
+        self.state.points.iter().filter(|point| point.arrived_from.is_some()).count()
+    }
+
+    /// The arrival of some contact points at the present event.
+    pub fn arrival(&self, points: &[usize]) -> Arrival {
+        let arrived = |c: &usize| self.state.points[*c].arrival(self.state.force(*c));
+        Arrival { factor: self.state.sense, points: points.iter().map(arrived).collect() }
     }
 
     fn motion(&self) -> Vec<[f64; 3]> {

@@ -1,7 +1,7 @@
 //! Witnesses for the certificate: rates at a state, and proofs that no rate raises the load or continues the path.
 
 use super::direction::factorise;
-use super::point::Point;
+use super::point::{Point, active_points};
 use super::rates::Direction;
 use super::schur::SchurComplement;
 use super::trace::Trace;
@@ -9,13 +9,26 @@ use crate::contact::mode::ContactMode;
 use crate::path::dual_vector::{self, MOST_FACETS, Response};
 use crate::path::system::{Load, System};
 use crate::rate::problem::RateProblem;
+use crate::rate::proof::NoRate;
 use voussoir_core::path::{PathRate, RateClaim, Witness};
 
-/// The proof that no rate raises the load at the present state. `None` if the search does not find it within its budget.
-pub fn none_rises(trace: &mut Trace, load: &Load) -> Option<Witness> {
-    prove(trace, load, |problem, active, trials, response| {
-        dual_vector::none_rises(problem, active, trials, response).map(RateClaim::NoneRises)
-    })
+/// The witness that no rate raises the load at the present state: by a proof over its active set, or by a search. `None` if
+/// the search does not find a proof within its budget.
+pub fn none_rises(trace: &mut Trace, load: &Load, proof: Option<&NoRate>) -> Option<Witness> {
+    let Some(proof) = proof else {
+        return prove(trace, load, |problem, active, trials, response| {
+            dual_vector::none_rises(problem, active, trials, response).map(RateClaim::NoneRises)
+        });
+    };
+    let active = active_set(trace);
+    factorise_closed(trace)?;
+    let state = trace.present();
+    let Trace { system, state: present, factors, .. } = &mut *trace;
+    let base = factors.present.as_mut()?;
+    let points = active_points(system, &present.points, &active);
+    let response = |gaps: &[[f64; 2]], _: f64| base.opened(system, &active, gaps);
+    let tree = dual_vector::certified(proof, (&points, system), &active, &response)?;
+    Some(Witness { state, claim: RateClaim::NoneRises(tree) })
 }
 
 /// The proof that no rate continues the path from the present state; `sense` of λ in the load step.
@@ -25,20 +38,30 @@ pub fn none_continues(trace: &mut Trace, load: &Load, sense: f64) -> Option<Witn
     })
 }
 
+/// Numbers of the points that may change their modes.
+fn active_set(trace: &Trace) -> Vec<usize> {
+    let points = &trace.state.points;
+    (0..points.len()).filter(|c| points[*c].settled().is_none()).collect()
+}
+
+/// Factorises the structure with these points closed; the modes of all points.
+fn factorise_closed(trace: &mut Trace) -> Option<Vec<ContactMode>> {
+    let closed = |point: &Point| point.settled().unwrap_or(ContactMode::Stick);
+    let modes: Vec<ContactMode> = trace.state.points.iter().map(closed).collect();
+    factorise(trace, modes.clone(), true).then_some(modes)
+}
+
 /// A witness at the present state by a search over the modes of the active points.
 fn prove(
     trace: &mut Trace,
     load: &Load,
     search: impl FnOnce((&RateProblem, &System), &[usize], &mut u64, Response) -> Option<RateClaim>,
 ) -> Option<Witness> {
-    let points = &trace.state.points;
-    let active: Vec<usize> = (0..points.len()).filter(|c| points[*c].settled().is_none()).collect();
-    if active.iter().map(|c| points[*c].active.len()).sum::<usize>() > MOST_FACETS {
+    let active = active_set(trace);
+    if active.iter().map(|c| trace.state.points[*c].active.len()).sum::<usize>() > MOST_FACETS {
         return None;
     }
-    let closed = |point: &Point| point.settled().unwrap_or(ContactMode::Stick);
-    let modes: Vec<ContactMode> = points.iter().map(closed).collect();
-    factorise(trace, modes.clone(), true).then_some(())?;
+    let modes = factorise_closed(trace)?;
     let state = trace.present();
     let Trace { system, state: present, factors, log, .. } = &mut *trace;
     let base = factors.present.as_mut()?;

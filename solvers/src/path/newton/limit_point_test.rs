@@ -9,16 +9,15 @@ use super::response::traction_row;
 use super::state::{State, Tangent};
 use super::system::StepSystem;
 use super::tangent::tangent_from;
-use super::twins::favoured;
 use crate::contact::active_point::ActivePoint;
 use crate::contact::facet::slack;
 use crate::contact::mode::ContactMode;
 use crate::linear::{inner, largest};
-use crate::rate::answer::{Budget, Continuation, answer};
+use crate::path::twins::favoured;
+use crate::rate::answer::{Budget, Continuation, RisingRate, answer, rising_rate};
 use crate::rate::arrival::{Arrival, ArrivalPoint};
-use crate::rate::branching::{RisingRate, rising_rate};
+use crate::rate::counts::RateCounts;
 use crate::rate::problem::{Rate, RateProblem};
-use crate::rate::solve::RateCounts;
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::law::FacetMode;
 use voussoir_core::linear::{Entries, SparseLu};
@@ -309,7 +308,6 @@ pub(super) fn rate_problem<'s>(system: &'s StepSystem, active: &ActiveSet, respo
             open: *open,
             apex: open.is_none() && ActivePoint::is_apex(law, facets),
             guess: ContactMode::Stick,
-            hit: true,
             stiffness: 1.0,
         }
     };
@@ -317,7 +315,6 @@ pub(super) fn rate_problem<'s>(system: &'s StepSystem, active: &ActiveSet, respo
         points: active.contacts.iter().zip(&active.facets).map(point).collect(),
         s: DMatrix::from_fn(n, n, |i, j| force(i, &responses[j])),
         load_rate: DVector::from_fn(n, |i, _| force(i, &responses[n])),
-        from_nothing: false,
         load_force: largest(&responses[n][..2 * system.scaled.contacts]),
         load_flexibility: 0.0,
         metric: None,

@@ -38,7 +38,6 @@ mod system;
 mod tangent;
 mod tracer;
 mod tractions;
-mod twins;
 mod witness;
 
 use self::monitors::resolve;

@@ -8,9 +8,9 @@ use super::recorded::{energy_after, recorded, work_state};
 use super::relaxation::{Relaxation, relaxations};
 use super::state::State;
 use super::tracer::Tracer;
-use super::twins::favoured;
 use crate::path::energy::EnergyBalance;
 use crate::path::stability::SecondOrderWork;
+use crate::path::twins::favoured;
 use voussoir_core::path::Branching;
 
 /// Difference of two falls of energy, relative to them, with which branches are twins.

@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::optimise::lcg::Lcg;
+use crate::rate::counts::Algorithm;
 use crate::rate::proof::ModeTree;
-use crate::rate::solve::Algorithm;
 
 /// A random structure on points at the apex or pressed, with associated friction.
 fn random_case(laws: &[Facet], count: usize, columns: usize, seed: u64) -> Case<'_> {

@@ -1,7 +1,9 @@
 //! Rate problems of one to three points, each one idea, and random ones against complete enumeration.
 
-mod algorithms;
 mod associated;
+mod enumeration;
+mod fuzzed;
+mod homotopy;
 mod numbering;
 mod one_point;
 mod proofs;
@@ -10,8 +12,8 @@ mod several_points;
 
 use super::answer::{Budget, Continuation, RateAnswer, answer};
 use super::arrival::{Arrival, ArrivalPoint};
+use super::counts::RateCounts;
 use super::problem::{Rate, RateProblem};
-use super::solve::RateCounts;
 use crate::contact::active_point::ActivePoint;
 use crate::contact::mode::ContactMode;
 use nalgebra::{DMatrix, DVector};
@@ -42,7 +44,6 @@ impl<'a> Case<'a> {
             open: None,
             apex: ActivePoint::is_apex(facets, active),
             guess: ContactMode::Stick,
-            hit: false,
             stiffness: 1.0,
         };
         let arrived = |(_, force): &(&[usize], [f64; 2])| ArrivalPoint {
@@ -56,7 +57,6 @@ impl<'a> Case<'a> {
                 points: points.iter().map(point).collect(),
                 s: DMatrix::from_row_slice(n, n, s),
                 load_rate: DVector::from_column_slice(load_rate),
-                from_nothing: false,
                 load_force: 0.0,
                 load_flexibility: 0.0,
                 metric: None,
@@ -75,7 +75,6 @@ impl<'a> Case<'a> {
     /// The point was in a mode before, and may be one of the event.
     fn arriving(mut self, k: usize, mode: ContactMode, hit: bool) -> Case<'a> {
         (self.arrival.points[k].mode, self.arrival.points[k].hit) = (mode, hit);
-        self.problem.points[k].hit = hit;
         self
     }
 

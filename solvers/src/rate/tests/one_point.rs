@@ -36,6 +36,21 @@ fn a_block_that_slides_is_a_mechanism() {
     assert!(case.problem.power(&rate.gaps) > 0.0 && answer.none_rises.is_some());
 }
 
+/// The growing load lowers the normal force of a point and pushes it back; other loads drive its slip. The load resists this
+/// mechanism, which continues the path only if the event makes it possible.
+#[test]
+fn other_loads_drive_a_mechanism() {
+    let laws = dry(0.5, 0.0);
+    let case = || Case::slipping(&laws, 1, &[0.0; 4], &[-1.0, -0.2]);
+    let arrived = case().arriving(0, ContactMode::Stick, true);
+    let answer = arrived.answer();
+    let Continuation::Goes { rate, .. } = answer.continuation else { panic!("{answer:?}") };
+    assert_eq!((rate.factor, rate.modes.clone()), (0.0, vec![SLIP]));
+    assert!(arrived.problem.load_resists(&rate) && answer.none_rises.is_some());
+    let slipped = case().arriving(0, SLIP, true).answer();
+    assert!(!matches!(slipped.continuation, Continuation::Goes { .. }), "{slipped:?}");
+}
+
 /// A motion without resistance on which the load does no work does not continue the path: the load rises.
 #[test]
 fn a_neutral_motion_is_no_mechanism() {

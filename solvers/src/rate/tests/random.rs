@@ -1,8 +1,8 @@
 //! Random problems against complete enumeration.
 
+use super::enumeration::enumerate_modes;
 use super::*;
 use crate::optimise::lcg::Lcg;
-use crate::rate::enumerate::enumerate_modes;
 use crate::rate::tree::search;
 
 /// A random structure; points are at the apex or pressed and about to slip, the first two in the event.

@@ -57,8 +57,6 @@ pub struct Joint {
     pub stale: bool,
     /// Whether points stand at facets that they may leave at any time.
     pub may_leave: bool,
-    /// Number of points of the active set.
-    pub active: usize,
     /// ṙ of each point when it was last examined.
     pub rates: Vec<[f64; 2]>,
 }
@@ -106,7 +104,6 @@ impl Joint {
             quiet: Quiet::default(),
             stale: true,
             may_leave: true,
-            active: 0,
             rates: vec![[0.0; 2]; n],
         }
     }
@@ -138,13 +135,12 @@ impl Joint {
         Some(())
     }
 
-    /// Counts points of the active set, and sees whether a mode is no longer the one of its tangent.
+    /// Sees whether a mode is no longer the one of its tangent.
     pub fn count(&mut self, section: &Section, points: &[Point]) {
-        (self.may_leave, self.active) = (false, 0);
+        self.may_leave = false;
         for place in &section.places {
             let point = &points[place.contact];
             self.stale |= point.settled().is_some_and(|mode| mode != point.mode);
-            self.active += usize::from(point.settled().is_none());
             self.may_leave |= match point.mode {
                 ContactMode::Stick => !point.active.is_empty(),
                 ContactMode::Open => !point.open(),

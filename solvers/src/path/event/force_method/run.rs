@@ -13,8 +13,6 @@ use crate::path::event::trace::Trace;
 use crate::path::system::Load;
 use nalgebra::{DVector, Vector3};
 
-/// Points of the active set from which flow that is not associated is not examined for other rates.
-const UNEXAMINED: usize = 7;
 /// Follows the path from event to event as far as it goes, in a sense of λ to a target, until `steps`, which counts,
 /// are as many as `bounds` allow.
 pub fn by_force_method(
@@ -66,8 +64,7 @@ fn next(run: &mut Run, trace: &mut Trace, bound: f64) -> Option<(Solution, f64, 
     for round in 0..ROUNDS[0] {
         trace.log.counts.rates.trials += 1;
         refresh(run, trace)?;
-        let active: usize = run.joints.iter().map(|j| j.active).sum();
-        if !trace.associated && active < UNEXAMINED {
+        if !trace.associated && run.arrived > 1 {
             return None;
         }
         let weak: Vec<usize> = (0..run.joints.len()).filter(|e| run.joints[*e].flexibility.is_none()).collect();
@@ -169,8 +166,10 @@ fn advance(run: &mut Run, trace: &mut Trace, solution: &Solution, (step, sense):
         run.update_all(trace, e, None);
         run.joints[e].stale = true;
     }
-    let hits: Vec<(usize, usize)> = hits.iter().map(|hit| (hit.2, hit.3)).collect();
+    let mut hits: Vec<(usize, usize)> = hits.iter().map(|hit| (hit.2, hit.3)).collect();
     arrive(trace, &hits);
+    hits.dedup_by_key(|hit| hit.0);
+    run.arrived = hits.len();
 }
 
 fn record(run: &mut Run, trace: &mut Trace) -> bool {

@@ -28,6 +28,8 @@ pub struct Run<'s> {
     pub examined: Vec<(usize, Vec<Hit>)>,
     /// Sections whose tangents are new since the last event.
     pub fresh: Vec<usize>,
+    /// Number of contact points of the present event. The rule chooses among their rates if flow is not associated.
+    pub arrived: usize,
     /// Modes before the present event.
     pub before: Vec<(usize, ContactMode)>,
     /// Work by the trapezoidal rule, displacement at the load and factor since the last record.
@@ -51,6 +53,7 @@ impl<'s> Run<'s> {
             motions: trace.state.x[2 * trace.system.contacts..].to_vec(),
             examined: Vec::new(),
             fresh: Vec::new(),
+            arrived: trace.arrived(),
             before: Vec::new(),
             since: [0.0, 0.0, trace.state.factor],
         })

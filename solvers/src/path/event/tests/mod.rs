@@ -1,5 +1,6 @@
 //! Tests of event_path on scenes of two or three blocks.
 
+mod continuations;
 mod ends;
 mod energy;
 mod friction;

@@ -6,6 +6,7 @@
 
 use super::super::control::Control;
 use super::super::control_row::{control_row, control_value};
+use super::super::inelastic::block_error;
 use super::super::iteration::{
     LinearisedAt, first_state, gap_error, largest_unknown, relative_residual, rotation_bound, rounding,
     unbalanced_share,
@@ -81,4 +82,5 @@ fn holds(system: &StepSystem, residual: &[f64], state: &State, rounding: f64, st
         && gap <= LOWEST + rounding / largest_unknown(system, state)
         && (stays || force <= LOWEST)
         && traction_error(system, state) <= LOWEST
+        && block_error(system, state) <= LOWEST
 }

@@ -37,8 +37,7 @@ fn candidates(system: &StepSystem, state: &State, contact: usize, closes: bool) 
         return Vec::new();
     };
     let apex = open.is_none() && ActivePoint::is_apex(&law.facets, &active);
-    let point =
-        ActivePoint { facets: &law.facets, active, open, apex, guess: ContactMode::Stick, hit: true, stiffness: 1.0 };
+    let point = ActivePoint { facets: &law.facets, active, open, apex, guess: ContactMode::Stick, stiffness: 1.0 };
     point.candidates()
 }
 

@@ -2,7 +2,7 @@
 
 use crate::path::continuation::load_control::LoadControl;
 use crate::path::newton::NewtonPath;
-use super::super::twins::favoured;
+use crate::path::twins::favoured;
 use crate::path::two_blocks::{Kept, STIFFNESS, block, finite, followed, force, point, pushed_at, strategies};
 use std::sync::Arc;
 use voussoir_core::limit::Status;

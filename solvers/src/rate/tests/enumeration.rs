@@ -1,7 +1,7 @@
 //! Every combination of modes: all solutions, with λ rising, standing still (mechanisms) and falling.
 
-use super::problem::{Rate, RateProblem};
 use crate::contact::mode::ContactMode;
+use crate::rate::problem::{Rate, RateProblem};
 
 /// All rates that solve the problem, each once.
 pub fn enumerate_modes(problem: &RateProblem, trials: &mut u64) -> Vec<Rate> {
