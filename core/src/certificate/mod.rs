@@ -17,8 +17,8 @@ pub use self::mechanism::{
     Sliding, jumps, mechanism, mechanism_of_deforming, velocity_at,
 };
 pub use self::path::{
-    Displaced, PathChain, PathChecker, TOLERANCES, Tolerance, flow_residual, leaves_forces, path_structure,
-    power_residual, ray_residual, tolerance,
+    Displaced, PathChain, PathChecker, TOLERANCES, Tolerance, flow_residual, forces_rest, leaves_forces,
+    path_structure, power_residual, ray_residual, tolerance,
 };
 pub use self::products::{COVERED, proved};
 pub use self::settlement::{settlement_residuals, support_motions};

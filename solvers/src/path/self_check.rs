@@ -9,7 +9,7 @@
 //!   (`rising`).
 
 use voussoir_core::certificate::{
-    MechanismPlace, PathChecker, flow_residual, leaves_forces, power_residual, ray_residual, tolerance,
+    MechanismPlace, PathChecker, flow_residual, forces_rest, leaves_forces, power_residual, ray_residual, tolerance,
 };
 use voussoir_core::limit::Status;
 use voussoir_core::path::{PathAnswer, PathObserver, PathProblem};
@@ -59,12 +59,11 @@ fn confirm(problem: &PathProblem, finite: bool, answer: &PathAnswer) -> Result<(
         }
         small(name, value)?;
     }
-    // Behind a limit point forces change with the motion.
-    let falls = answer.last.as_ref().is_some_and(|last| MechanismPlace::of(own, last.factor) == MechanismPlace::Peak);
+    let place = answer.last.as_ref().map(|last| MechanismPlace::of(own, last.factor));
+    let rest = forces_rest(problem, finite, place);
     match answer.status {
         Status::NoEquilibrium if answer.motion.is_none() => Err("there is no mechanism under the dead load".into()),
-        // Of blocks that flow the rigid motion is no mechanism by itself.
-        Status::Collapse | Status::NoEquilibrium if finite || falls || problem.yields() => Ok(()),
+        Status::Collapse | Status::NoEquilibrium if !rest => Ok(()),
         Status::Collapse | Status::NoEquilibrium => mechanism(problem, answer),
         Status::Unbounded => ray(problem, answer),
         _ => Ok(()),

@@ -26,7 +26,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use voussoir_core::certificate::{
     CentroidVelocity, Certificate, ContactForce, Hinge, Mechanism, MechanismPlace, PathChain, PathChecker,
-    flow_residual, jumps, largest_jump, tolerance,
+    flow_residual, forces_rest, jumps, largest_jump, tolerance,
 };
 use voussoir_core::limit::Status;
 use voussoir_core::model::geometry::{Vec2, turned};
@@ -68,14 +68,12 @@ pub(super) fn path_result(
     if let (Some(load), Some(structure)) = (&associated, checker.structure()) {
         end_in_limit_mechanism(assembly, &structure, load, &mut solved);
     }
-    let place =
-        solved.factor.zip(progress.history.last()).map(|(factor, last)| MechanismPlace::of(factor, last.factor));
-    // At a peak, and with finite displacements, forces change along the mechanism; blocks that yield flow in it.
-    let at_rest = !finite && place == Some(MechanismPlace::Plateau) && !problem.yields();
-    if at_rest {
+    let place = progress.history.last().map(|last| MechanismPlace::of(solved.state.factor, last.factor));
+    let rest = forces_rest(problem, finite, place);
+    if rest {
         prefer_symmetric(assembly, &checker, &mut solved);
     }
-    let mut certificate = certificate(&solved, &checker, at_rest, energy);
+    let mut certificate = certificate(&solved, &checker, rest, energy);
     chain.add_peak(&solved.state);
     let proof = PathProof::new(&chain, problem, input.settings, &solved);
     let end = proof.end();
@@ -286,8 +284,8 @@ fn with_stability(mut results: Vec<StageResult>, found: &[StageStability]) -> Ve
     results
 }
 
-/// Residuals of all states and, if forces are `at_rest` along the mechanism, of its flow, against their bounds.
-fn certificate(solved: &PathAnswer, checker: &PathChecker, at_rest: bool, energy: f64) -> Certificate {
+/// Residuals of all states and, if forces `rest` along the mechanism, of its flow, against their bounds.
+fn certificate(solved: &PathAnswer, checker: &PathChecker, rest: bool, energy: f64) -> Certificate {
     let mut certificate = Certificate { passed: true, residuals: BTreeMap::new(), failures: Vec::new() };
     for (name, value) in &checker.worst {
         certificate.residuals.insert((*name).into(), *value);
@@ -297,7 +295,7 @@ fn certificate(solved: &PathAnswer, checker: &PathChecker, at_rest: bool, energy
             certificate.failures.push(format!("{name} is {value:.2e}"));
         }
     }
-    if let (Some(structure), Some(motion), true) = (checker.structure(), &solved.motion, at_rest) {
+    if let (Some(structure), Some(motion), true) = (checker.structure(), &solved.motion, rest) {
         let flow = flow_residual(&structure, &solved.state.force, motion);
         certificate.residuals.insert("path_flow".into(), flow);
         if !small("path_flow", flow) {

@@ -14,8 +14,8 @@ use crate::solve::path_status::{ELSEWHERE, meeting_bounds, ordered};
 use crate::solve::safe_theorem::safe_theorem_holds;
 use crate::study::Case;
 use voussoir_core::certificate::{
-    CentroidVelocity, Displaced, Mechanism, MechanismPlace, PathChecker, flow_residual, path_structure, power_residual,
-    ray_residual,
+    CentroidVelocity, Displaced, Mechanism, MechanismPlace, PathChecker, flow_residual, forces_rest, path_structure,
+    power_residual, ray_residual,
 };
 use voussoir_core::limit::{Greatest, Status};
 use voussoir_core::model::Assembly;
@@ -40,17 +40,15 @@ pub(super) fn verify(case: &Case, result: &CaseResult, findings: &mut Findings) 
     }
     verify_status(case, &problem, &state, result, findings);
     verify_range(case, &problem, &state, result, findings);
-    // At a peak, and with finite displacements, forces change along the mechanism; blocks that yield flow in it.
-    let followed_to = result.path.followed_to.as_ref().map(|end| end.factor);
-    let place = result.proof.field_factor.zip(followed_to).map(|(factor, end)| MechanismPlace::of(factor, end));
-    let at_rest = !finite && place == Some(MechanismPlace::Plateau) && !problem.yields();
-    if let Some(mechanism) = &result.mechanism {
-        findings.expect(mechanism.at == place, "the place of the mechanism does not fit the end of the path");
+    let place = result.path.followed_to.as_ref().map(|end| MechanismPlace::of(state.factor, end.factor));
+    if let (Some(mechanism), Some(place)) = (&result.mechanism, place) {
+        findings.expect(mechanism.at == Some(place), "the place of the mechanism does not fit the end of the path");
     }
-    if result.status == Status::Collapse && at_rest {
+    let rest = forces_rest(&problem, finite, place);
+    if result.status == Status::Collapse && rest {
         findings.expect(result.proof.motion.is_some(), "a collapse without a mechanism");
     }
-    if let (Some(motion), true) = (&result.proof.motion, at_rest) {
+    if let (Some(motion), true) = (&result.proof.motion, rest) {
         let velocities = velocities(assembly, motion)?;
         verify_motion((assembly, &problem), &state, &velocities, result, findings);
     }

@@ -57,6 +57,6 @@ pub use self::chain::PathChain;
 pub use self::checker::PathChecker;
 pub use self::claims::{flow_residual, power_residual, ray_residual};
 pub use self::displaced::Displaced;
-pub use self::response::leaves_forces;
+pub use self::response::{forces_rest, leaves_forces};
 pub use self::structure::path_structure;
 pub use self::tolerance::{TOLERANCES, Tolerance, tolerance};

@@ -1,6 +1,7 @@
 //! Laws of tractions from gaps, recomputed from recorded states: the forces they give, and motions that
 //! leave those alone.
 
+use crate::certificate::MechanismPlace;
 use crate::law::TractionPoint;
 use crate::path::{PathProblem, PathState};
 
@@ -59,6 +60,13 @@ pub fn law_residual(
         }
     }
     Some((if worst <= 0.0 { 0.0 } else { worst / scale.max(1e-300) }, after))
+}
+
+/// Returns true if forces rest along the mechanism of a path, so that its flow can be checked at its one state. They do not with
+/// finite displacements, in blocks that yield, and behind the limit point of laws with a history.
+pub fn forces_rest(problem: &PathProblem, finite: bool, place: Option<MechanismPlace>) -> bool {
+    let softens = problem.memory_size() > 0 && place == Some(MechanismPlace::Peak);
+    !finite && !problem.yields() && !softens
 }
 
 /// How much a motion that goes on far (up to the scene's length) changes the forces of laws of
