@@ -1,7 +1,7 @@
 //! What a path claims at its end, checked again: a claim that is not confirmed becomes a stall.
 //!
 //! - every claim: the field of its state is in equilibrium, within its strengths and complementary;
-//! - collapse at a constant load: a mechanism with p·q̇ = 1 that obeys the laws' flow at that field and leaves forces alone;
+//! - collapse at a constant load: a mechanism with p·q̇ = 1 that obeys the laws' flow at that field and changes no force;
 //! - no equilibrium: the same under the dead load, before all of it is carried. A limit point of the
 //!   dead load is no proof: with friction that is not associated another path may carry it;
 //! - unbounded: rates of forces that balance the load and stay in the recession cone of the facets;

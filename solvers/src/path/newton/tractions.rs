@@ -83,7 +83,7 @@ impl Responses {
         self.groups.iter().flat_map(|group| group.points.iter().copied())
     }
 
-    /// What the law of a contact point says at a gap, from the states of all points before. `None` if it has no such law or the
+    /// The answer of the law of a contact point at a gap, from the states of all points before. `None` if it has no such law or the
     /// law fails.
     pub fn at(&self, contact: usize, gap: [f64; 2], before: &[f64]) -> Option<TractionPoint> {
         let (group, at) = self.of[contact]?;

@@ -269,7 +269,7 @@ fn locate(step: &mut Step, mut low: Trial, mut high: Trial) -> Advance {
             high = middle;
             continue;
         }
-        // What rests at its bound all along is violated behind a corner of the path, and only the bracket tells where that is.
+        // A monitor that rests at zero is violated behind a corner of the path: only the bracket gives the place of the corner.
         let arrives = |i: usize| {
             let here = &middle.readings[i];
             let falls =

@@ -68,6 +68,9 @@ const FAR: f64 = 1e-6;
 /// Share of a step beyond which its corner is its end.
 const NEARLY: f64 = 1.0 - 1e-9;
 
+/// The ending of the load step if a step ends it.
+type Ending = Option<LoadStepEnding>;
+
 /// A load step that is followed.
 struct Run<'d> {
     load_step: &'d LoadStep,
@@ -96,7 +99,7 @@ struct Run<'d> {
 struct Standing {
     /// Whether the path moves on under a constant load.
     on_plateau: bool,
-    /// Whether blocks flowed in the last step.
+    /// True if blocks flowed in the last step.
     flows: bool,
 }
 
@@ -200,7 +203,7 @@ impl<'d> Run<'d> {
         let start = tracer.state.clone();
         let advance = advance(&mut tracer.system, &start, &self.piece, length, watched);
         if advance.end().is_none_or(|end| end.error > MOST_ERROR)
-            && let Some(ending) = self.to_corner(tracer, length)
+            && let Some(ending) = self.end_at_corner(tracer, length)
         {
             return ending;
         }
@@ -221,7 +224,7 @@ impl<'d> Run<'d> {
 
     /// Ends a step that leaves its tangent at the corner where blocks begin to yield, and goes on behind it. `None` if blocks
     /// begin or cease to yield at no place of the step.
-    fn to_corner(&mut self, tracer: &mut Tracer, length: f64) -> Option<Option<LoadStepEnding>> {
+    fn end_at_corner(&mut self, tracer: &mut Tracer, length: f64) -> Option<Ending> {
         let start = tracer.state.clone();
         if start.blocks.is_empty() {
             return None;
@@ -283,7 +286,7 @@ impl<'d> Run<'d> {
 
     /// Takes a short step from a corner, about along a piece, by Newton's method on the laws themselves: modes and branches may
     /// change in it. `None` if there is no such step.
-    fn across(&mut self, tracer: &mut Tracer, facing: &State, piece: &Piece) -> Option<Option<LoadStepEnding>> {
+    fn across(&mut self, tracer: &mut Tracer, facing: &State, piece: &Piece) -> Option<Ending> {
         let here = tracer.state.clone();
         let (length, next, rate) = ACROSS.iter().map(|share| share * self.first).find_map(|length| {
             let control = piece.control(length);
@@ -406,7 +409,7 @@ impl<'d> Run<'d> {
     fn turn(&mut self, tracer: &mut Tracer, end: StepEnd) -> Option<LoadStepEnding> {
         let was = self.rises;
         let length = end.length;
-        // Other rates may be singular where the load turns, as the tilt of a block that softens: the chord tells how the path moves.
+        // At the turn other rates may be singular too, such as the tilt of a block that softens. The chord is not.
         let chord = (length > FAR * self.first).then(|| chord(&tracer.state, &end.state));
         if let Err(ending) = self.take(tracer, end) {
             return ending;
@@ -573,7 +576,7 @@ impl<'d> Run<'d> {
         }
         self.length = self.length.max(0.1 * length);
         let ahead = length_ahead(&tracer.system, &tracer.state);
-        if let Some(ending) = self.to_corner(tracer, ahead) {
+        if let Some(ending) = self.end_at_corner(tracer, ahead) {
             return ending;
         }
         if let Some(lost) = hits.iter().find(|hit| matches!(hit.what, What::Face { .. })) {

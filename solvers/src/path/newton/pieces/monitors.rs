@@ -76,7 +76,7 @@ pub(super) struct Reading {
 }
 
 impl Reading {
-    /// Of something that does not end.
+    /// The reading of something that does not end.
     pub const NEVER: Reading =
         Reading { value: 1.0, rate: None, tolerance: 0.0, rate_tolerance: 0.0, of_branch: false };
 
@@ -113,7 +113,7 @@ struct Sizes {
 }
 
 impl Monitors {
-    /// Of the modes of all contact points, and of the branches of laws of tractions.
+    /// The monitors of the modes of all contact points and of the branches of laws of tractions.
     pub fn of(system: &StepSystem, state: &State) -> Monitors {
         let mut all = Vec::new();
         for (contact, mode) in state.mode.iter().enumerate() {
@@ -152,7 +152,7 @@ impl Monitors {
         Monitors(all)
     }
 
-    /// What all of them read at a state along a tangent, in a step from `start`.
+    /// Reads all of them at a state along a tangent, in a step from `start`.
     pub fn read(&self, system: &StepSystem, start: &State, state: &State, tangent: &Tangent) -> Vec<Reading> {
         let greatest = |v: &[[f64; 2]]| v.iter().flatten().fold(0.0, |a: f64, x| a.max(x.abs()));
         let u = system.units();

@@ -32,7 +32,7 @@ pub(super) struct Piece {
 }
 
 impl Piece {
-    /// Of a rate at a state with its modes.
+    /// The piece of a rate at a state with its modes.
     pub fn new(system: &StepSystem, state: &State, tangent: &Tangent) -> Option<Piece> {
         Piece::along(system, tangent, Rc::new(Monitors::of(system, state)))
     }
@@ -62,7 +62,7 @@ impl Piece {
         tangent_nearby(system, state, &self.control(0.0))
     }
 
-    /// What the monitors read at a state along a rate, in a step from `start`.
+    /// The readings of the monitors at a state along a rate, in a step from `start`.
     pub fn read(&self, system: &StepSystem, start: &State, state: &State, rate: &Tangent) -> Vec<Reading> {
         self.monitors.read(system, start, state, rate)
     }

@@ -71,7 +71,7 @@ pub(super) fn plateau(tracer: &mut Tracer, piece: &Piece, direction: f64, flows:
         return None;
     }
     // The tangents of a loading set are linear: if no facet may change its mode their one rate has a constant factor. Those of
-    // blocks that flow are regularised and say nothing of it.
+    // blocks that flow are regularised and do not show it.
     let has_history = !tracer.system.laws.responses.is_empty() || start.yields();
     if !has_history {
         // Slip and forces give the dissipation of the whole motion.
@@ -101,7 +101,7 @@ fn is_same(tracer: &Tracer, start: &State, state: &State) -> bool {
     let largest = start.force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
     let pairs = start.force.iter().flatten().zip(state.force.iter().flatten());
     let change = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    // Where the load has fallen to nothing both are rounding of what they were at the limit point.
+    // If the load has fallen to nothing, both are rounding of their values at the limit point.
     let peak = tracer.limit.peak.as_ref().map_or(0.0, |peak| peak.factor.abs());
     let carried = largest.max(tracer.system.units().force * peak / tracer.system.units().factor);
     change <= CHANGE * carried && (start.factor - state.factor).abs() <= CHANGE * start.factor.abs().max(peak)
