@@ -234,7 +234,7 @@ fn strategies_need_few_steps() {
                 last.dissipated,
                 answer.notes
             );
-            assert!(of("steps") <= 45, "{name}: {}", of("steps"));
+            assert!(of("steps") <= 20, "{name}: {}", of("steps"));
         }
     }
 }
