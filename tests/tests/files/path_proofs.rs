@@ -164,6 +164,17 @@ fn times(value: &mut Value, by: f64) {
     *value = json!(by * value.as_f64().expect("a number"));
 }
 
+/// The place of a mechanism cannot be forged: the factors of the last states tell whether the load stands still.
+#[test]
+fn a_forged_place_of_a_mechanism_is_found() {
+    let (study, files) = run(RINGS);
+    let mut forged = results(&files);
+    assert_eq!(forged["cases"][0]["mechanism"]["at"], json!("plateau"));
+    forged["cases"][0]["mechanism"]["at"] = json!("peak");
+    let found = findings(&*study, &elsewhere(&with_results(&files, &forged)));
+    assert!(found.iter().any(|why| why.contains("the place of the mechanism")), "{found:?}");
+}
+
 /// The states of both paths prove their results. On another processor nothing is solved again; on this one the unproved parts are.
 #[test]
 fn stored_states_prove_a_path_without_its_solver() {

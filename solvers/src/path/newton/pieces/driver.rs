@@ -21,6 +21,7 @@ use super::corrector::correct;
 use super::end::end_of_range;
 use super::loading_set::{LoadingRate, loading_rate};
 use super::monitors::{Monitor, What};
+use super::other_branches::note_other_branches;
 use super::piece::Piece;
 use super::plateau::{Plateau, plateau, stands_still, stood_still};
 use super::ray::ray;
@@ -459,6 +460,7 @@ impl<'d> Run<'d> {
             return self.snap(tracer);
         }
         note_peak(tracer, Some(&self.piece.tangent), self.direction);
+        note_other_branches(tracer, &self.piece.tangent);
         if matches!(self.load_step.end, LoadStepEnd::Factor(_)) {
             tracer.ending.limit_point_end = Some(LimitPointEnd::Target);
             let (factor, target) = (tracer.state.factor, self.target);
@@ -466,7 +468,7 @@ impl<'d> Run<'d> {
             return Some(end_path(tracer, Status::LimitPoint, why));
         }
         if !tracer.strategy.passes_limit_points() {
-            let why = "behind this limit point the load does not grow, and load control goes no further";
+            let why = "behind this limit point the load does not grow, and the strategy goes no further";
             return Some(end_path(tracer, Status::LimitPoint, why.into()));
         }
         if tracer.settings.ends_at_first_limit_point(self.load_step.stage) {

@@ -13,6 +13,7 @@ pub(super) mod driver;
 mod end;
 mod loading_set;
 mod monitors;
+mod other_branches;
 mod piece;
 mod plateau;
 mod ray;

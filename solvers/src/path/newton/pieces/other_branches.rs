@@ -1,0 +1,32 @@
+//! Other branches at a limit point of laws with a history.
+//!
+//! A rate holds for its loading set, the points that soften or yield along it. With the tangents of this set, second-order work
+//! q̇·K q̇ is negative along the path that falls. If it is negative in more directions with the load held, the path may bifurcate there, such as
+//! a bed joint that softens evenly and may also tilt (de Borst 1987; Hill 1958, J. Mech. Phys. Solids 6).
+
+use super::super::ahead::facing_ahead;
+use super::super::second_order::second_order_work;
+use super::super::state::Tangent;
+use super::super::tracer::Tracer;
+use voussoir_core::path::Branching;
+
+/// Adds a note and a branching for a limit point at the present state, behind which the path follows a rate, if the second-order work of
+/// its loading set is negative in other directions too.
+pub(super) fn note_other_branches(tracer: &mut Tracer, rate: &Tangent) {
+    if tracer.system.piecewise_linear() {
+        return;
+    }
+    let (here, factor) = (tracer.state.clone(), tracer.state.factor);
+    let Some(facing) = facing_ahead(&mut tracer.system, &here, rate) else { return };
+    let Some(work) = second_order_work(&mut tracer.system, &facing) else { return };
+    let others = work.negative.saturating_sub(1);
+    if others == 0 {
+        return;
+    }
+    let load_step = tracer.load_step;
+    tracer.record.branchings.push(Branching { load_step, factor, snaps: false, released: 0.0, twins: false });
+    tracer.record.notes.push(format!(
+        "at the limit point at factor {factor} the second-order work of the points that soften or yield is negative in {others} other \
+         direction(s): the path may bifurcate there, and one branch is followed"
+    ));
+}
