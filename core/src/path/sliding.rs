@@ -105,11 +105,6 @@ impl Sliding {
         Sliding { slip: [-most, most], ..Sliding::fixed(0.5) }
     }
 
-    /// Whether a tangential gap \[m\] is within its bounds.
-    pub fn holds(&self, slip: f64) -> bool {
-        (self.slip[0]..=self.slip[1]).contains(&slip)
-    }
-
     /// Returns true if the blocks come apart at the bounds: a point away from all corners is only paired for less.
     pub fn parts_at_bound(&self) -> bool {
         self.corners != [0.5; 2] || self.passing > 0.0

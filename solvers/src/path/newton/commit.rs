@@ -14,6 +14,9 @@ use voussoir_core::path::{Contact, LimitPointEnd};
 /// have come apart: such forces are rounding.
 const APART: f64 = 1e-6;
 
+/// Slip beyond a face, relative to the size, that is more than the rounding of an event at its end.
+const BEYOND: f64 = 1e-9;
+
 /// Takes a converged state as the next one. Returns true if the path goes on.
 pub(super) fn commit(tracer: &mut Tracer, mut next: State) -> bool {
     let greatest = |force: &[[f64; 2]]| force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
@@ -30,6 +33,13 @@ pub(super) fn commit(tracer: &mut Tracer, mut next: State) -> bool {
     }
     if !tracer.system.finite() {
         tracer.system.drop_rounding(&mut next, tracer.system.loads.start);
+    }
+    // A point that closes beyond its face presses on nothing: the path ends at the state before.
+    if tracer.system.finite()
+        && let Some((apart, why)) = left_its_pairing(tracer, &next, BEYOND)
+    {
+        end_at_lost_joint(tracer, apart, None, why);
+        return false;
     }
     let gradient = tracer.system.gradient(&next);
     tracer.record.events.extend(events(&tracer.system, tracer.load_step, &tracer.state, &next));
@@ -53,7 +63,7 @@ pub(super) fn commit(tracer: &mut Tracer, mut next: State) -> bool {
         return false;
     }
     if tracer.system.finite()
-        && let Some((apart, why)) = left_its_pairing(tracer)
+        && let Some((apart, why)) = left_its_pairing(tracer, &tracer.state, 0.0)
     {
         end_at_lost_joint(tracer, apart, None, why);
         return false;
@@ -83,12 +93,15 @@ pub(super) fn end_at_lost_joint(
     end_path(tracer, status, why)
 }
 
-/// A pressed point that has slipped further than its pairing holds: true if its blocks have come apart, and a note.
-fn left_its_pairing(tracer: &Tracer) -> Option<(bool, String)> {
-    let largest = tracer.state.force.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max);
-    let points = tracer.system.problem.contacts.iter().zip(&tracer.state.force).zip(&tracer.state.gap);
+/// A pressed point that has slipped further than its pairing holds, by more than a share `beyond` of the size: true if its blocks have
+/// come apart, and a note.
+fn left_its_pairing(tracer: &Tracer, state: &State, beyond: f64) -> Option<(bool, String)> {
+    let largest = state.force.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max);
+    let points = tracer.system.problem.contacts.iter().zip(&state.force).zip(&state.gap);
     let mut pressed = points.filter(|((_, force), _)| force[0] > 1e-9 * largest);
-    let ((c, _), gap) = pressed.find(|((c, _), gap)| !c.sliding.holds(gap[1]))?;
+    let margin = beyond * tracer.system.units().length;
+    let leaves = |c: &Contact, slip: f64| slip < c.sliding.slip[0] - margin || slip > c.sliding.slip[1] + margin;
+    let ((c, _), gap) = pressed.find(|((c, _), gap)| leaves(c, gap[1]))?;
     Some(lost_joint(tracer, c, gap[1]))
 }
 
