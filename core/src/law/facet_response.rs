@@ -13,6 +13,8 @@ use super::update::UpdateFailure;
 
 /// The joint yields on some facet.
 const SLIDING: UpdateBranch = UpdateBranch::new("sliding", Effect::Sliding);
+/// A joint opens in a step in which it slides.
+const SLIDING_OPEN: UpdateBranch = UpdateBranch::new("sliding_open", Effect::Sliding);
 
 /// A joint of facets with stiffness.
 #[derive(Debug, Clone)]
@@ -152,7 +154,7 @@ impl InterfaceResponse for FacetResponse {
         }
         let parts = |facet: &&Facet| facet.mode == FacetMode::Opening && facet.bound == 0.0;
         if found.facets.iter().flatten().any(parts) {
-            branch = UpdateBranch::OPEN;
+            branch = if branch == SLIDING { SLIDING_OPEN } else { UpdateBranch::OPEN };
         }
         let elastic = [found.traction[0] / self.stiffness[0], found.traction[1] / self.stiffness[1]];
         let stored = 0.5 * dot(found.traction, elastic);
