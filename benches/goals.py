@@ -42,16 +42,16 @@ def finite(voussoirs, joint, elements="[4, 6]", grading=""):
     return text.replace('solver = "newton_path"', 'solver = "newton_path"\nkinematics = "finite"')
 
 
-# Work, study, goal: most seconds, most megabytes.
+# Work, study, goal: most seconds, most megabytes; without one the time is reported only.
 PROCESSES = [
     ("20 000 voussoirs, study file to certified result", lambda: rigid(20_000), 0.3, None),
     ("1 000 000 voussoirs, `fields = false`", lambda: rigid(1_000_000, f"{NO_WRITERS}\nfields = false"), 6, 2500),
     ("1 000 000 voussoirs, results.json streamed", lambda: rigid(1_000_000), 15, 3000),
     ("wall of 100 × 100 bricks", lambda: square(100), 15, None),
-    ("elastic ring of 200, `event_path`", lambda: elastic(200, "event_path"), 0.2, None),
-    ("elastic ring of 200, `newton_path`", lambda: elastic(200, "newton_path"), 0.2, None),
-    ("elastic ring of 400, `event_path`", lambda: elastic(400, "event_path"), 0.5, None),
-    ("elastic ring of 400, `newton_path`", lambda: elastic(400, "newton_path"), 0.5, None),
+    ("elastic ring of 200, `event_path`", lambda: elastic(200, "event_path"), None, None),
+    ("elastic ring of 200, `newton_path`", lambda: elastic(200, "newton_path"), None, None),
+    ("elastic ring of 400, `event_path`", lambda: elastic(400, "event_path"), None, None),
+    ("elastic ring of 400, `newton_path`", lambda: elastic(400, "newton_path"), None, None),
     ("finite displacements, ring of 13, 4 × 6", lambda: finite(13, COULOMB), 0.1, None),
     ("the same, sliding that dilates", lambda: finite(13, ASSOCIATED), 0.1, None),
     ("finite displacements, ring of 13, 8 × 12 graded", lambda: finite(13, COULOMB, "[8, 12]", ", grading = 8.0"), 1, None),
@@ -105,7 +105,7 @@ print(json.dumps([factors, path.measure(13, {program!r}, True, {rounds})[1]]))""
             own, _ = min(results[f"{solver}, certified"])
             work = ELASTIC_PATHS.format(solver)
             peer = {"peer": "GetFEM 5.4.2 to 0.001", "peer_seconds": seconds, "peer_error": error}
-            yield {"work": work, "seconds": own, "answer": factor, "certified": True, "least": 200} | peer
+            yield {"work": work, "seconds": own, "answer": factor, "certified": True} | peer
         return
     print("GetFEM is not installed, left out (Debian: python3-getfem, for /usr/bin/python3)")
 
@@ -143,6 +143,9 @@ def verdict(row):
         if row[most]:
             goals.append(f"{row[most]} {unit}")
             within.append(float(row[key]) / float(row[most]))
+    if not within:
+        ratio = float(row["peer_seconds"]) / float(row["seconds"]) if row["peer_seconds"] else None
+        return "", f"{ratio:.3g} ×" if ratio else ""
     return ", ".join(goals), "met" if max(within) <= 1 else f"missed by {max(within):.2g}"
 
 

@@ -15,6 +15,7 @@ mod optimise;
 pub mod path;
 pub mod point;
 mod rate;
+mod settings;
 
 /// Tags of the solvers and continuation strategies of this crate. Two plug-ins with one tag are refused at start-up, so a
 /// tag in this list cannot belong to anyone else.

@@ -4,6 +4,4 @@
 pub(crate) mod active_point;
 pub(crate) mod facet;
 pub(crate) mod mode;
-pub(crate) mod normal_fan;
-pub(crate) mod piecewise_path;
 pub(crate) mod yield_polygon;

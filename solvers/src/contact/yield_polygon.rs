@@ -9,7 +9,6 @@
 
 use super::facet::{dot, multipliers, norm, slack};
 use super::mode::ContactMode;
-use super::normal_fan::NormalFan;
 use voussoir_core::law::{Facet, FacetMode};
 
 /// Facets of a law and the corners at which two of them meet, for one unit of area.
@@ -19,8 +18,6 @@ pub struct YieldPolygon {
     pub facets: Vec<Facet>,
     /// Place \[Pa\] and the pairs of facets that may be active there.
     corners: Vec<Corner>,
-    /// Cells and their boundaries.
-    pub fan: NormalFan,
 }
 
 /// Place and pairs of facets.
@@ -60,8 +57,7 @@ impl YieldPolygon {
                 pairs.retain(opening);
             }
         }
-        let fan = NormalFan::new(facets, &corners);
-        YieldPolygon { facets: facets.to_vec(), corners, fan }
+        YieldPolygon { facets: facets.to_vec(), corners }
     }
 
     /// Place \[Pa\] of the corner of a mode; `None` where it is none.
@@ -100,22 +96,13 @@ impl YieldPolygon {
         own.or_else(|| self.corners.iter().find(|c| c.0 == [0.0; 2])).map(|corner| self.mode_at(corner))
     }
 
-    /// The cell of z = r − ρ Δg and its return r.
-    pub fn return_map(&self, z: [f64; 2], rho: [f64; 2], area: f64) -> (usize, [f64; 2]) {
+    /// The force r to which z = r − ρ Δg returns.
+    pub fn return_map(&self, z: [f64; 2], rho: [f64; 2], area: f64) -> [f64; 2] {
         let mode = self.mode(ContactMode::Stick, z, rho, area, 0.0);
         match mode {
-            ContactMode::Stick => (0, z),
-            ContactMode::Facet(i) => (1 + i as usize, self.return_to_facet(i as usize, z, rho, area).0),
-            ContactMode::Corner(..) | ContactMode::Open => {
-                let Some((k, corner)) = self.at(mode).and_then(|corner| {
-                    self.corners.iter().position(|other| std::ptr::eq(other, corner)).map(|k| (k, corner))
-                }) else {
-                    return (0, z);
-                };
-                let r = corner.0.map(|x| x * area);
-                let gap = [(r[0] - z[0]) / rho[0], (r[1] - z[1]) / rho[1]];
-                (self.fan.at(k, self.pair_of(corner, gap).0), r)
-            }
+            ContactMode::Stick => z,
+            ContactMode::Facet(i) => self.return_to_facet(i as usize, z, rho, area).0,
+            ContactMode::Corner(..) | ContactMode::Open => self.corner(mode).map_or(z, |r| r.map(|x| x * area)),
         }
     }
 

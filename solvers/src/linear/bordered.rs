@@ -18,14 +18,11 @@
 use super::condensed::{Condensed, pair};
 use super::factorised::{Factorised, row_error};
 use super::inner;
+use crate::settings::SETTINGS;
 use std::rc::Rc;
 
 /// Entries up to which the control's row is part of the matrix.
 const SPARSE: usize = 4;
-/// Least rate of the unknown that is held, relative to the greatest.
-const MOVES: f64 = 1e-4;
-/// Least rate of a control as a border, relative to the greatest: what it amplifies of rounding is small beside it.
-const BORDERS: f64 = 1e-6;
 
 /// What stands in the last row of factorised equations.
 enum Last {
@@ -79,7 +76,7 @@ impl<E: Factorised> BorderedFactors<E> {
             let equations = factorise(vec![(held, 1.0)])?;
             if let Some(w) = equations.apply(&end) {
                 let most = 2 * contacts + greatest(&w[2 * contacts..]);
-                if !again || w[held].abs() >= MOVES * w[most].abs() {
+                if !again || w[held].abs() >= SETTINGS.fine * w[most].abs() {
                     return Some(BorderedFactors { equations, last: Last::Unknown(w) });
                 }
                 held = most;
@@ -109,7 +106,7 @@ impl<E: Factorised> BorderedFactors<E> {
         let Last::Unknown(w) = &self.last else { return self.serves(control) };
         let size = control[greatest(control)].abs();
         let along = inner(control, w).abs();
-        along >= BORDERS * size * w[greatest(w)].abs() && along != 0.0
+        along >= SETTINGS.distinct() * size * w[greatest(w)].abs() && along != 0.0
     }
 }
 

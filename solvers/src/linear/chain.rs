@@ -14,11 +14,9 @@
 use super::blocks::GapRows;
 use super::csr::CsrMatrix;
 use super::factorised::{Factorised, row_error};
+use crate::settings::SETTINGS;
 use std::rc::Rc;
 use voussoir_core::linear::{FrontRows, FrontalLu};
-
-/// Determinant of P, relative to its entries, with which a point is condensed out.
-const STRONG: f64 = 1e-3;
 
 /// The two rows of a contact point by its forces and its gaps, and what is added to both.
 #[derive(Debug, Clone, Copy, Default)]
@@ -85,7 +83,7 @@ fn own_inverse(rows: &PointRows) -> Option<[[f64; 2]; 2]> {
     let at = |i: usize, j: usize| rows.force[i][j];
     let determinant = at(0, 0) * at(1, 1) - at(0, 1) * at(1, 0);
     let size = [0, 1].map(|i| at(i, 0).abs().max(at(i, 1).abs()));
-    let strong = determinant != 0.0 && determinant.abs() >= STRONG * size[0] * size[1];
+    let strong = determinant != 0.0 && determinant.abs() >= SETTINGS.small * size[0] * size[1];
     strong.then(|| [[at(1, 1), -at(0, 1)], [-at(1, 0), at(0, 0)]].map(|row| row.map(|v| v / determinant)))
 }
 

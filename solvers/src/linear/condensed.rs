@@ -17,11 +17,9 @@
 
 use super::csr::CsrMatrix;
 use super::factorised::{Factorised, row_error};
+use crate::settings::SETTINGS;
 use std::sync::Arc;
 use voussoir_core::linear::{Analysis, Entries, FrontalLu, SparseLu};
-
-/// Own equations of a point must be at least this strong, relative to the others in its rows.
-const STRONG: f64 = 1e-3;
 
 /// How condensed equations are factorised.
 #[derive(Default)]
@@ -120,8 +118,8 @@ fn own_inverse(rows: [impl Iterator<Item = (usize, f64)>; 2], forces: usize) -> 
     }
     let size = [0, 1].map(|k: usize| own[k][0].abs().max(own[k][1].abs()));
     let determinant = own[0][0] * own[1][1] - own[0][1] * own[1][0];
-    let strong = (0..2).all(|k| size[k] >= STRONG * other[k])
-        && determinant.abs() >= STRONG * size[0] * size[1]
+    let strong = (0..2).all(|k| size[k] >= SETTINGS.small * other[k])
+        && determinant.abs() >= SETTINGS.small * size[0] * size[1]
         && determinant != 0.0;
     strong.then(|| {
         [[own[1][1] / determinant, -own[0][1] / determinant], [-own[1][0] / determinant, own[0][0] / determinant]]

@@ -7,8 +7,9 @@ pub(crate) mod condensed;
 pub(crate) mod csr;
 pub(crate) mod dense;
 pub(crate) mod factorised;
+#[cfg(test)]
+mod tests;
 pub(crate) mod updated;
-pub(crate) mod updated_inverse;
 
 /// a · b.
 pub(crate) fn inner(a: &[f64], b: &[f64]) -> f64 {

@@ -7,16 +7,10 @@
 //! system; the fixed variables that could are the reason. Equations and free variables are
 //! eliminated beforehand, so that a pivot is one sweep over a dense matrix.
 
-/// Bounds may be violated by this.
-pub const FEASIBLE: f64 = 1e-10;
-/// Entries below this are no pivots.
-const PIVOT: f64 = 1e-9;
-/// A violation below this does not refute where smaller entries could still repair it.
-const DOUBTFUL: f64 = 1e-7;
+use crate::settings::SETTINGS;
+
 /// Pivots after which the dictionary is compared with its original.
 const AUDIT: u64 = 64;
-/// Greatest deviation from the original.
-const DRIFT: f64 = 1e-11;
 
 /// Where a variable stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -306,7 +300,7 @@ impl Dictionary {
     fn audit(&mut self) {
         if self.since_audit >= AUDIT {
             self.since_audit = 0;
-            if self.drift() > DRIFT {
+            if self.drift() > SETTINGS.shift() {
                 self.restore();
             }
         }
@@ -342,7 +336,7 @@ impl Dictionary {
                     break;
                 }
             }
-            if best.0 < PIVOT {
+            if best.0 < SETTINGS.admissible {
                 break;
             }
             let x = entering.swap_remove(best.2);
@@ -379,7 +373,7 @@ impl Dictionary {
             for i in 0..self.rows {
                 let (beta, fixed) = (self.beta[i], self.fixed[self.basic[i]]);
                 let violation = if fixed { beta.abs() } else { -beta };
-                if violation > FEASIBLE && leaving.is_none_or(|l| violation > l.1) {
+                if violation > SETTINGS.inequality() && leaving.is_none_or(|l| violation > l.1) {
                     leaving = Some((i, violation, if beta < 0.0 { 1.0 } else { -1.0 }));
                 }
             }
@@ -388,14 +382,14 @@ impl Dictionary {
             };
             match self.entering(r, sense) {
                 Some(c) => self.pivot(r, c),
-                None if self.since_audit > 0 && !restored && self.drift() > DRIFT => {
+                None if self.since_audit > 0 && !restored && self.drift() > SETTINGS.shift() => {
                     restored = true;
                     self.restore();
                 }
                 None => {
                     let repairable =
                         self.row(r).iter().zip(&self.nonbasic).any(|(m, &x)| !self.fixed[x] && m * sense > 1e-12);
-                    if repairable && violation < DOUBTFUL {
+                    if repairable && violation < SETTINGS.same_rate() {
                         return Feasibility::Undecided;
                     }
                     self.refuted = Some((r, sense));
@@ -418,14 +412,14 @@ impl Dictionary {
         let mut bound = f64::INFINITY;
         for (c, m) in row.iter().enumerate() {
             let m = m * sense;
-            if m > PIVOT && !self.fixed[self.nonbasic[c]] {
+            if m > SETTINGS.admissible && !self.fixed[self.nonbasic[c]] {
                 bound = bound.min((self.cost[c].max(0.0) + 1e-9) / m);
             }
         }
         let mut best: Option<(usize, f64)> = None;
         for (c, m) in row.iter().enumerate() {
             let m = m * sense;
-            if m > PIVOT
+            if m > SETTINGS.admissible
                 && !self.fixed[self.nonbasic[c]]
                 && self.cost[c].max(0.0) / m <= bound
                 && best.is_none_or(|b| m > b.1)
@@ -504,9 +498,9 @@ impl Dictionary {
             let mut bound = f64::INFINITY;
             for i in 0..self.rows {
                 let m = self.matrix[i * n + c];
-                let blocks = m < -PIVOT || (self.fixed[self.basic[i]] && m.abs() > PIVOT);
+                let blocks = m < -SETTINGS.admissible || (self.fixed[self.basic[i]] && m.abs() > SETTINGS.admissible);
                 if blocks {
-                    bound = bound.min((self.beta[i].max(0.0) + FEASIBLE) / m.abs());
+                    bound = bound.min((self.beta[i].max(0.0) + SETTINGS.inequality()) / m.abs());
                 }
             }
             if bound.is_infinite() {
@@ -515,7 +509,7 @@ impl Dictionary {
             let mut leaving: Option<(usize, f64)> = None;
             for i in 0..self.rows {
                 let m = self.matrix[i * n + c];
-                let blocks = m < -PIVOT || (self.fixed[self.basic[i]] && m.abs() > PIVOT);
+                let blocks = m < -SETTINGS.admissible || (self.fixed[self.basic[i]] && m.abs() > SETTINGS.admissible);
                 if blocks && self.beta[i].max(0.0) / m.abs() <= bound {
                     let better = match leaving {
                         None => true,

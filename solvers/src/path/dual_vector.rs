@@ -8,15 +8,11 @@ use crate::rate::answer::Budget;
 use crate::rate::problem::RateProblem;
 use crate::rate::proof::NoRate;
 use crate::rate::tree::search;
+use crate::settings::SETTINGS;
 use voussoir_core::path::{FarkasVector, ModeTree, NoneContinues};
 
 /// Facets of the active set up to which the search is tried: its program is dense.
 pub(super) const MOST_FACETS: usize = 160;
-
-/// Forces per gap, in scaled units, that are rounding: along a mechanism forces rest.
-const REST: f64 = 1e-10;
-/// Motions per greatest motion that are rounding.
-const STILL: f64 = 1e-10;
 
 /// All unknowns for gap rates of the active points, which stick but for these, and a rate of the load.
 pub(super) type Response<'a> = &'a dyn Fn(&[[f64; 2]], f64) -> Option<Vec<f64>>;
@@ -25,8 +21,9 @@ pub(super) type Response<'a> = &'a dyn Fn(&[[f64; 2]], f64) -> Option<Vec<f64>>;
 /// units. The active points stick in it, so that the structure is symmetric: y = −q̇, β = −ṙ.
 fn dual_vector(system: &System, x: &[f64], alpha: &[[f64; 2]], work: f64) -> FarkasVector {
     let (forces, motions) = x.split_at(2 * system.contacts);
-    let unit = if largest(forces) <= REST * largest(alpha.as_flattened()) { 0.0 } else { system.units.force };
-    let still = STILL * largest(motions);
+    let unit =
+        if largest(forces) <= SETTINGS.inequality() * largest(alpha.as_flattened()) { 0.0 } else { system.units.force };
+    let still = SETTINGS.inequality() * largest(motions);
     let moving: Vec<f64> = motions.iter().map(|v| if v.abs() <= still { 0.0 } else { *v }).collect();
     let negative = |force: &[f64]| [0, 1].map(|i| -force[i] * unit);
     FarkasVector {

@@ -8,14 +8,12 @@
 //! - limit point: no modes of the active points have a rate with growing λ
 //!   (`rising`).
 
+use crate::settings::SETTINGS;
 use voussoir_core::certificate::{
     MechanismPlace, PathChecker, flow_residual, forces_rest, leaves_forces, power_residual, ray_residual, tolerance,
 };
 use voussoir_core::limit::Status;
 use voussoir_core::path::{PathAnswer, PathObserver, PathProblem};
-
-/// How close the factor of a claim and of its state are, relative to them.
-const SAME: f64 = 1e-9;
 
 /// The answer, or a stall with the reason where its claim is not confirmed.
 pub(super) fn confirmed(problem: &PathProblem, finite: bool, mut answer: PathAnswer) -> PathAnswer {
@@ -35,7 +33,9 @@ pub(super) fn confirmed(problem: &PathProblem, finite: bool, mut answer: PathAns
 
 fn confirm(problem: &PathProblem, finite: bool, answer: &PathAnswer) -> Result<(), String> {
     let own = answer.state.factor;
-    if let Some(factor) = answer.factor.filter(|f| f.is_nan() || (f - own).abs() > SAME * f.abs().max(own.abs())) {
+    if let Some(factor) =
+        answer.factor.filter(|f| f.is_nan() || (f - own).abs() > SETTINGS.admissible * f.abs().max(own.abs()))
+    {
         return Err(format!("the factor {factor} is not that of the state"));
     }
     let mut checker = PathChecker::new(finite);

@@ -15,6 +15,7 @@
 //! changes sign.
 
 use crate::optimise::lcg::Lcg;
+use crate::settings::SETTINGS;
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::path::ProvenPeak;
 
@@ -24,14 +25,6 @@ const ALL: usize = 150;
 /// Size of that subspace, and its iterations.
 const SUBSPACE: usize = 10;
 const ITERATIONS: usize = 16;
-/// Eigenvalues of the flexibility, relative to the mean compliance of a contact, that are those of motions which the
-/// modes exclude: what is added to the equations is below them.
-const SOFTEST: f64 = 1e-6;
-
-/// Asymmetry of S, relative to its greatest entry, above which second-order work is not a potential's.
-const ASYMMETRY: f64 = 1e-7;
-/// Negative eigenvalues of S nearer to nothing than this, relative to the greatest, are rounding of excluded motions.
-const ROUNDING: f64 = 1e-9;
 
 /// Returns true if the factor regains the factor of a limit point between two states. If the second state is stable, a
 /// structure that snaps under dead load can end there.
@@ -68,14 +61,14 @@ pub(super) fn work_by_responses(
     respond: impl Fn(&DMatrix<f64>) -> Option<DMatrix<f64>>,
 ) -> Option<SecondOrderWork> {
     if motions <= ALL {
-        return SecondOrderWork::of(&respond(&DMatrix::identity(motions, motions))?, SOFTEST);
+        return SecondOrderWork::of(&respond(&DMatrix::identity(motions, motions))?, SETTINGS.distinct());
     }
     let mut random = Lcg::new(11);
     let mut basis = DMatrix::from_fn(motions, SUBSPACE, |_, _| random.next()).qr().q();
     for _ in 0..ITERATIONS {
         basis = respond(&basis)?.qr().q();
     }
-    let found = SecondOrderWork::of(&(basis.transpose() * respond(&basis)?), SOFTEST)?;
+    let found = SecondOrderWork::of(&(basis.transpose() * respond(&basis)?), SETTINGS.distinct())?;
     Some(SecondOrderWork { basis: Some(basis), ..found })
 }
 
@@ -98,10 +91,10 @@ impl SecondOrderWork {
         }
         let size = flexibility.amax();
         let transposed = flexibility.transpose();
-        let symmetric = (flexibility - &transposed).amax() <= ASYMMETRY * size;
+        let symmetric = (flexibility - &transposed).amax() <= SETTINGS.same_rate() * size;
         let half = (flexibility + &transposed) * 0.5;
         let eigenvalues = half.symmetric_eigenvalues();
-        let nothing = softest.max(ROUNDING * eigenvalues.amax());
+        let nothing = softest.max(SETTINGS.admissible * eigenvalues.amax());
         let negative = eigenvalues.iter().filter(|s| **s < -nothing).count();
         // Real parts of eigenvalues are no less than the least one of the symmetric part (Bendixson 1902).
         let turned = if symmetric || negative == 0 {

@@ -3,10 +3,8 @@
 //! Numbers of blocks and rounding must not decide. The loads of the present and of later stages do more work on one twin
 //! than on another, or the blocks lean to the right on it.
 
+use crate::settings::SETTINGS;
 use voussoir_core::path::PathProblem;
-
-/// Difference of works, relative to the sum of their terms, up to which they are the same.
-const SAME: f64 = 1e-6;
 
 /// The number of the motion that is followed. `load_step`: the present one.
 pub(super) fn favoured(problem: &PathProblem, load_step: usize, motions: &[&[[f64; 3]]]) -> usize {
@@ -19,7 +17,7 @@ pub(super) fn favoured(problem: &PathProblem, load_step: usize, motions: &[&[[f6
         let size = left.iter().map(|k| terms(*k).map(f64::abs).sum()).fold(0.0, f64::max);
         let most = works.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let mut works = works.into_iter();
-        left.retain(|_| works.next().is_some_and(|work| most - work <= SAME * size));
+        left.retain(|_| works.next().is_some_and(|work| most - work <= SETTINGS.distinct() * size));
         if left.len() == 1 {
             break;
         }

@@ -6,12 +6,8 @@
 use super::problem::{Rate, RateProblem};
 use crate::contact::active_point::ActivePoint;
 use crate::contact::facet::dot;
+use crate::settings::SETTINGS;
 use nalgebra::DVector;
-
-/// Tolerance of force rates relative to the greatest.
-const FORCE: f64 = 1e-8;
-/// Tolerance of gap rates relative to the greatest.
-const GAP: f64 = 1e-7;
 
 impl RateProblem<'_> {
     /// True if a rate satisfies the law of each point.
@@ -31,13 +27,15 @@ impl RateProblem<'_> {
 /// True if scaled rates satisfy the law of a point.
 fn in_law(point: &ActivePoint, force: [f64; 2], gap: [f64; 2]) -> bool {
     let slack = |i: usize| -dot(point.facets[i].normal, force);
-    if point.active.iter().any(|i| slack(*i) < -FORCE) || point.open.is_some_and(|i| slack(i).abs() > FORCE) {
+    if point.active.iter().any(|i| slack(*i) < -SETTINGS.active)
+        || point.open.is_some_and(|i| slack(i).abs() > SETTINGS.active)
+    {
         return false;
     }
-    let stays: Vec<usize> = point.active.iter().copied().filter(|i| slack(*i).abs() <= FORCE).collect();
+    let stays: Vec<usize> = point.active.iter().copied().filter(|i| slack(*i).abs() <= SETTINGS.active).collect();
     let mut flows: Vec<[f64; 2]> = stays.iter().map(|i| point.facets[*i].flow.map(|d| -d)).collect();
     flows.extend(point.open.map(|i| point.facets[i].flow));
-    let small = |v: [f64; 2]| v[0].abs().max(v[1].abs()) <= GAP;
+    let small = |v: [f64; 2]| v[0].abs().max(v[1].abs()) <= SETTINGS.same_rate();
     let along = |d: &[f64; 2]| {
         let share = dot(gap, *d) / dot(*d, *d);
         share >= 0.0 && small([gap[0] - share * d[0], gap[1] - share * d[1]])
@@ -45,7 +43,7 @@ fn in_law(point: &ActivePoint, force: [f64; 2], gap: [f64; 2]) -> bool {
     let between = |a: &[f64; 2], b: &[f64; 2]| {
         let determinant = a[0] * b[1] - a[1] * b[0];
         let shares = [(gap[0] * b[1] - gap[1] * b[0]) / determinant, (a[0] * gap[1] - a[1] * gap[0]) / determinant];
-        determinant != 0.0 && shares.iter().all(|share| *share >= -GAP)
+        determinant != 0.0 && shares.iter().all(|share| *share >= -SETTINGS.same_rate())
     };
     let pairs = |(i, a): (usize, &[f64; 2])| flows[i + 1..].iter().any(|b| between(a, b));
     small(gap) || flows.iter().any(along) || flows.iter().enumerate().any(pairs)

@@ -11,13 +11,12 @@
 //!
 //! For associated flow without softening (AᵀSA positive semidefinite) step 2 is a monotone complementarity problem, which
 //! pivoting always solves. Otherwise steps 2 and 3 are complete searches ([`tree`](super::tree)) within a budget. If there
-//! are more combinations next to the arrival than the budget allows, pivoting and homotopy ([`homotopy`](super::homotopy)) come
-//! before the search, and the first rate that rises is followed.
+//! are more combinations next to the arrival than the budget allows, pivoting comes before the search, and the first rate that
+//! rises is followed.
 
 use super::arrival::Arrival;
 use super::choice::choose;
 use super::counts::{Algorithm, RateCounts};
-use super::homotopy::rate_by_homotopy;
 use super::lcp::{associated_modes, pivoted_rate, rate_lcp};
 use super::neighbours::{add, neighbours, rising_from};
 use super::order::Ordered;
@@ -25,10 +24,8 @@ use super::problem::{Rate, RateProblem};
 use super::proof::NoRate;
 use super::tree::{Searched, search_some};
 use crate::contact::mode::ContactMode;
+use crate::settings::SETTINGS;
 use nalgebra::DMatrix;
-
-/// Asymmetry and negative eigenvalue of AᵀSA with a unit diagonal up to which the problem is monotone.
-const MONOTONE: f64 = 1e-9;
 
 /// Leaves of a search for mechanisms after which it ends if it has found one.
 const ENOUGH: usize = 256;
@@ -220,7 +217,11 @@ impl Inquiry<'_> {
     /// since the rate that another algorithm finds may not be the only one. Otherwise the first rate is kept.
     fn rising(&mut self, few: bool) -> (Option<NoRate>, Algorithm) {
         let trials = &mut self.counts.trials;
-        let modes = if few || self.monotone { None } else { associated_modes(self.problem, trials) };
+        let modes = if few || self.monotone || std::env::var("NOASS").is_ok() {
+            None
+        } else {
+            associated_modes(self.problem, trials)
+        };
         if let Some(rate) = modes.and_then(|modes| rising_from(self.problem, modes, trials)) {
             self.keep(vec![rate]);
             return (None, Algorithm::Pivoting);
@@ -230,10 +231,6 @@ impl Inquiry<'_> {
         self.keep(rate.into_iter().collect());
         if proof.is_some() || (rises && (self.monotone || !few)) {
             return (proof, Algorithm::Pivoting);
-        }
-        if !few && let Some(rate) = rate_by_homotopy(self.problem, &mut self.counts.trials) {
-            self.keep(vec![rate]);
-            return (None, Algorithm::Homotopy);
         }
         (self.searched(1.0), Algorithm::Tree)
     }
@@ -274,8 +271,8 @@ impl Inquiry<'_> {
 /// True for associated flow without softening: AᵀSA is symmetric and positive semidefinite.
 fn is_monotone(problem: &RateProblem) -> bool {
     let semidefinite = |m: &DMatrix<f64>| {
-        let symmetric = m.is_empty() || (m - m.transpose()).amax() <= MONOTONE;
-        symmetric && (m + DMatrix::identity(m.nrows(), m.ncols()) * MONOTONE).cholesky().is_some()
+        let symmetric = m.is_empty() || (m - m.transpose()).amax() <= SETTINGS.admissible;
+        symmetric && (m + DMatrix::identity(m.nrows(), m.ncols()) * SETTINGS.admissible).cholesky().is_some()
     };
     problem.is_associated() && rate_lcp(problem, true).is_some_and(|lcp| semidefinite(&lcp.lcp.matrix))
 }

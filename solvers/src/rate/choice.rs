@@ -16,11 +16,7 @@ use super::arrival::Arrival;
 use super::neighbours::forward_modes;
 use super::problem::{Rate, RateProblem};
 use crate::contact::mode::ContactMode;
-
-/// Relative difference up to which rates are twins.
-const TWINS: f64 = 1e-6;
-/// Dissipation, as a share of forces times gap rates, up to which a rate does not dissipate.
-const NO_DISSIPATION: f64 = 1e-9;
+use crate::settings::SETTINGS;
 
 /// The chosen rate and its twins. `None` if there is no rate.
 pub fn choose(problem: &RateProblem, arrival: &Arrival, rates: Vec<Rate>) -> Option<(Rate, Vec<Rate>)> {
@@ -38,14 +34,15 @@ pub fn choose(problem: &RateProblem, arrival: &Arrival, rates: Vec<Rate>) -> Opt
     let rates = if others.is_empty() { own } else { others };
     let dissipation: Vec<f64> = rates.iter().map(|rate| dissipation_share(problem, arrival, rate)).collect();
     let most = dissipation.iter().copied().fold(0.0, f64::max);
-    let merit: Vec<f64> = if most > NO_DISSIPATION * force_size(problem, arrival) {
+    let merit: Vec<f64> = if most > SETTINGS.admissible * force_size(problem, arrival) {
         dissipation
     } else {
         rates.iter().map(|rate| -problem.second_order_energy(rate)).collect()
     };
     let best = merit.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let size = merit.iter().fold(0.0, |a: f64, m| a.max(m.abs()));
-    let mut tied = rates.into_iter().zip(merit).filter(|(_, m)| best - m <= TWINS * size).map(|(rate, _)| rate);
+    let mut tied =
+        rates.into_iter().zip(merit).filter(|(_, m)| best - m <= SETTINGS.distinct() * size).map(|(rate, _)| rate);
     tied.next().map(|rate| (rate, tied.collect()))
 }
 

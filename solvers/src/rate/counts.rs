@@ -7,8 +7,6 @@ pub enum Algorithm {
     Neighbours,
     /// Lemke's pivoting.
     Pivoting,
-    /// Piecewise linear homotopy.
-    Homotopy,
     /// The complete search over modes.
     Tree,
 }
@@ -28,7 +26,6 @@ impl Algorithm {
         match self {
             Algorithm::Neighbours => "rates_by_neighbours",
             Algorithm::Pivoting => "rates_by_pivoting",
-            Algorithm::Homotopy => "rates_by_homotopy",
             Algorithm::Tree => "rates_by_tree",
         }
     }

@@ -12,14 +12,10 @@ use super::proof::{ModeTree, NoRate};
 use crate::contact::active_point::ActivePoint;
 use crate::contact::mode::ContactMode;
 use crate::optimise::lcp::{Lcp, LemkeResult, lemke};
+use crate::settings::SETTINGS;
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::law::{Facet, FacetMode};
 
-/// Share of the greatest diagonal entry of M up to which another one is rounding.
-const ROUNDING: f64 = 1e-10;
-/// Entries w and z up to which rates are excluded, where q and the diagonal of M have size one: multipliers that are
-/// rounding of zero are weighed with it.
-pub const LARGEST: f64 = 1e6;
 /// Facets up to which a problem is pivoted: its matrix is dense, and it takes about as many pivots as it has facets.
 const MOST: usize = 4000;
 
@@ -74,7 +70,7 @@ impl RateLcp {
         let mut own: Vec<f64> = y.iter().zip(&self.unit).map(|(y, unit)| y / unit).collect();
         own.extend(self.eliminated_rows(&own));
         let proof = || NoRate { factor: 1.0, rows: self.all_rows(), tree: ModeTree::Contradiction(own) };
-        (right < 0.0 && LARGEST * against < -0.5 * right).then(proof)
+        (right < 0.0 && SETTINGS.largest_inverse() * against < -0.5 * right).then(proof)
     }
 }
 
@@ -113,7 +109,7 @@ pub fn rate_lcp(problem: &RateProblem, associated: bool) -> Option<RateLcp> {
     let largest = m.diagonal().amax();
     // A diagonal entry that is rounding is no unit.
     let common = if largest > 0.0 { largest } else { 1.0 };
-    let scale = |d: f64| if d > ROUNDING * largest { d.sqrt() } else { common.sqrt() };
+    let scale = |d: f64| if d > SETTINGS.inequality() * largest { d.sqrt() } else { common.sqrt() };
     let unit: Vec<f64> = m.diagonal().iter().map(|d| scale(d.abs())).collect();
     let matrix = DMatrix::from_fn(n, n, |i, j| m[(i, j)] / (unit[i] * unit[j]));
     let constant = DVector::from_fn(n, |i, _| q[i] / unit[i]);

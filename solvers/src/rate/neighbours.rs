@@ -7,9 +7,8 @@
 use super::arrival::Arrival;
 use super::problem::{Rate, RateProblem};
 use crate::contact::mode::ContactMode;
+use crate::settings::SETTINGS;
 
-/// Share of the greatest gap rate up to which two rates are the same.
-const SAME: f64 = 1e-7;
 /// Rounds of the active set in which all points may change at once.
 const ROUNDS: usize = 12;
 
@@ -74,7 +73,7 @@ fn add_both_senses(
 
 /// Adds a rate that is not yet known.
 pub fn add(found: &mut Vec<Rate>, rate: Rate) {
-    if !found.iter().any(|known| known.is_same(&rate, SAME)) {
+    if !found.iter().any(|known| known.is_same(&rate, SETTINGS.same_rate())) {
         found.push(rate);
     }
 }

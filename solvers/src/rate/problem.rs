@@ -8,6 +8,7 @@
 
 use crate::contact::active_point::ActivePoint;
 use crate::contact::mode::ContactMode;
+use crate::settings::SETTINGS;
 use nalgebra::{DMatrix, DVector};
 
 /// A solution of the rate problem.
@@ -29,13 +30,6 @@ impl Rate {
         self.factor == other.factor && both.all(|(a, b)| (a - b).abs() <= tolerance * size)
     }
 }
-
-/// Pivot, in the units of the points, up to which a combination of modes is a mechanism.
-const SINGULAR: f64 = 1e-10;
-/// Relative tolerance of inequalities.
-pub const INEQUALITY: f64 = 1e-10;
-/// Share of the forces of closed points on a moving support below which forces are not compared with themselves.
-const CANCELLED: f64 = 0.1;
 
 /// The rate problem: ṙ = `s` ġ + `load_rate` λ̇ over the points.
 #[derive(Debug)]
@@ -120,7 +114,7 @@ impl RateProblem<'_> {
         }
         let lu = self.matrix(&flows, &rows).full_piv_lu();
         let u = lu.u();
-        let singular = match u.diagonal().iter().filter(|pivot| pivot.abs() <= SINGULAR).count() {
+        let singular = match u.diagonal().iter().filter(|pivot| pivot.abs() <= SETTINGS.inequality()).count() {
             0 => false,
             1 => true,
             _ => return None,
@@ -159,7 +153,7 @@ impl RateProblem<'_> {
             // A mechanism moves without forces: their size is that of what stiffness could do.
             gap_size * self.points.iter().map(|p| p.stiffness).fold(0.0, f64::max)
         } else {
-            let share = if self.settles { CANCELLED } else { 1e-4 };
+            let share = if self.settles { SETTINGS.cancelled } else { 1e-4 };
             share * self.load_rate.amax().max(self.load_force)
         });
         let sizes = [force_size.max(1e-300), gap_size];
@@ -171,7 +165,7 @@ impl RateProblem<'_> {
             at += count;
             let force = [attempt.forces[2 * k] * sign, attempt.forces[2 * k + 1] * sign];
             if let Some((size, to)) = point.violation(*mode, &v, force, sizes)
-                && size > INEQUALITY
+                && size > SETTINGS.inequality()
             {
                 out.push((size, k, to));
             }
@@ -206,7 +200,7 @@ impl RateProblem<'_> {
     /// rounding too.
     fn least_power(&self, rate: &Rate) -> f64 {
         let size = rate.gaps.iter().flatten().fold(0.0, |a: f64, gap| a.max(gap.abs()));
-        INEQUALITY * size * self.load_rate.amax().max(self.load_force)
+        SETTINGS.inequality() * size * self.load_rate.amax().max(self.load_force)
     }
 
     /// The rate of some modes with λ̇ = `factor`, where it fits them.

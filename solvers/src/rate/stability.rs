@@ -1,15 +1,7 @@
 //! Measures of rates for the rule that chooses: size of the step, second-order energy, stability under control.
 
 use super::problem::{Rate, RateProblem};
-
-/// Real eigenvalue of AᵀSD, relative to the greatest entry, above which it is not negative.
-const NEGATIVE: f64 = -1e-9;
-
-/// Singular value of AᵀSD, relative to the greatest, up to which it is zero.
-const SINGULAR: f64 = 1e-9;
-
-/// Second-order energy relative to the greatest stiffness up to which it is rounding.
-const ROUNDING: f64 = 1e-9;
+use crate::settings::SETTINGS;
 
 impl RateProblem<'_> {
     /// Length of a rate. If supports move it is the length of the settlement, which does not depend on the axes in which blocks
@@ -31,7 +23,7 @@ impl RateProblem<'_> {
     pub fn second_order_energy(&self, rate: &Rate) -> f64 {
         let gaps = nalgebra::DVector::from_iterator(self.s.nrows(), rate.gaps.iter().flatten().copied());
         let energy = gaps.dot(&(&self.s * &gaps));
-        if energy.abs() <= ROUNDING * self.s.amax() * gaps.norm_squared() {
+        if energy.abs() <= SETTINGS.admissible * self.s.amax() * gaps.norm_squared() {
             return 0.0;
         }
         0.5 * energy / self.step(rate).powi(2).max(1e-300)
@@ -58,7 +50,7 @@ impl RateProblem<'_> {
             return true;
         }
         let values = matrix.singular_values();
-        let free = values.iter().filter(|v| **v <= SINGULAR * values.max()).count();
+        let free = values.iter().filter(|v| **v <= SETTINGS.admissible * values.max()).count();
         free <= 1
     }
 
@@ -68,7 +60,7 @@ impl RateProblem<'_> {
         if matrix.is_empty() {
             return Some(0);
         }
-        let least = NEGATIVE * matrix.amax();
+        let least = -SETTINGS.admissible * matrix.amax();
         let schur = nalgebra::linalg::Schur::try_new(matrix, 1e-14, 10_000)?;
         let values = schur.complex_eigenvalues();
         Some(values.iter().filter(|v| v.re < least && v.im.abs() <= 1e-9 * v.re.abs()).count())

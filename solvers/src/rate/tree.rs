@@ -5,7 +5,7 @@
 //! contradiction, and a contradiction that does not use the mode of a node ends that node too (conflict-directed
 //! backjumping: Prosser 1993, Computational Intelligence 9).
 
-use super::lcp::{LARGEST, RateLcp, gaps_of, rate_lcp};
+use super::lcp::{RateLcp, gaps_of, rate_lcp};
 use super::neighbours::add;
 use super::problem::{Rate, RateProblem};
 use super::proof::{ModeTree, NoRate};
@@ -13,15 +13,10 @@ use crate::contact::active_point::ActivePoint;
 use crate::contact::facet::{across, dot, norm};
 use crate::contact::mode::ContactMode;
 use crate::optimise::dense_simplex::{Dictionary, Feasibility};
+use crate::settings::SETTINGS;
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::path::PointMode;
 
-/// Coefficient, relative to the greatest, below which a contradiction does not use a fixed variable.
-const ROUNDING: f64 = 1e-14;
-/// Product of w and z, relative to the greatest of each, up to which it is zero.
-const COMPLEMENTARY: f64 = 1e-9;
-/// Cosine up to which directions are at a right angle.
-const ALONG: f64 = 1e-12;
 /// Facets up to which a problem is searched: its program is dense.
 const MOST: usize = 1200;
 /// Linear programs for each leaf of the budget.
@@ -117,10 +112,9 @@ pub(super) fn point_modes(point: &ActivePoint) -> Vec<PointMode> {
     let stays = |f: &&usize| {
         let along = across(point.facets[**f].normal);
         let admissible = |sense: f64| {
-            point
-                .active
-                .iter()
-                .all(|j| sense * dot(point.facets[*j].normal, along) <= ALONG * norm(point.facets[*j].normal))
+            point.active.iter().all(|j| {
+                sense * dot(point.facets[*j].normal, along) <= SETTINGS.residual() * norm(point.facets[*j].normal)
+            })
         };
         admissible(1.0) || admissible(-1.0)
     };
@@ -207,11 +201,12 @@ impl Program {
         for (variable, c) in all.into_iter().filter(|(_, c)| *c < 0.0) {
             if !dictionary.is_fixed(variable) {
                 against -= c;
-            } else if c < -ROUNDING * size {
+            } else if c < -SETTINGS.negligible() * size {
                 used.push(variable);
             }
         }
-        (right < 0.0 && LARGEST * against < -0.5 * right).then(|| (y.iter().copied().collect(), used))
+        (right < 0.0 && SETTINGS.largest_inverse() * against < -0.5 * right)
+            .then(|| (y.iter().copied().collect(), used))
     }
 
     /// The tree with multipliers of the rows in physical units.
@@ -292,7 +287,7 @@ impl Search<'_> {
         let product = |k: usize| {
             let own = (0..n).filter(|i| self.lcp.facets[*i].0 == k);
             let worst = own.map(|i| (value(i) / most_w).min(value(n + i) / most_z)).fold(0.0, f64::max);
-            if worst > COMPLEMENTARY { worst } else { 0.0 }
+            if worst > SETTINGS.admissible { worst } else { 0.0 }
         };
         undecided.map(|k| (product(k), k)).reduce(|a, b| if b.0 > a.0 { b } else { a }).map(|(_, k)| k)
     }

@@ -27,7 +27,7 @@ pub static SOLVER: &[Parameter] = &[
         "tolerance",
         Quantity::Ratio,
         Range::new(0.0, true, 0.01, false),
-        "relative tolerance of certificates",
+        "relative tolerance of loads: of certificates, and of the states that path solvers accept",
     )
     .default("1e-9"),
     key("stop", STOP, Need::Optional("the path ends at collapse"), "how far to go after a peak"),

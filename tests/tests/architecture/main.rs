@@ -3,4 +3,5 @@
 mod arrows;
 mod graph;
 mod house;
+mod measures;
 mod source;

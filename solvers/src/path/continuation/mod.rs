@@ -28,8 +28,8 @@ const LARGEST_STEP: Parameter = Parameter::number(
 )
 .optional("without bound with small displacements, 0.002 with finite ones");
 
-/// Movement in a step with finite displacements where the strategy sets no bound, as a share of the scene's size.
-pub const LARGEST_FINITE_STEP: f64 = 0.002;
+/// Movement in a step with finite displacements if the strategy sets no bound, as a share of the size of the scene.
+pub const LARGEST_FINITE_STEP: f64 = crate::settings::SETTINGS.largest_finite_step;
 
 fn first_step() -> f64 {
     0.1

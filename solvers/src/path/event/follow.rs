@@ -1,12 +1,9 @@
 //! Following the path: from load step to load step and from event to event, and how it ends.
 
 use super::direction::{Continued, Next, next_direction};
-use super::elastic_chain::ElasticChain;
-use super::event_run::{Followed, RECORDED};
-use super::force_method::{Sections, by_force_method};
-use super::joint_tree::by_joint_tree;
-use super::next_event::{MOMENT, SAME, advance, begin_without_end, next_event};
-use super::rates::Direction;
+use super::joint_chain::JointChain;
+use super::next_event::{advance, begin_without_end, next_event};
+use super::piece::rates::Direction;
 use super::stability::stage_stability;
 use super::trace::Trace;
 use super::unique::unique;
@@ -15,19 +12,15 @@ use crate::path::outcome::{Outcome, PathRecord};
 use crate::path::stability::regains_limit_point;
 use crate::path::system::Load;
 use crate::rate::proof::NoRate;
+use crate::settings::SETTINGS;
 use voussoir_core::certificate::flow_residual;
 use voussoir_core::limit::{Counters, Status};
 use voussoir_core::path::{
     LimitPointEnd, LoadStepEnd, PathAnswer, PathObserver, PathProblem, PathSettings, PathState, ProvenPeak, Witness,
 };
 
-/// Rate problems put to the whole system, at most, before the force method is tried again.
-const MOST_RESTS: u32 = 32;
-/// Residual of flow up to which a mechanism belongs to the limit point.
-const SAME_MECHANISM: f64 = 1e-6;
-
-/// Factors that differ by less than this share of them are the same.
-const SAME_FACTOR: f64 = 1e-10;
+/// The first events of a chain are all recorded, this many; of later ones the same number each time the number of events grows e-fold.
+const RECORDED: u64 = 512;
 
 /// How a path ended.
 enum End {
@@ -59,9 +52,6 @@ struct Run {
     target: f64,
     events: usize,
     most_events: usize,
-    /// Rate problems that are put to the whole system before the force method is tried again, and how many next time.
-    rests: u32,
-    patience: u32,
     unrecorded: Unrecorded,
 }
 
@@ -109,7 +99,6 @@ impl Unrecorded {
 /// A path with what only its end needs.
 struct Follower<'a> {
     trace: Trace<'a>,
-    sections: Option<Sections>,
     limits: LimitPoints,
     /// Proofs at states of the path.
     witnesses: Vec<Witness>,
@@ -147,7 +136,8 @@ impl LimitPoints {
 
     /// Whether a factor lies above all of them.
     fn below(&self, factor: f64, sense: f64) -> bool {
-        let above = |greatest: &PathState| (factor - greatest.factor) * sense > SAME_FACTOR * greatest.factor.abs();
+        let above =
+            |greatest: &PathState| (factor - greatest.factor) * sense > SETTINGS.inequality() * greatest.factor.abs();
         self.greatest.as_ref().is_none_or(above)
     }
 }
@@ -161,14 +151,11 @@ fn proven(state: &PathState) -> ProvenPeak {
 /// Follows all load steps of a problem.
 pub fn follow(problem: &PathProblem, settings: &PathSettings, observer: &mut dyn PathObserver) -> PathAnswer {
     let mut trace = Trace::new(problem, settings, observer);
-    let sections = Sections::new(&trace.system, problem, false);
-    if sections.is_none() {
-        trace.factors.chain = ElasticChain::new(&trace.system, problem);
-    }
-    let mut follower = Follower { trace, sections, limits: LimitPoints::default(), witnesses: Vec::new() };
+    trace.factors.chain = JointChain::new(&trace.system, problem);
+    let mut follower = Follower { trace, limits: LimitPoints::default(), witnesses: Vec::new() };
     for load_step in 0..problem.load_steps.len() {
         let mut run = begin(&mut follower, load_step);
-        if follower.trace.last.is_none() && !follower.trace.record() {
+        if follower.trace.log.last.is_none() && !follower.trace.record() {
             return finish(follower, End::Stalled("stopped by its observer".into()), run.sense);
         }
         let ended = loop {
@@ -218,16 +205,13 @@ fn begin(follower: &mut Follower, load_step: usize) -> Run {
     trace.factors.refine_columns = false;
     let most_events = 400 + 40 * trace.system.contacts;
     let unrecorded = Unrecorded::default();
-    Run { load, sense, start: present.start, target, events: 0, most_events, rests: 0, patience: 1, unrecorded }
+    Run { load, sense, start: present.start, target, events: 0, most_events, unrecorded }
 }
 
-/// Goes on to the next event, or through many by the force method; whether the load step goes on. An error is the end.
+/// Goes on to the next event; whether the load step goes on. An error is the end.
 fn step(follower: &mut Follower, run: &mut Run) -> Result<bool, End> {
     if (run.target - follower.trace.state.factor) * run.sense <= 0.0 {
         return Ok(false);
-    }
-    if try_force_method(follower, run)? {
-        return Ok(true);
     }
     run.events += 1;
     if run.events > run.most_events {
@@ -236,10 +220,8 @@ fn step(follower: &mut Follower, run: &mut Run) -> Result<bool, End> {
             run.most_events
         )));
     }
-    let by_chain = follower.trace.log.counts.by_force_method;
-    let (direction, proof) = direction(follower, run)?;
+    let (direction, proof, by_chain) = direction(follower, run)?;
     let trace = &mut follower.trace;
-    let by_chain = trace.log.counts.by_force_method > by_chain;
     let left = (run.target - trace.state.factor) * run.sense;
     let fallen = (trace.state.factor - run.start) * run.sense;
     let bound = match direction.factor {
@@ -247,7 +229,7 @@ fn step(follower: &mut Follower, run: &mut Run) -> Result<bool, End> {
         f if f < 0.0 => fallen.max(0.0) / -f,
         _ => f64::INFINITY,
     };
-    let (step, hits) = next_event(trace, &direction, if by_chain { MOMENT } else { SAME });
+    let (step, hits) = next_event(trace, &direction, if by_chain { SETTINGS.shift() } else { SETTINGS.residual() });
     let whole = bound <= step;
     let step = step.min(bound);
     if step.is_infinite() {
@@ -264,7 +246,7 @@ fn step(follower: &mut Follower, run: &mut Run) -> Result<bool, End> {
     trace.state.stable_under_load = regains_limit_point(&follower.limits.proven, trace.state.load_step, factors)
         .then(|| stage_stability(trace, &run.load).under_load)
         .flatten();
-    // Of many events of the chain as few are recorded as of the force method.
+    // A chain has many events: few of them are recorded.
     let all = !by_chain || whole || follower.limits.greatest.is_some();
     if (all || run.unrecorded.events * RECORDED >= trace.log.counts.rate_problems) && !run.unrecorded.record(trace) {
         return Err(End::Stalled("stopped by its observer".into()));
@@ -300,42 +282,16 @@ fn stops(follower: &Follower, run: &Run) -> Result<bool, End> {
     }
 }
 
-/// Follows the path by the force method as far as it goes; whether that reached the end of the load step.
-fn try_force_method(follower: &mut Follower, run: &mut Run) -> Result<bool, End> {
-    if run.rests > 0 || follower.limits.greatest.is_some() {
-        run.rests = run.rests.saturating_sub(1);
-        return Ok(false);
-    }
-    let before = run.events;
-    let bounds = (run.sense, run.target, run.most_events);
-    // What has not been recorded yet is not known there.
-    if run.unrecorded.events > 0 && !run.unrecorded.record(&mut follower.trace) {
-        return Err(End::Stalled("stopped by its observer".into()));
-    }
-    let trace = &mut follower.trace;
-    let followed = match &follower.sections {
-        Some(sections) => by_force_method(trace, sections, &run.load, bounds, &mut run.events),
-        None => by_joint_tree(trace, &run.load, bounds, &mut run.events),
-    };
-    match followed {
-        Followed::Reached => return Ok(true),
-        Followed::Stopped => return Err(End::Stalled("stopped by its observer".into())),
-        Followed::Left => {}
-    }
-    run.patience = if run.events > before { 1 } else { (2 * run.patience).min(MOST_RESTS) };
-    run.rests = run.patience - 1;
-    Ok(false)
-}
-
-/// The direction in which the path goes on; where λ begins to fall, the limit point is noted.
-fn direction(follower: &mut Follower, run: &mut Run) -> Result<(Direction, Option<NoRate>), End> {
+/// The direction in which the path goes on, a proof that no rate raises the load, and whether the chain gave the direction. If λ
+/// begins to fall, the limit point is noted.
+fn direction(follower: &mut Follower, run: &mut Run) -> Result<(Direction, Option<NoRate>, bool), End> {
     let factor = follower.trace.state.factor;
-    let Continued { next, none_rises: proof } = next_direction(&mut follower.trace, &run.load);
+    let Continued { next, none_rises: proof, by_chain } = next_direction(&mut follower.trace, &run.load);
     let mut undecided = false;
     let (direction, note) = match next {
         Next::Go(direction) => {
             follower.limits.falling &= direction.factor <= 0.0;
-            return Ok((direction, proof));
+            return Ok((direction, proof, by_chain));
         }
         Next::Falling(direction) => (
             Some(direction),
@@ -368,7 +324,7 @@ fn direction(follower: &mut Follower, run: &mut Run) -> Result<(Direction, Optio
         follower.witnesses.extend(witness);
     }
     match direction {
-        Some(direction) => Ok((direction, None)),
+        Some(direction) => Ok((direction, None, by_chain)),
         None if undecided => Err(End::Stalled("the path was not followed beyond its limit point".into())),
         None => {
             let witness = none_continues(&mut follower.trace, &run.load, run.sense);
@@ -439,7 +395,7 @@ fn ray_outcome(follower: &mut Follower, Ray { direction, load, proof }: &Ray, se
     let trace = &mut follower.trace;
     let unique = unique(&trace.system, &trace.state.points, load, &direction.x, &direction.gaps);
     // The mechanism belongs to the last state; the one at the limit point may not allow it.
-    let allowed = |state: &PathState| flow_residual(trace.problem, &state.force, &motion) <= SAME_MECHANISM;
+    let allowed = |state: &PathState| flow_residual(trace.problem, &state.force, &motion) <= SETTINGS.distinct();
     let limit = follower.limits.greatest.as_ref().filter(|_| outcome.status == Status::LimitPoint);
     let allowed = limit.is_none_or(allowed);
     Outcome { unique, ..outcome.moving(allowed.then_some(motion)) }
@@ -458,8 +414,7 @@ fn answer(follower: Follower, mut outcome: Outcome) -> PathAnswer {
         ("rate_problems", log.counts.rate_problems),
         ("rate_trials", log.counts.rates.trials),
         ("bifurcations", log.branchings.len() as u64),
-        ("rate_problems_by_redundants", log.counts.by_force_method),
-        ("sections_looked_at", log.counts.sections),
+        ("rate_problems_by_redundants", log.counts.by_chain),
         ("events", log.events.len() as u64),
     ] {
         counters.insert(name.into(), count);

@@ -6,18 +6,12 @@
 #![doc = include_str!("event_path.md")]
 
 mod direction;
-mod elastic_chain;
 mod energy;
-mod event_run;
-mod factorisation;
 mod first_modes;
 mod follow;
-mod force_method;
-mod joint_tree;
+mod joint_chain;
 mod next_event;
-mod point;
-mod rates;
-mod schur;
+mod piece;
 mod stability;
 mod trace;
 mod unique;

@@ -1,20 +1,15 @@
 //! A step along a direction: how far it is to the next events, and what they change.
 
-use super::point::Point;
-use super::rates::{Direction, MECHANISM};
+use super::piece::point::Point;
+use super::piece::rates::Direction;
 use super::trace::Trace;
 use crate::contact::facet::{dot, slack};
 use crate::contact::mode::ContactMode;
 use crate::linear::largest;
 use crate::path::events::{ContactStatus, transition};
+use crate::settings::SETTINGS;
 use voussoir_core::law::{Facet, FacetMode};
 use voussoir_core::path::{ContactEvent, PathEvent};
-
-/// Slacks and gaps below this (in scaled units) are events of the same moment.
-pub const SAME: f64 = 1e-12;
-/// The same where redundants give the rates: they are rounded by all sections of their cycle, which must not tell the
-/// two halves of a symmetric arch apart.
-pub const MOMENT: f64 = 1e-11;
 
 /// How far it is to the next events along a direction, and which facets (or `usize::MAX` for a
 /// closing) of which points they are; slacks and gaps below `same` are events of one moment.
@@ -22,7 +17,8 @@ pub fn next_event(trace: &Trace, direction: &Direction, same: f64) -> (f64, Vec<
     // A rate that is rounding brings no event.
     let size = largest(&direction.x[..2 * trace.system.contacts]);
     let gap_size = largest(direction.gaps.as_flattened());
-    let (of_forces, share) = if direction.factor == 0.0 { (size.max(gap_size), MECHANISM) } else { (size, 1e-13) };
+    let (of_forces, share) =
+        if direction.factor == 0.0 { (size.max(gap_size), SETTINGS.active) } else { (size, 1e-13) };
     let (least_force, least_gap) = (share * of_forces, share * gap_size);
     let mut step = f64::INFINITY;
     let mut hits: Vec<(f64, f64, usize, usize)> = Vec::new();
@@ -124,7 +120,7 @@ pub fn stepped(trace: &mut Trace, c: usize, rate: [f64; 2], opening: f64, before
         let had = point.active.len();
         point.active.retain(|f| {
             let facet = &facets[*f];
-            dot(facet.normal, rate) > -1e-11 * size || slack(facet, force, 1.0) <= SAME
+            dot(facet.normal, rate) > -1e-11 * size || slack(facet, force, 1.0) <= SETTINGS.residual()
         });
         if had > 0 && point.active.is_empty() && !was_hit && point.noted {
             happened.push(ContactEvent::Sticks);
@@ -152,7 +148,7 @@ fn begun(mode: ContactMode, facets: &[Facet], arrived: bool, opens: bool) -> Vec
 
 /// Notes the events with which a piece without an end begins.
 pub fn begin_without_end(trace: &mut Trace, direction: &Direction) {
-    let least = MECHANISM * largest(direction.gaps.as_flattened());
+    let least = SETTINGS.active * largest(direction.gaps.as_flattened());
     let (load_step, factor) = (trace.state.load_step, trace.state.factor);
     for (c, point) in trace.state.points.iter().enumerate() {
         let Some(facets) = &trace.system.facets[c] else { continue };
@@ -188,7 +184,7 @@ pub fn arrive(trace: &mut Trace, hits: &[(usize, usize)]) {
             point.active.push(f);
         }
         point.mode = ContactMode::Facet(f as u8);
-        if point.apex && (facets[f].mode == FacetMode::Opening || force[0].abs() <= SAME) {
+        if point.apex && (facets[f].mode == FacetMode::Opening || force[0].abs() <= SETTINGS.residual()) {
             point.active = bare();
             point.mode = ContactMode::Open;
         } else if let (true, Some(open)) = (point.open(), point.opening_facet) {

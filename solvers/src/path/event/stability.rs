@@ -6,20 +6,17 @@
 //! ([`stability`](crate::path::stability)). Points that slide, or are about to, may move on or stick: positive with all of
 //! them free suffices, negative with all of them held is instability, else nothing is proven.
 
-use super::factorisation::FactorisedModes;
-use super::point::Point;
+use super::piece::factorisation::FactorisedModes;
+use super::piece::point::Point;
 use super::trace::Trace;
 use crate::contact::mode::ContactMode;
 use crate::optimise::lcg::Lcg;
 use crate::path::stability::{SecondOrderWork, over_weak_points, work_by_responses};
 use crate::path::system::Load;
+use crate::settings::SETTINGS;
 use nalgebra::DMatrix;
 use voussoir_core::path::StageStability;
 
-/// Force, relative to the greatest, that is none.
-const NOTHING: f64 = 1e-9;
-/// Flexibility, in the mean compliance of a contact, above which a motion has no stiffness.
-const SOFT: f64 = 1e8;
 /// Iterations that find the softest motion.
 const ITERATIONS: usize = 8;
 
@@ -95,7 +92,7 @@ fn is_stiff(motions: usize, respond: impl Fn(&DMatrix<f64>) -> Option<DMatrix<f6
         motion = respond(&(motion / size))?;
         flexibility = motion.norm();
     }
-    Some(flexibility < SOFT)
+    Some(flexibility < SETTINGS.soft())
 }
 
 /// Stability of the present state under a load that has come to its end, of a stage in which supports may settle.
@@ -131,7 +128,7 @@ fn modes(trace: &Trace, choose: impl Fn(&Point, f64) -> ContactMode) -> Vec<Cont
 /// The mode in which a weakly active point gives way, with its force as a share of the greatest.
 fn released(point: &Point, force: f64) -> ContactMode {
     match (point.mode, point.active.first()) {
-        (ContactMode::Stick, _) if point.apex && force <= NOTHING => ContactMode::Open,
+        (ContactMode::Stick, _) if point.apex && force <= SETTINGS.admissible => ContactMode::Open,
         (ContactMode::Stick, Some(facet)) => ContactMode::Facet(*facet as u8),
         (own, _) => own,
     }

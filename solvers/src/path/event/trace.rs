@@ -1,15 +1,18 @@
 //! What a path is made of: the problem in its units, the present state, the factorisation that serves many events,
 //! and what was noted on the way.
 
-use super::elastic_chain::ElasticChain;
 use super::energy::{Deformation, work_state};
-use super::factorisation::FactorisedModes;
-use super::point::Point;
+use super::joint_chain::{JointChain, Question, by_joint_chain};
+use super::piece::factorisation::FactorisedModes;
+use super::piece::point::Point;
+use super::piece::rates::{Direction, Rates, direction_of};
 use crate::contact::facet::dot;
+use crate::contact::mode::ContactMode;
 use crate::path::energy::{EnergyBalance, WorkState};
-use crate::path::system::System;
+use crate::path::system::{Load, System};
 use crate::rate::arrival::Arrival;
 use crate::rate::counts::RateCounts;
+use crate::settings::SETTINGS;
 use voussoir_core::path::{
     Branching, Loading, PathEvent, PathObserver, PathProblem, PathSettings, PathState, StageStability,
 };
@@ -33,6 +36,19 @@ pub struct State {
 }
 
 impl State {
+    /// Without forces and motions.
+    pub fn at_rest(system: &System, points: Vec<Point>, load_step: usize) -> State {
+        State {
+            x: vec![0.0; system.size()],
+            points,
+            load_step,
+            factor: 0.0,
+            sense: 1.0,
+            stable_under_load: None,
+            energy: EnergyBalance::default(),
+        }
+    }
+
     /// Force at a contact point.
     pub fn force(&self, c: usize) -> [f64; 2] {
         [self.x[2 * c], self.x[2 * c + 1]]
@@ -46,8 +62,8 @@ pub struct Factors {
     pub present: Option<FactorisedModes>,
     /// Whether responses are refined one by one: close to a collapse.
     pub refine_columns: bool,
-    /// Elastic joints in a chain, where they form one.
-    pub chain: Option<ElasticChain>,
+    /// The joints in a chain, if they form one.
+    pub chain: Option<JointChain>,
 }
 
 /// What happened, and what it took.
@@ -63,6 +79,8 @@ pub struct Log {
     pub branchings: Vec<Branching>,
     /// Remarks for the answer.
     pub notes: Vec<String>,
+    /// The last record: its place, from which work is counted, and its stored energy.
+    pub last: Option<(WorkState, f64)>,
 }
 
 /// Work done.
@@ -76,10 +94,8 @@ pub struct Counts {
     pub rate_problems: u64,
     /// Parts of the search that decided rate problems, and the number of small systems.
     pub rates: RateCounts,
-    /// Rate problems of the force method.
-    pub by_force_method: u64,
-    /// Sections whose points it examined.
-    pub sections: u64,
+    /// Rate problems that the chain of joints solved.
+    pub by_chain: u64,
 }
 
 /// One path.
@@ -100,8 +116,6 @@ pub struct Trace<'a> {
     pub factors: Factors,
     /// Events, notes, counts.
     pub log: Log,
-    /// What work needs of the last record, and the energy stored there.
-    pub last: Option<(WorkState, f64)>,
 }
 
 impl<'a> Trace<'a> {
@@ -109,26 +123,66 @@ impl<'a> Trace<'a> {
     pub fn new(problem: &'a PathProblem, settings: &'a PathSettings, observer: &'a mut dyn PathObserver) -> Self {
         let system = System::new(problem, |_| [0.0; 2]);
         let points = (0..system.contacts).map(|c| Point::untouched(&system, c)).collect();
-        let x = vec![0.0; system.size()];
+        let associated = problem.shared_facets().0.into_iter().all(voussoir_core::law::is_associated);
         Trace {
             problem,
             settings,
             observer,
-            associated: problem.shared_facets().0.into_iter().all(voussoir_core::law::is_associated),
-            state: State {
-                x,
-                points,
-                load_step: 0,
-                factor: 0.0,
-                sense: 1.0,
-                stable_under_load: None,
-                energy: EnergyBalance::default(),
-            },
+            associated,
+            state: State::at_rest(&system, points, 0),
             system,
             factors: Factors::default(),
             log: Log::default(),
-            last: None,
         }
+    }
+
+    /// Relative residual up to which rates are believed: the tolerance of loads, but not below rounding.
+    pub fn believed(&self) -> f64 {
+        self.settings.tolerance.clamp(SETTINGS.residual(), SETTINGS.admissible)
+    }
+
+    /// Contact points that have a choice.
+    pub fn active_points(&self) -> Vec<usize> {
+        let points = &self.state.points;
+        (0..points.len()).filter(|c| points[*c].settled().is_none()).collect()
+    }
+
+    /// Modes of all points. Points of the active set keep their modes.
+    pub fn present_modes(&self) -> Vec<ContactMode> {
+        self.state.points.iter().map(|p| p.settled().unwrap_or(p.mode)).collect()
+    }
+
+    /// Takes rates as the direction, and the modes of all points.
+    pub fn take(&mut self, modes: Vec<ContactMode>, rates: Rates, load: &Load) -> Direction {
+        self.state.points.iter_mut().zip(modes).for_each(|(point, mode)| point.mode = mode);
+        direction_of(&self.system, &mut self.state.points, rates, load)
+    }
+
+    /// Factorises the equations in given modes anew; whether they are regular.
+    pub fn factorise(&mut self, modes: Vec<ContactMode>, refine_columns: bool) -> bool {
+        self.log.counts.factorisations += 1;
+        self.factors.present = FactorisedModes::new(&self.system, modes, refine_columns);
+        self.factors.present.is_some()
+    }
+
+    /// Modes of all points from a guess and the rates in them with λ̇ = 1, by the chain of joints. `None` if there is no chain, or
+    /// if the whole system is to be asked. From nothing every point has a choice; a moving support is followed with its own care.
+    pub fn by_chain(
+        &mut self,
+        load: &Load,
+        active: &[usize],
+        guess: Vec<ContactMode>,
+    ) -> Option<(Vec<ContactMode>, Rates)> {
+        if load.settles || self.state.x.iter().all(|v| *v == 0.0) {
+            return None;
+        }
+        let chain = self.factors.chain.as_mut()?;
+        let before = chain.factorisations();
+        let question = Question { system: &self.system, points: &self.state.points, load, active };
+        let found = by_joint_chain(chain, &question, self.state.load_step, guess, &mut self.log.counts.rates.trials);
+        self.log.counts.factorisations += chain.factorisations() - before;
+        self.log.counts.solves += found.as_ref().map_or(0, |(_, rates)| rates.refinements);
+        found
     }
 
     /// Number of contact points of the present event.
@@ -178,7 +232,7 @@ impl<'a> Trace<'a> {
             load_step: state.load_step,
             factor: state.factor,
             force: (0..self.system.contacts).map(|c| state.force(c).map(|f| f * self.system.units.force)).collect(),
-            stored: self.last.as_ref().map_or(0.0, |(_, stored)| *stored),
+            stored: self.log.last.as_ref().map_or(0.0, |(_, stored)| *stored),
             dissipated: state.energy.dissipated,
             work: state.energy.work,
             displacement: self.displacement_of(&motion),
@@ -208,12 +262,12 @@ impl<'a> Trace<'a> {
         let (mut state, deformation) = self.deformed();
         let now = work_state(self.problem, &state, &deformation);
         let stored = deformation.stored + self.stored_by_opening();
-        if let Some((before, _)) = &self.last {
+        if let Some((before, _)) = &self.log.last {
             let loadings: Vec<&Loading> = self.problem.load_steps.iter().map(|step| &step.loading).collect();
             self.state.energy.add_work(self.problem, &loadings, before, &now);
         }
         (state.work, state.stored) = (self.state.energy.work, stored);
-        self.last = Some((now, stored));
+        self.log.last = Some((now, stored));
         self.observer.state(self.problem, &state)
     }
 }

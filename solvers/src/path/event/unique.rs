@@ -12,24 +12,19 @@
 //!   than one where some linear form of y has two values. A random one does; its least and its greatest
 //!   value are two linear programs.
 
-use super::point::Point;
+use super::piece::point::Point;
 use crate::contact::facet::{dilatancy, dot, multipliers};
 use crate::contact::mode::ContactMode;
 use crate::optimise::dense_simplex::Feasibility;
 use crate::optimise::lcg::Lcg;
 use crate::path::system::{Load, System};
 use crate::rate::mechanism::mechanisms;
+use crate::settings::SETTINGS;
 use nalgebra::DMatrix;
 
 /// Freedoms of motion above which it is not examined.
 const MOST: usize = 150;
-/// Singular values below this share of the greatest are zero.
-const ZERO: f64 = 1e-9;
-/// Flows below this share of the greatest gap rate are not at work.
-const WORKING: f64 = 1e-7;
 
-/// Values of a linear form that differ by more than this share of them are two.
-const APART: f64 = 1e-6;
 /// Pivots of a linear program.
 const PIVOTS: u64 = 5000;
 
@@ -47,7 +42,7 @@ pub fn unique(system: &System, points: &[Point], load: &Load, x: &[f64], gaps: &
         let matrix = DMatrix::from_fn(height, freedoms, |i, j| rows.get(i).map_or(0.0, |row| row[j]));
         let svd = matrix.try_svd(false, true, f64::EPSILON, 10_000)?;
         let (values, vectors) = (svd.singular_values, svd.v_t?);
-        let null: Vec<usize> = (0..freedoms).filter(|k| values[*k] <= ZERO * values.max()).collect();
+        let null: Vec<usize> = (0..freedoms).filter(|k| values[*k] <= SETTINGS.admissible * values.max()).collect();
         Some(DMatrix::from_fn(freedoms, null.len(), |i, k| vectors[(null[k], i)]))
     };
     let possible = |c: usize| {
@@ -65,7 +60,9 @@ pub fn unique(system: &System, points: &[Point], load: &Load, x: &[f64], gaps: &
         }
         let flows = match point.mode {
             ContactMode::Stick => Vec::new(),
-            ContactMode::Open if gap[0] - dilatancy(facets) * gap[1].abs() > WORKING * size => return None,
+            ContactMode::Open if gap[0] - dilatancy(facets) * gap[1].abs() > SETTINGS.same_rate() * size => {
+                return None;
+            }
             ContactMode::Open => Vec::new(),
             ContactMode::Facet(f) => {
                 let f = f as usize;
@@ -78,8 +75,9 @@ pub fn unique(system: &System, points: &[Point], load: &Load, x: &[f64], gaps: &
                 vec![(i, a), (j, b)]
             }
         };
-        let at_work =
-            |(f, rate): &(usize, f64)| *rate > WORKING * size || (point.open() && point.opening_facet == Some(*f));
+        let at_work = |(f, rate): &(usize, f64)| {
+            *rate > SETTINGS.same_rate() * size || (point.open() && point.opening_facet == Some(*f))
+        };
         Some(flows.into_iter().filter(at_work).map(|(f, _)| facets[f].flow).collect())
     };
     let all = space(&possible)?;
@@ -127,7 +125,7 @@ fn by_signs(system: &System, points: &[Point], all: &DMatrix<f64>, power: &[f64]
         else {
             return Some(false);
         };
-        if (least.0 + most.0).abs() > APART * least.0.abs().max(most.0.abs()) {
+        if (least.0 + most.0).abs() > SETTINGS.distinct() * least.0.abs().max(most.0.abs()) {
             return Some(false);
         }
         if !(least.1 && most.1) {
@@ -150,7 +148,8 @@ fn constraints(system: &System, c: usize, flows: Option<Vec<[f64; 2]>>) -> Vec<V
     };
     let Some(first) = flows.first() else { return vec![row([1.0, 0.0]), row([0.0, 1.0])] };
     let length = |d: [f64; 2]| d[0].hypot(d[1]);
-    let apart = |d: &[f64; 2]| (first[0] * d[1] - first[1] * d[0]).abs() > ZERO * length(*first) * length(*d);
+    let apart =
+        |d: &[f64; 2]| (first[0] * d[1] - first[1] * d[0]).abs() > SETTINGS.admissible * length(*first) * length(*d);
     if flows.iter().any(apart) {
         return Vec::new();
     }

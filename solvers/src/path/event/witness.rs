@@ -1,9 +1,8 @@
 //! Witnesses for the certificate: rates at a state, and proofs that no rate raises the load or continues the path.
 
-use super::direction::factorise;
-use super::point::{Point, active_points};
-use super::rates::Direction;
-use super::schur::SchurComplement;
+use super::piece::point::{Point, active_points};
+use super::piece::rates::Direction;
+use super::piece::schur::SchurComplement;
 use super::trace::Trace;
 use crate::contact::mode::ContactMode;
 use crate::path::dual_vector::{self, MOST_FACETS, Response};
@@ -48,7 +47,7 @@ fn active_set(trace: &Trace) -> Vec<usize> {
 fn factorise_closed(trace: &mut Trace) -> Option<Vec<ContactMode>> {
     let closed = |point: &Point| point.settled().unwrap_or(ContactMode::Stick);
     let modes: Vec<ContactMode> = trace.state.points.iter().map(closed).collect();
-    factorise(trace, modes.clone(), true).then_some(modes)
+    trace.factorise(modes.clone(), true).then_some(modes)
 }
 
 /// A witness at the present state by a search over the modes of the active points.

@@ -1,16 +1,16 @@
 //! The load steps one after the other, and the answer.
 
 use super::load_to_factor::load_to_factor;
-use super::loads::StagedLoads;
-use super::monitors::resolve;
 use super::pieces;
-use super::recorded::{recorded, work_state};
-use super::second_order::{StateStability, second_order_work, stability};
-use super::stable_branch::{Departure, leave_unstable};
-use super::system::StepSystem;
-use super::tracer::{Ending, LimitPoint, LoadStepEnding, Record, Tracer, end_path};
 use crate::path::continuation::arc_length::ArcLength;
 use crate::path::energy::{EnergyBalance, StageBalance};
+use crate::path::newton::model::loads::StagedLoads;
+use crate::path::newton::model::system::StepSystem;
+use crate::path::newton::quantities::monitors::resolve;
+use crate::path::newton::quantities::recorded::{recorded, work_state};
+use crate::path::newton::solve::second_order::{StateStability, second_order_work, stability};
+use crate::path::newton::tracing::stable_branch::{Departure, leave_unstable};
+use crate::path::newton::tracing::tracer::{Ending, InForce, LimitPoint, LoadStepEnding, Record, Tracer, end_path};
 use crate::path::outcome::{Outcome, PathRecord, stalled};
 use std::sync::Arc;
 use voussoir_core::limit::Status;
@@ -18,10 +18,11 @@ use voussoir_core::path::{LoadStep, LoadStepEnd, PathAnswer, PathObserver, PathP
 
 /// Follows all load steps.
 pub(super) fn trace(problem: &PathProblem, settings: &PathSettings, observer: &mut dyn PathObserver) -> PathAnswer {
-    let system = match StepSystem::new(problem, settings.finite) {
+    let mut system = match StepSystem::new(problem, settings.finite) {
         Ok(system) => system,
         Err(why) => return stalled(problem, why),
     };
+    system.tolerance = settings.tolerance;
     let state = system.undeformed();
     let gradient = system.gradient(&state);
     let energy = EnergyBalance::default();
@@ -30,9 +31,8 @@ pub(super) fn trace(problem: &PathProblem, settings: &PathSettings, observer: &m
     let mut tracer = Tracer {
         system,
         settings,
-        strategy: Arc::new(ArcLength::default()),
         observer,
-        load_step: 0,
+        in_force: InForce { load_step: 0, strategy: Arc::new(ArcLength::default()) },
         state,
         record: Record {
             energy,
@@ -47,7 +47,6 @@ pub(super) fn trace(problem: &PathProblem, settings: &PathSettings, observer: &m
         },
         ending: Ending { status: Status::Stalled, motion: None, ray: None, limit_point_end: None },
         limit: LimitPoint::default(),
-        trough: None,
     };
     run(&mut tracer, problem);
     answer(tracer)
@@ -57,17 +56,13 @@ pub(super) fn trace(problem: &PathProblem, settings: &PathSettings, observer: &m
 fn run<'a>(tracer: &mut Tracer<'a, '_>, problem: &'a PathProblem) {
     let mut earlier = Vec::new();
     for (index, load_step) in problem.load_steps.iter().enumerate() {
-        tracer.load_step = index;
+        tracer.in_force.load_step = index;
         tracer.state.factor = load_step.start;
-        tracer.strategy =
+        tracer.in_force.strategy =
             tracer.settings.strategy(load_step.stage).cloned().unwrap_or_else(|| Arc::new(ArcLength::default()));
         // What the problem does not have is refused before the path begins.
-        tracer.system.monitors = resolve(problem, &tracer.strategy.monitors()).unwrap_or_default();
-        tracer.system.load(StagedLoads {
-            earlier: earlier.clone(),
-            growing: &load_step.loading,
-            start: load_step.start,
-        });
+        tracer.system.monitors = resolve(problem, &tracer.in_force.strategy.monitors()).unwrap_or_default();
+        tracer.system.load(StagedLoads::new(earlier.clone(), &load_step.loading, load_step.start));
         let gradient = tracer.system.gradient(&tracer.state);
         tracer.record.work = work_state(&tracer.system, &tracer.state, &gradient);
         let mut outcome = match load_step.end {
@@ -145,7 +140,7 @@ fn answer(mut tracer: Tracer) -> PathAnswer {
             "at factor {factor} no rate of solution has a factor that grows: all modes of the active contact points are excluded"
         ));
     }
-    let mut counters = tracer.system.counters.clone();
+    let mut counters = tracer.system.report.counters.clone();
     for name in ["newton_iterations", "factorisations", "law_evaluations", "steps", "cutbacks"] {
         counters.entry(name.into()).or_default();
     }
@@ -159,7 +154,7 @@ fn answer(mut tracer: Tracer) -> PathAnswer {
         ));
     }
     if tracer.ending.status != Status::NoEquilibrium
-        && let (Some(peak), Some(trough)) = (&tracer.limit.peak, &tracer.trough)
+        && let (Some(peak), Some(trough)) = (&tracer.limit.peak, &tracer.limit.trough)
     {
         notes.push(format!(
             "after the peak the load falls to the factor {} at a displacement of {} m and rises again: snap-through",
@@ -185,7 +180,7 @@ fn answer(mut tracer: Tracer) -> PathAnswer {
         }
     };
     let record = PathRecord {
-        load_step: tracer.load_step,
+        load_step: tracer.in_force.load_step,
         state,
         last,
         events: tracer.record.events,

@@ -1,14 +1,14 @@
 //! Load steps to a factor: in one step where that is exact, else in steps.
 
-use super::commit::commit;
-use super::control::Control;
 use super::pieces;
-use super::response::tractions_dissipate;
-use super::second_order::second_order_work;
-use super::state::State;
-use super::step::solve_step;
-use super::step_energy::step_energy;
-use super::tracer::{LoadStepEnding, Tracer};
+use crate::path::newton::model::control::Control;
+use crate::path::newton::model::state::State;
+use crate::path::newton::quantities::response::tractions_dissipate;
+use crate::path::newton::solve::second_order::second_order_work;
+use crate::path::newton::solve::step::solve_step;
+use crate::path::newton::tracing::commit::commit;
+use crate::path::newton::tracing::step_energy::step_energy;
+use crate::path::newton::tracing::tracer::{LoadStepEnding, Tracer};
 use voussoir_core::path::LoadStep;
 
 /// To a factor: in one step where nothing irreversible happens in it, else in steps.

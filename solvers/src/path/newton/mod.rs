@@ -1,48 +1,17 @@
 //! `newton_path`: semismooth Newton on the modes of contact points, small and finite displacements.
 #![doc = include_str!("newton_path.md")]
 
-mod ahead;
-mod blocks;
-mod commit;
-mod control;
-mod control_row;
-mod deformation;
-mod derivatives;
-mod equations;
-mod events;
-mod factors;
-mod geometry;
-mod inelastic;
-mod iteration;
-mod kinematics;
-mod limit_point_test;
-mod line_search;
-mod linearised;
 mod load_steps;
 mod load_to_factor;
-mod loads;
-mod measure;
-mod monitors;
-mod nearby;
-mod peak;
+mod model;
 mod pieces;
-mod recorded;
-mod relaxation;
-mod response;
-mod second_order;
-mod stable_branch;
-mod state;
-mod step;
-mod step_energy;
-mod system;
-mod tangent;
-mod tracer;
-mod tractions;
-mod witness;
+mod quantities;
+mod solve;
+mod tracing;
 
-use self::monitors::resolve;
 use super::event::{self, is_piecewise_linear};
 use super::outcome::stalled;
+use crate::path::newton::quantities::monitors::resolve;
 use serde::{Deserialize, Serialize};
 use voussoir_core::path::{PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver};
 use voussoir_core::plugin::{Capability, Card, PluginKind};

@@ -10,7 +10,7 @@ use voussoir_core::law::Facet;
 use voussoir_core::path::{Contact, PathProblem};
 
 /// The scaled problem.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct System {
     /// Units of the unknowns.
     pub units: Units,

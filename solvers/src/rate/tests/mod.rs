@@ -3,7 +3,6 @@
 mod associated;
 mod enumeration;
 mod fuzzed;
-mod homotopy;
 mod numbering;
 mod one_point;
 mod proofs;

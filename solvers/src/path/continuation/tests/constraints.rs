@@ -1,11 +1,11 @@
 //! Values and derivatives of all constraints.
 
 use super::{all, entries, of_entries, previous, some};
-use crate::path::continuation::LARGEST_FINITE_STEP;
 use crate::path::continuation::arc_length::ArcLength;
 use crate::path::continuation::displacement_control::DisplacementControl;
 use crate::path::continuation::load_control::LoadControl;
 use crate::path::two_blocks::assert_close;
+use crate::settings::SETTINGS;
 use voussoir_core::path::{Continuation, Increment};
 
 /// ∂c of every strategy is the difference quotient of c.
@@ -102,7 +102,7 @@ fn lengths_by_default() {
     for strategy in all() {
         assert_eq!((strategy.first_step(), strategy.largest_step()), (0.1, f64::INFINITY), "{strategy:?}");
     }
-    const { assert!(LARGEST_FINITE_STEP > 0.0 && LARGEST_FINITE_STEP < 0.1) };
+    const { assert!(SETTINGS.largest_finite_step > 0.0 && SETTINGS.largest_finite_step < 0.1) };
 }
 
 /// A strategy reports the lengths that it is given.

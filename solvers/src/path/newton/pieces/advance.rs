@@ -4,40 +4,18 @@
 //! positive at both ends, but whose cubic of Hermite is negative between them, may have two: the step is cut there. A
 //! root is bracketed, and located by the roots of cubics to the tolerance of the monitor.
 
-use super::super::ahead::length_ahead;
-use super::super::control::Control;
-use super::super::state::{State, Tangent};
-use super::super::system::StepSystem;
-use super::super::tracer::moved;
 use super::corrector::correct;
 use super::monitors::Reading;
 use super::piece::{Piece, scaled_row};
-use crate::linear::inner;
+use crate::path::newton::model::control::Control;
+use crate::path::newton::model::state::{State, Tangent, moved};
+use crate::path::newton::model::system::StepSystem;
+use crate::settings::SETTINGS;
 
-/// Length of a step, relative to that at which the first event would be if all rates stayed: the event is then in it.
-const BEYOND: f64 = 1.02;
-/// Distance from the predictor, relative to the step, up to which a step goes straight to the target.
-const STRAIGHT: f64 = 0.1;
-/// Length, in units, that is rounding of a state.
-const ROUNDING: f64 = 1e-7;
-/// Distance of a state from its predictor, relative to the step, beyond which bonds have taken it to another branch, and the part
-/// of the distance that is rounding.
-const ELSEWHERE: f64 = 0.5;
-const NOISE: f64 = 1e-10;
-/// Distance of two states, relative to the length between them, above which a path jumps.
-const JUMP: f64 = 10.0;
 /// Points between the ends of a step at which a cubic is looked at.
 const SAMPLES: usize = 16;
 /// States that are computed to locate an event.
 const MOST_TRIALS: usize = 100;
-/// Width of a bracket, relative to the step, at which an event is located whatever its monitor reads.
-const NARROW: f64 = 1e-13;
-/// Length that is left to the end of a branch, relative to the step, up to which the step goes on to it.
-const NEAR: f64 = 0.02;
-/// Change of the factor in a step, relative to it, below which it is not looked at.
-const FLAT: f64 = 1e-7;
-/// Rate of the factor, relative to that at the start, at which it turns.
-const TURNS: f64 = 1e-8;
 
 /// A state of a piece at the end of a step.
 pub(super) struct StepEnd {
@@ -96,6 +74,8 @@ struct Step<'a, 's> {
     start: &'a State,
     piece: &'a Piece,
     watched: Watched,
+    /// Counts the states that are computed.
+    states: &'a mut usize,
 }
 
 impl Step<'_, '_> {
@@ -106,7 +86,7 @@ impl Step<'_, '_> {
         let at_start = (self.piece.tangent.factor / unit).abs();
         all.push(self.watched.sense.map_or(never, |sense| Reading {
             value: sense * rate.factor / unit,
-            tolerance: TURNS * at_start,
+            tolerance: SETTINGS.active * at_start,
             ..never
         }));
         all.push(self.watched.target.map_or(never, |(target, direction)| Reading {
@@ -130,6 +110,7 @@ impl Step<'_, '_> {
 
     /// The state of a control, about a length away.
     fn controlled(&mut self, from: &StepEnd, length: f64, control: &Control) -> Option<Trial> {
+        *self.states += 1;
         let guess = moved(&from.state, &from.rate, length - from.length);
         let state = correct(self.system, self.start, guess, control)?;
         let rate = self.piece.rate_at(self.system, &state)?;
@@ -137,26 +118,17 @@ impl Step<'_, '_> {
         let moved = scaled_row(self.system, &step);
         let away: f64 = moved.iter().zip(self.piece.row.iter()).map(|(x, t)| (x - length * t).powi(2)).sum();
         let error = away.sqrt() / length.abs().max(1e-300);
-        let bonds = !self.system.laws.responses.is_empty();
-        if bonds && error > ELSEWHERE + NOISE / length.abs().max(1e-300) {
-            return None;
-        }
         let unexplained = self.unexplained(&state, &rate, length);
         let readings = self.readings(&state, &rate);
         Some(Trial { end: StepEnd { state, rate, length, error, unexplained }, readings })
-    }
-
-    /// Distance of two states over the scaled unknowns.
-    fn distance(&self, low: &Trial, high: &Trial) -> f64 {
-        let row = scaled_row(self.system, &chord(&low.end.state, &high.end.state));
-        inner(&row, &row).sqrt()
     }
 
     /// Error of the trapezoidal rule for the factor.
     fn unexplained(&self, end: &State, rate: &Tangent, length: f64) -> f64 {
         let [before, after] = [self.piece.tangent.factor, rate.factor].map(|slope| slope * length);
         let gained = end.factor - self.start.factor;
-        let size = before.abs().max(after.abs()).max(FLAT * end.factor.abs().max(self.system.units().factor));
+        let size =
+            before.abs().max(after.abs()).max(SETTINGS.same_rate() * end.factor.abs().max(self.system.units().factor));
         (gained - 0.5 * (before + after)).abs() / size
     }
 
@@ -164,13 +136,13 @@ impl Step<'_, '_> {
     fn reaching_target(&mut self, low: &StepEnd, length: f64) -> Option<StepEnd> {
         let (target, _) = self.watched.target?;
         let reach = (target - low.state.factor) / low.rate.factor;
-        if !(reach > 0.0 && reach <= length.max(ROUNDING)) {
+        if !(reach > 0.0 && reach <= length.max(SETTINGS.same_rate())) {
             return None;
         }
         let found = self.controlled(low, reach, &Control::Factor(target))?;
         let monitors = found.readings.len() - 1;
         let holds = !found.readings[..monitors].iter().any(Reading::is_violated);
-        (holds && found.end.error <= STRAIGHT + ROUNDING / reach).then_some(found.end)
+        (holds && found.end.error <= SETTINGS.most_error + SETTINGS.same_rate() / reach).then_some(found.end)
     }
 }
 
@@ -188,20 +160,26 @@ pub(super) fn chord(from: &State, to: &State) -> Tangent {
 /// The state at a length along a piece from one of its states, whatever its monitors read.
 pub(super) fn state_at(system: &mut StepSystem, start: &State, piece: &Piece, length: f64) -> Option<StepEnd> {
     let low = StepEnd { state: start.clone(), rate: piece.tangent.clone(), length: 0.0, error: 0.0, unexplained: 0.0 };
-    let mut step = Step { system, start, piece, watched: Watched { sense: None, target: None } };
+    let mut step = Step { system, start, piece, watched: Watched { sense: None, target: None }, states: &mut 0 };
     step.trial(&low, length).map(|trial| trial.end)
 }
 
-/// Goes a length along a piece from one of its states.
-pub(super) fn advance(system: &mut StepSystem, start: &State, piece: &Piece, length: f64, watched: Watched) -> Advance {
-    let mut step = Step { system, start, piece, watched };
+/// Goes a length along a piece from one of its states. `states` counts those that are computed.
+pub(super) fn advance(
+    system: &mut StepSystem,
+    (start, piece): (&State, &Piece),
+    length: f64,
+    watched: Watched,
+    states: &mut usize,
+) -> Advance {
+    let mut step = Step { system, start, piece, watched, states };
     let readings = step.readings(start, &piece.tangent);
     let end = StepEnd { state: start.clone(), rate: piece.tangent.clone(), length: 0.0, error: 0.0, unexplained: 0.0 };
     let low = Trial { end, readings };
     let crossing = first_crossing(&low.readings);
     // Beyond the end of a branch of a law of tractions there may be no state along the present tangent.
     let of_branch = step.branch_crossing(&low.readings);
-    let length = length.min(if of_branch <= crossing { of_branch } else { BEYOND * crossing });
+    let length = length.min(if of_branch <= crossing { of_branch } else { SETTINGS.beyond * crossing });
     if let Some(end) = step.reaching_target(&low.end, length) {
         return Advance::Target(end);
     }
@@ -230,7 +208,7 @@ fn at_branch_end(step: &mut Step, low: Trial, mut high: Trial) -> Advance {
             let hits = (0..monitors).filter(|i| high.readings[*i].is_active()).collect();
             return Advance::Event(high.end, hits);
         }
-        if left > NEAR * high.end.length {
+        if left > SETTINGS.wanted_error * high.end.length {
             break;
         }
         let Some(next) = step.trial(&high.end, high.end.length + left) else { return Advance::Failed };
@@ -257,7 +235,7 @@ fn locate(step: &mut Step, mut low: Trial, mut high: Trial) -> Advance {
     let mut last = f64::INFINITY;
     for _ in 0..MOST_TRIALS {
         let width = high.end.length - low.end.length;
-        if width <= NARROW * whole {
+        if width <= SETTINGS.rounding * whole {
             break;
         }
         // If the root of a cubic has not halved the bracket, a half does: a rate may jump where a material yields.
@@ -284,8 +262,7 @@ fn locate(step: &mut Step, mut low: Trial, mut high: Trial) -> Advance {
     }
     // A path, its slacks and its openings are continuous: behind a bracket over which one jumps the states are on another branch.
     let jumps = |(a, b): (&Reading, &Reading)| a.rate.is_some() && !a.is_active() && b.is_violated();
-    let far = JUMP * (high.end.length - low.end.length) + length_ahead(step.system, step.start);
-    match step.distance(&low, &high) > far || low.readings.iter().zip(&high.readings).any(jumps) {
+    match low.readings.iter().zip(&high.readings).any(jumps) {
         true if low.end.length > 0.0 => Advance::Whole(low.end),
         true => Advance::Failed,
         false => ended(low, &high),

@@ -1,20 +1,19 @@
 //! The first piece of a load step, or of what follows a jump: a rate on which the factor goes in its sense.
 
-use super::super::commit::commit;
-use super::super::control::Control;
-use super::super::limit_point_test::{LimitPointTest, limit_point_test};
-use super::super::state::State;
-use super::super::step::solve_step;
-use super::super::tangent::tangent_at;
-use super::super::tracer::{LoadStepEnding, Tracer, end_path};
 use super::piece::Piece;
 use super::switch::{Start, is_admissible};
 use crate::contact::mode::ContactMode;
 use crate::path::event::first_modes;
+use crate::path::newton::model::control::Control;
+use crate::path::newton::model::state::State;
+use crate::path::newton::solve::limit_point_test::{LimitPointTest, limit_point_test};
+use crate::path::newton::solve::step::solve_step;
+use crate::path::newton::solve::tangent::tangent_at;
+use crate::path::newton::tracing::commit::commit;
+use crate::path::newton::tracing::tracer::{LoadStepEnding, Tracer, end_path};
+use crate::settings::SETTINGS;
 use voussoir_core::limit::Status;
 
-/// Load, relative to the unit of the factor, whose state has the modes with which the path begins from nothing.
-const SMALL: f64 = 0.05;
 /// Shares of the load step at which a state is looked for if no rate has been found.
 const AHEAD: [f64; 3] = [1e-6, 1e-4, 1e-2];
 
@@ -35,7 +34,7 @@ pub(super) fn begin(tracer: &mut Tracer, target: f64, direction: f64) -> Result<
 /// problem of the first piece is solved. If joints are open at first no such rate exists: the path begins at the small load.
 fn rate_from_nothing(tracer: &mut Tracer, target: f64, direction: f64) -> Result<Start, String> {
     let start = tracer.state.clone();
-    let length = SMALL * tracer.system.units().factor.min((target - start.factor).abs());
+    let length = SETTINGS.first_load * tracer.system.units().factor.min((target - start.factor).abs());
     let control = Control::Factor(start.factor + direction * length);
     let near = solve_step(&mut tracer.system, &start, start.clone(), &control).ok().map(|(state, _)| state);
     if start.gap.iter().any(|gap| gap[0] > 0.0) {
@@ -47,7 +46,7 @@ fn rate_from_nothing(tracer: &mut Tracer, target: f64, direction: f64) -> Result
     if let Some(found) = near.and_then(|state| rate_in(tracer, state.mode, target, direction)) {
         return Ok(found);
     }
-    let modes = first_modes(tracer.system.problem, tracer.settings, tracer.load_step, direction)?;
+    let modes = first_modes(tracer.system.problem, tracer.settings, tracer.in_force.load_step, direction)?;
     rate_in(tracer, modes, target, direction).ok_or_else(|| "the modes that were found have no rate".into())
 }
 

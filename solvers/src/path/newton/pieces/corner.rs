@@ -4,10 +4,9 @@
 //! whole, the path turns sharply, and a state beyond the corner is not near any predictor. Then the step ends at the
 //! corner, which the law alone locates along the tangent.
 
-use super::super::inelastic::update_blocks;
-use super::super::state::{State, Tangent};
-use super::super::system::StepSystem;
-use super::super::tracer::moved;
+use crate::path::newton::model::state::{State, Tangent, moved};
+use crate::path::newton::model::system::StepSystem;
+use crate::path::newton::quantities::inelastic::update_blocks;
 
 /// Bisections of the length.
 const BISECTIONS: usize = 48;

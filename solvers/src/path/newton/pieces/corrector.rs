@@ -4,36 +4,29 @@
 //! predictor that is near enough. What it finds may violate the inequalities of its modes; [`monitors`](super::monitors)
 //! tell.
 
-use super::super::control::Control;
-use super::super::control_row::{control_row, control_value};
-use super::super::inelastic::block_error;
-use super::super::iteration::{
+use crate::path::newton::model::control::Control;
+use crate::path::newton::model::state::State;
+use crate::path::newton::model::system::StepSystem;
+use crate::path::newton::quantities::control_row::{control_row, control_value};
+use crate::path::newton::quantities::inelastic::block_error;
+use crate::path::newton::quantities::response::traction_error;
+use crate::path::newton::solve::iteration::{
     LinearisedAt, first_state, gap_error, largest_unknown, relative_residual, rotation_bound, rounding,
     unbalanced_share,
 };
-use super::super::line_search::advanced;
-use super::super::linearised::residual_of;
-use super::super::nearby::{Accuracy, solve};
-use super::super::response::traction_error;
-use super::super::state::State;
-use super::super::system::StepSystem;
+use crate::path::newton::solve::line_search::advanced;
+use crate::path::newton::solve::linearised::residual_of;
+use crate::path::newton::solve::nearby::{Accuracy, solve};
+use crate::settings::SETTINGS;
 
 /// Number of iterations after which a shorter step is cheaper.
 const MOST: u32 = 12;
-/// Relative residual of a state that is found: some hundred times rounding.
-const FOUND: f64 = 1e-13;
-/// Relative residual that is taken if a whole iteration does not lower it.
-const LOWEST: f64 = 1e-9;
-/// Share of the last residual above which an iteration has not lowered it.
-const STAYS: f64 = 0.3;
-/// Greatest residual of equilibrium relative to the forces: a tenth of what certificates allow.
-const BALANCED: f64 = 1e-10;
 
 /// The state on the piece that starts at `start`, from a guess with its modes. Returns `None` if the iterations do not
 /// converge.
 pub(super) fn correct(system: &mut StepSystem, start: &State, guess: State, control: &Control) -> Option<State> {
     let first = first_state(system, start, guess, control);
-    let (mut state, mut gradient) = first.map_err(|why| system.failure = Some(why)).ok()?;
+    let (mut state, mut gradient) = first.map_err(|why| system.report.failure = Some(why)).ok()?;
     let rounding = rounding(system);
     let mut last = f64::INFINITY;
     let mut whole = true;
@@ -45,11 +38,11 @@ pub(super) fn correct(system: &mut StepSystem, start: &State, guess: State, cont
         if !norm.is_finite() {
             return None;
         }
-        let stays = whole && norm > STAYS * last;
-        let settled = norm <= FOUND + rounding || (norm <= LOWEST + 30.0 * rounding && stays);
+        let stays = whole && norm > SETTINGS.stays * last;
+        let settled = norm <= system.found() + rounding || (norm <= SETTINGS.admissible + 30.0 * rounding && stays);
         if iteration > 0
             && settled
-            && linearised.is_fine(norm, FOUND + rounding)
+            && linearised.is_fine(norm, system.found() + rounding)
             && holds(system, &residual, &state, rounding, stays)
         {
             return Some(state);
@@ -70,7 +63,7 @@ pub(super) fn correct(system: &mut StepSystem, start: &State, guess: State, cont
         let share = rotation_bound(system, &step);
         whole = share == 1.0 && !linearised.lags();
         let next = advanced(system, start, &state, &step, share);
-        (state, gradient) = next.map_err(|why| system.failure = Some(why)).ok()?;
+        (state, gradient) = next.map_err(|why| system.report.failure = Some(why)).ok()?;
     }
     None
 }
@@ -78,9 +71,9 @@ pub(super) fn correct(system: &mut StepSystem, start: &State, guess: State, cont
 /// Returns true if equilibrium and the gaps of a state hold, whatever its modes allow.
 fn holds(system: &StepSystem, residual: &[f64], state: &State, rounding: f64, stays: bool) -> bool {
     let (gap, force) = gap_error(system, residual, state);
-    unbalanced_share(system, residual, state) <= BALANCED
-        && gap <= LOWEST + rounding / largest_unknown(system, state)
-        && (stays || force <= LOWEST)
-        && traction_error(system, state) <= LOWEST
-        && block_error(system, state) <= LOWEST
+    unbalanced_share(system, residual, state) <= SETTINGS.inequality()
+        && gap <= SETTINGS.admissible + rounding / largest_unknown(system, state)
+        && (stays || force <= SETTINGS.admissible)
+        && traction_error(system, state) <= SETTINGS.admissible
+        && block_error(system, state) <= SETTINGS.admissible
 }

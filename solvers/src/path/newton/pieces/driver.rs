@@ -1,19 +1,5 @@
 //! Pieces one after the other, from the start of a load step to its end.
 
-use super::super::ahead::{facing_ahead, length_ahead};
-use super::super::commit::{commit, end_at_lost_joint, lost_joint};
-use super::super::control::Control;
-use super::super::events::events;
-use super::super::measure::{increment_along, motion_size};
-use super::super::peak::{note_peak, peak_at, scaled_motion};
-use super::super::second_order::{instability, second_order_work};
-use super::super::stable_branch::{Departure, leave_unstable};
-use super::super::state::{State, Tangent};
-use super::super::step::solve_step;
-use super::super::step_energy::step_energy;
-use super::super::tangent::tangent_at;
-use super::super::tracer::{LoadStepEnding, Tracer, direction, end_path, moved};
-use super::super::witness::none_continues;
 use super::advance::{Advance, StepEnd, Watched, advance, chord, state_at};
 use super::begin::begin;
 use super::corner::corner;
@@ -28,77 +14,75 @@ use super::ray::ray;
 use super::switch::{NextPiece, after_event, is_admissible};
 use crate::contact::mode::ContactMode;
 use crate::linear::inner;
-use crate::path::continuation::LARGEST_FINITE_STEP;
+use crate::path::newton::model::control::Control;
+use crate::path::newton::model::state::{State, Tangent, moved};
+use crate::path::newton::quantities::ahead::{facing_ahead, length_ahead};
+use crate::path::newton::quantities::events::events;
+use crate::path::newton::quantities::measure::{increment_along, motion_size};
+use crate::path::newton::solve::second_order::{instability, second_order_work};
+use crate::path::newton::solve::step::solve_step;
+use crate::path::newton::solve::tangent::tangent_at;
+use crate::path::newton::tracing::commit::{commit, end_at_lost_joint, lost_joint};
+use crate::path::newton::tracing::peak::{note_peak, peak_at, scaled_motion};
+use crate::path::newton::tracing::stable_branch::{Departure, leave_unstable};
+use crate::path::newton::tracing::step_energy::step_energy;
+use crate::path::newton::tracing::tracer::{LoadStepEnding, Tracer, direction, end_path};
+use crate::path::newton::tracing::witness::none_continues;
 use crate::path::stability::SecondOrderWork;
+use crate::settings::SETTINGS;
 use voussoir_core::limit::Status;
 use voussoir_core::path::{Branching, LimitPointEnd, LoadStep, LoadStepEnd, ProvenPeak};
 
 /// Greatest number of pieces and steps of a load step.
 const MOST_STEPS: u64 = 6000;
-/// Greatest number of iterations of Newton's method of a load step.
-const MOST_ITERATIONS: u64 = 20_000;
-/// Distance of a state from the predictor, relative to the step, at which the next step is as long.
-const WANTED_ERROR: f64 = 0.02;
-/// The same above which the step is repeated.
-const MOST_ERROR: f64 = 0.1;
-/// Share of the change of the factor in a step that its rates may leave unexplained.
-const MOST_UNEXPLAINED: f64 = 0.1;
-/// Length of a step, relative to that wanted, from which on its error tells how long the next one may be.
-const TELLING: f64 = 0.1;
-/// Relative fall of a load that is rounding.
-const NOT_FALLEN: f64 = 1e-12;
-/// Relative difference of two loads that are the same in a result.
-const SAME_LOAD: f64 = 1e-6;
+/// Greatest number of states that Newton's method computes in the steps of a load step.
+const MOST_STATES: usize = 8000;
 /// Lengths, relative to the first step, of steps across a corner.
 const ACROSS: [f64; 4] = [1e-4, 1e-3, 1e-5, 1e-6];
-/// Length, relative to the first step, below which there is no step.
-const SHORTEST: f64 = 1e-10;
 /// Pieces of next to no length one after the other at which the path is lost.
 const MOST_SHORT_PIECES: u32 = 50;
-/// Difference from 1 of the cosine of two tangents between which the path has a corner.
-const CORNER: f64 = 1e-6;
-/// Rate of the factor, in units, relative to that of motions, at which it stands still.
-const STILL: f64 = 1e-13;
-/// Width, relative to a step, of the bracket of the first unstable state.
-const PLACED: f64 = 1e-9;
-/// Share of a settlement by which it goes on beyond a limit point from which it snaps.
-const SNAP: f64 = 1e-7;
-
-/// Length, relative to the first step, above which a step is more than rounding.
-const FAR: f64 = 1e-6;
-/// Share of a step beyond which its corner is its end.
-const NEARLY: f64 = 1.0 - 1e-9;
 
 /// The ending of the load step if a step ends it.
 type Ending = Option<LoadStepEnding>;
 
 /// A load step that is followed.
 struct Run<'d> {
+    range: Range<'d>,
+    piece: Piece,
+    length: Lengths,
+    /// True if the factor goes in its sense.
+    rises: bool,
+    cluster: Cluster,
+    standing: Standing,
+    /// States that its steps have computed.
+    states: usize,
+}
+
+/// From where to where a load step goes.
+struct Range<'d> {
     load_step: &'d LoadStep,
     target: f64,
     /// Sense of λ.
     direction: f64,
-    piece: Piece,
-    /// Length of the next step.
-    length: f64,
-    /// Greatest length by the strategy.
-    longest: f64,
-    /// Length of the first step.
-    first: f64,
-    /// Whether the factor goes in its sense.
-    rises: bool,
     /// Displacement of the load at the start.
     from: f64,
-    cluster: Cluster,
-    /// Whether the present modes are known to be unstable under their loads, and no stable equilibrium is near.
-    unstable: bool,
-    standing: Standing,
 }
 
-/// A load that stands still.
+/// Lengths of steps along the tangent.
+struct Lengths {
+    next: f64,
+    /// Greatest by the strategy.
+    longest: f64,
+    /// That of the first step.
+    first: f64,
+}
+
+/// Findings about the present state.
 #[derive(Default)]
 struct Standing {
-    /// Whether the path moves on under a constant load.
+    /// True if the present modes are known to be unstable under their loads, and no stable equilibrium is near.
+    unstable: bool,
+    /// True if the path moves on under a constant load.
     on_plateau: bool,
     /// True if blocks flowed in the last step.
     flows: bool,
@@ -116,7 +100,7 @@ struct Cluster {
 }
 
 /// By the strategy, up to a factor or the end of the path.
-pub(in super::super) fn follow(tracer: &mut Tracer, load_step: &LoadStep, target: f64) -> LoadStepEnding {
+pub fn follow(tracer: &mut Tracer, load_step: &LoadStep, target: f64) -> LoadStepEnding {
     let direction = direction(tracer);
     if target == tracer.state.factor {
         let here = tracer.state.clone();
@@ -126,18 +110,27 @@ pub(in super::super) fn follow(tracer: &mut Tracer, load_step: &LoadStep, target
         Ok(run) => run,
         Err(ending) => return ending,
     };
-    let iterations = |tracer: &Tracer| tracer.system.counters.get("newton_iterations").copied().unwrap_or(0);
-    let before = iterations(tracer);
     for _ in 0..MOST_STEPS {
         if let Some(ending) = run.step(tracer) {
             return ending;
         }
-        if iterations(tracer) - before > MOST_ITERATIONS {
+        if run.states > MOST_STATES {
             break;
         }
     }
     let why = format!("the budget of steps is used up; the last state is at factor {}", tracer.state.factor);
     end_path(tracer, Status::Stalled, why)
+}
+
+/// Greatest length of a step along the tangent.
+fn greatest_step(tracer: &Tracer) -> f64 {
+    let u = tracer.system.units();
+    let most = match tracer.in_force.strategy.largest_step() {
+        step if step.is_finite() => step,
+        // Friction's flow turns with the blocks: its error adds up over a path, and the error of one step does not show it.
+        _ => SETTINGS.largest_finite_step,
+    };
+    most * u.length / u.displacement
 }
 
 impl<'d> Run<'d> {
@@ -149,61 +142,44 @@ impl<'d> Run<'d> {
     ) -> Result<Self, LoadStepEnding> {
         let piece = begin(tracer, target, direction)?;
         let mut run = Run {
-            load_step,
-            target,
-            direction,
+            range: Range { load_step, target, direction, from: tracer.record.state.displacement },
             piece,
-            length: 0.0,
-            longest: 0.0,
-            first: 0.0,
+            length: Lengths { next: 0.0, longest: greatest_step(tracer), first: 0.0 },
             rises: true,
-            from: tracer.record.state.displacement,
             cluster: Cluster::default(),
-            unstable: false,
             standing: Standing::default(),
+            states: 0,
         };
-        run.first = run.by_strategy(tracer);
-        run.length = run.first;
-        run.longest = run.greatest_step(tracer);
+        run.length.first = run.by_strategy(tracer);
+        run.length.next = run.length.first;
         Ok(run)
     }
 
     /// Length along the tangent of a first step of the strategy.
     fn by_strategy(&self, tracer: &Tracer) -> f64 {
         let along = increment_along(&tracer.system, &tracer.state, &self.piece.tangent);
-        let measured = tracer.strategy.constraint(&along, None).value.abs();
-        let length = tracer.strategy.first_step() / measured.max(1e-3 * along.motion.max(along.factor.abs()));
-        let whole = (self.target - self.load_step.start).abs() / 16.0;
+        let measured = tracer.in_force.strategy.constraint(&along, None).value.abs();
+        let length = tracer.in_force.strategy.first_step() / measured.max(1e-3 * along.motion.max(along.factor.abs()));
+        let whole = (self.range.target - self.range.load_step.start).abs() / 16.0;
         let share = self.piece.tangent.factor.abs();
-        match self.load_step.end {
+        match self.range.load_step.end {
             LoadStepEnd::Factor(_) if share > 0.0 => length.min(whole / share),
             _ => length,
         }
     }
 
-    /// Greatest length along the tangent.
-    fn greatest_step(&self, tracer: &Tracer) -> f64 {
-        let u = tracer.system.units();
-        let most = match tracer.strategy.largest_step() {
-            step if step.is_finite() => step,
-            // Friction's flow turns with the blocks: its error adds up over a path, and the error of one step does not show it.
-            _ => LARGEST_FINITE_STEP,
-        };
-        most * u.length / u.displacement
-    }
-
     /// One step, and how the load step ends in it.
     fn step(&mut self, tracer: &mut Tracer) -> Option<LoadStepEnding> {
         let moves = increment_along(&tracer.system, &tracer.state, &self.piece.tangent).motion;
-        let length = self.length.min(self.longest / moves.max(1e-300));
+        let length = self.length.next.min(self.length.longest / moves.max(1e-300));
         let slope = self.piece.tangent.factor / tracer.system.units().factor;
         let watched = Watched {
-            sense: (slope.abs() > STILL).then(|| slope.signum()),
-            target: self.target.is_finite().then_some((self.target, self.direction)),
+            sense: (slope.abs() > SETTINGS.rounding).then(|| slope.signum()),
+            target: self.range.target.is_finite().then_some((self.range.target, self.range.direction)),
         };
         let start = tracer.state.clone();
-        let advance = advance(&mut tracer.system, &start, &self.piece, length, watched);
-        if advance.end().is_none_or(|end| end.error > MOST_ERROR)
+        let advance = advance(&mut tracer.system, (&start, &self.piece), length, watched, &mut self.states);
+        if advance.end().is_none_or(|end| end.error > SETTINGS.most_error)
             && let Some(ending) = self.end_at_corner(tracer, length)
         {
             return ending;
@@ -232,13 +208,13 @@ impl<'d> Run<'d> {
         }
         let at = corner(&mut tracer.system, &start, &self.piece.tangent, length)?;
         if at > length_ahead(&tracer.system, &start) {
-            self.length = at;
-            return (at < NEARLY * length).then_some(None);
+            self.length.next = at;
+            return (at < SETTINGS.nearly() * length).then_some(None);
         }
         let found = self.around_corner(tracer)?;
         let modes = found.state.mode.clone();
         if is_admissible(&tracer.system, &found.state, &modes, &found.rate) {
-            self.length = 0.1 * self.first;
+            self.length.next = 0.1 * self.length.first;
             return Some(self.go_on(tracer, found, modes, None));
         }
         let piece = Piece::new(&tracer.system, &found.state, &found.rate)?;
@@ -247,15 +223,9 @@ impl<'d> Run<'d> {
 
     fn shorten(&mut self, tracer: &mut Tracer, length: f64) -> Option<LoadStepEnding> {
         tracer.system.count("cutbacks", 1);
-        self.length = length;
-        if length >= SHORTEST * self.first {
+        self.length.next = length;
+        if length >= SETTINGS.inequality() * self.length.first {
             return None;
-        }
-        if let Some(found) = self.around_corner(tracer) {
-            self.length = 0.1 * self.first;
-            tracer.state.blocks.clone_from(&found.state.blocks);
-            let modes = found.state.mode.clone();
-            return self.go_on(tracer, found, modes, None);
         }
         if !tracer.system.piecewise_linear() && !self.crowded() {
             // The rate of an event may be rounding where many points rest at their bounds: the arrival leads on.
@@ -268,7 +238,7 @@ impl<'d> Run<'d> {
                 }
             }
         }
-        let failure = tracer.system.failure.take().map_or(String::new(), |why| format!(": {why}"));
+        let failure = tracer.system.report.failure.take().map_or(String::new(), |why| format!(": {why}"));
         let why = format!("no state of the piece was found beyond factor {}{failure}", tracer.state.factor);
         Some(end_path(tracer, Status::Stalled, why))
     }
@@ -282,14 +252,14 @@ impl<'d> Run<'d> {
         let found = loading_rate(&mut tracer.system, &here, &self.piece)?;
         let piece = Piece::new(&tracer.system, &found.state, &found.rate)?;
         let cosine = inner(&piece.row, &self.piece.row);
-        (cosine < 1.0 - CORNER).then_some(found)
+        (cosine < 1.0 - SETTINGS.distinct()).then_some(found)
     }
 
     /// Takes a short step from a corner, about along a piece, by Newton's method on the laws themselves: modes and branches may
     /// change in it. `None` if there is no such step.
     fn across(&mut self, tracer: &mut Tracer, facing: &State, piece: &Piece) -> Option<Ending> {
         let here = tracer.state.clone();
-        let (length, next, rate) = ACROSS.iter().map(|share| share * self.first).find_map(|length| {
+        let (length, next, rate) = ACROSS.iter().map(|share| share * self.length.first).find_map(|length| {
             let control = piece.control(length);
             let guess = moved(facing, &piece.tangent, length);
             let (next, _) = solve_step(&mut tracer.system, &here, guess, &control).ok()?;
@@ -302,7 +272,7 @@ impl<'d> Run<'d> {
         })?;
         let was = self.rises;
         self.piece = Piece::new(&tracer.system, &next, &rate)?;
-        self.length = length;
+        self.length.next = length;
         self.rises = self.goes_up(tracer, &self.piece.tangent.clone());
         if was != self.rises
             && let Some(ending) = self.at_turn(tracer, was)
@@ -320,23 +290,23 @@ impl<'d> Run<'d> {
 
     /// Takes a state of the piece over. `None` if the step is to be repeated or the path ends.
     fn take(&mut self, tracer: &mut Tracer, end: StepEnd) -> Result<(), Option<LoadStepEnding>> {
-        if end.error > MOST_ERROR && end.length > 1e-6 * self.first {
-            return Err(self.shorten(tracer, end.length * (WANTED_ERROR / end.error).clamp(0.1, 0.5)));
+        if end.error > SETTINGS.most_error && end.length > 1e-6 * self.length.first {
+            return Err(self.shorten(tracer, end.length * (SETTINGS.wanted_error / end.error).clamp(0.1, 0.5)));
         }
-        if end.unexplained > MOST_UNEXPLAINED && end.length > 1e-6 * self.first {
+        if end.unexplained > SETTINGS.most_error && end.length > 1e-6 * self.length.first {
             return Err(self.shorten(tracer, 0.5 * end.length));
         }
         let energy = step_energy(tracer, &end.state);
-        if !energy.holds && end.length > 1e-3 * self.first {
+        if !energy.holds && end.length > 1e-3 * self.length.first {
             return Err(self.shorten(tracer, end.length * energy.growth.clamp(0.25, 0.7)));
         }
         // An event that cuts a step short says nothing of how long the next one may be: its error is rounding.
-        if end.length >= TELLING * self.length {
-            let by_error = (WANTED_ERROR / end.error.max(1e-300)).max(0.3) * end.length;
+        if end.length >= SETTINGS.telling * self.length.next {
+            let by_error = (SETTINGS.wanted_error / end.error.max(1e-300)).max(0.3) * end.length;
             let by_energy = energy.growth.max(0.25) * end.length;
             // The error is of the second order in the length.
-            let by_factor = (0.5 * MOST_UNEXPLAINED / end.unexplained.max(1e-300)).sqrt().max(0.5) * end.length;
-            self.length = by_error.min(by_energy).min(by_factor).min(2.0 * self.length.max(end.length));
+            let by_factor = (0.5 * SETTINGS.most_error / end.unexplained.max(1e-300)).sqrt().max(0.5) * end.length;
+            self.length.next = by_error.min(by_energy).min(by_factor).min(2.0 * self.length.next.max(end.length));
         }
         let Some(piece) = self.piece.turned(&tracer.system, &end.rate) else {
             return Err(self.shorten(tracer, 0.3 * end.length));
@@ -350,7 +320,7 @@ impl<'d> Run<'d> {
     }
 
     fn whole(&mut self, tracer: &mut Tracer, end: StepEnd) -> Option<LoadStepEnding> {
-        let far = end.length > 1e-9 * self.first;
+        let far = end.length > 1e-9 * self.length.first;
         if let Err(ending) = self.take(tracer, end) {
             return ending;
         }
@@ -369,10 +339,10 @@ impl<'d> Run<'d> {
         if self.standing.on_plateau || !(self.standing.flows || stands_still(tracer, &self.piece)) {
             return None;
         }
-        let found = plateau(tracer, &self.piece.clone(), self.direction, self.standing.flows)?;
-        let goes_on = tracer.settings.stop(self.load_step.stage)[0].is_some() && !self.standing.flows;
+        let found = plateau(tracer, &self.piece.clone(), self.range.direction, self.standing.flows)?;
+        let goes_on = tracer.settings.stop(self.range.load_step.stage)[0].is_some() && !self.standing.flows;
         if found.unproved.is_none() && goes_on {
-            note_peak(tracer, Some(&self.piece.tangent), self.direction);
+            note_peak(tracer, Some(&self.piece.tangent), self.range.direction);
             self.standing.on_plateau = true;
             return None;
         }
@@ -381,12 +351,12 @@ impl<'d> Run<'d> {
 
     /// The end of the range or of the path behind a step.
     fn after(&mut self, tracer: &mut Tracer) -> Option<LoadStepEnding> {
-        if self.target.is_infinite()
-            && let Some(ending) = ray(tracer, &self.piece, self.direction)
+        if self.range.target.is_infinite()
+            && let Some(ending) = ray(tracer, &self.piece, self.range.direction)
         {
             return Some(ending);
         }
-        let ending = end_of_range(tracer, self.load_step, self.direction, self.from);
+        let ending = end_of_range(tracer, self.range.load_step, self.range.direction, self.range.from);
         if ending.is_some() {
             tracer.ending.motion = scaled_motion(tracer, &tracer.state, &self.piece.tangent);
         }
@@ -395,7 +365,7 @@ impl<'d> Run<'d> {
 
     /// The state at the target.
     fn arrive(&mut self, tracer: &mut Tracer, mut end: StepEnd) -> Option<LoadStepEnding> {
-        let control = Control::Factor(self.target);
+        let control = Control::Factor(self.range.target);
         let start = tracer.state.clone();
         if let Some(state) = correct(&mut tracer.system, &start, end.state.clone(), &control) {
             end.state = state;
@@ -411,18 +381,18 @@ impl<'d> Run<'d> {
         let was = self.rises;
         let length = end.length;
         // At the turn other rates may be singular too, such as the tilt of a block that softens. The chord is not.
-        let chord = (length > FAR * self.first).then(|| chord(&tracer.state, &end.state));
+        let chord = (length > SETTINGS.distinct() * self.length.first).then(|| chord(&tracer.state, &end.state));
         if let Err(ending) = self.take(tracer, end) {
             return ending;
         }
-        self.length = self.length.max(length);
+        self.length.next = self.length.next.max(length);
         if let Some(piece) = chord.and_then(|chord| self.piece.turned(&tracer.system, &chord)) {
             self.piece = piece;
         }
         // Beyond the turn the rate goes in the other sense; at it the rate is rounding.
         self.rises = !was;
-        let slope = STILL * tracer.system.units().factor;
-        self.piece.tangent.factor = if self.rises { slope } else { -slope } * self.direction;
+        let slope = SETTINGS.rounding * tracer.system.units().factor;
+        self.piece.tangent.factor = if self.rises { slope } else { -slope } * self.range.direction;
         self.at_turn(tracer, was)
     }
 
@@ -434,10 +404,11 @@ impl<'d> Run<'d> {
         if !was && self.rises {
             self.forget_still_peak(tracer);
             let state = tracer.state.clone();
-            let lower = tracer.trough.as_ref().is_none_or(|t| (t.factor - state.factor) * self.direction > 0.0);
+            let lower =
+                tracer.limit.trough.as_ref().is_none_or(|t| (t.factor - state.factor) * self.range.direction > 0.0);
             if tracer.limit.peak.is_some() && lower {
                 let beyond = self.piece.tangent.clone();
-                tracer.trough = Some(peak_at(tracer, state, &beyond));
+                tracer.limit.trough = Some(peak_at(tracer, state, &beyond));
             }
         }
         self.after(tracer)
@@ -445,10 +416,10 @@ impl<'d> Run<'d> {
 
     /// A load that has stood still since its last limit point and rises again has none there: a mechanism may close a gap.
     fn forget_still_peak(&self, tracer: &mut Tracer) {
-        let own = |peak: &&ProvenPeak| peak.load_step == tracer.load_step;
+        let own = |peak: &&ProvenPeak| peak.load_step == tracer.in_force.load_step;
         let Some(last) = tracer.limit.proven_peaks.last().filter(own) else { return };
         let (factor, here) = (last.factor, tracer.state.factor);
-        if [last.lowest, here].iter().all(|other| (factor - other).abs() <= NOT_FALLEN * factor.abs()) {
+        if [last.lowest, here].iter().all(|other| (factor - other).abs() <= SETTINGS.residual() * factor.abs()) {
             tracer.limit.proven_peaks.pop();
             tracer.limit.peak.take_if(|peak| peak.factor == factor);
         }
@@ -456,22 +427,22 @@ impl<'d> Run<'d> {
 
     /// At a limit point.
     fn peak(&mut self, tracer: &mut Tracer) -> Option<LoadStepEnding> {
-        if tracer.system.settles() && matches!(self.load_step.end, LoadStepEnd::Factor(_)) {
+        if tracer.system.settles() && matches!(self.range.load_step.end, LoadStepEnd::Factor(_)) {
             return self.snap(tracer);
         }
-        note_peak(tracer, Some(&self.piece.tangent), self.direction);
+        note_peak(tracer, Some(&self.piece.tangent), self.range.direction);
         note_other_branches(tracer, &self.piece.tangent);
-        if matches!(self.load_step.end, LoadStepEnd::Factor(_)) {
+        if matches!(self.range.load_step.end, LoadStepEnd::Factor(_)) {
             tracer.ending.limit_point_end = Some(LimitPointEnd::Target);
-            let (factor, target) = (tracer.state.factor, self.target);
+            let (factor, target) = (tracer.state.factor, self.range.target);
             let why = format!("the path has a limit point at factor {factor}, before the factor {target} of its stage");
             return Some(end_path(tracer, Status::LimitPoint, why));
         }
-        if !tracer.strategy.passes_limit_points() {
+        if !tracer.in_force.strategy.passes_limit_points() {
             let why = "behind this limit point the load does not grow, and the strategy goes no further";
             return Some(end_path(tracer, Status::LimitPoint, why.into()));
         }
-        if tracer.settings.ends_at_first_limit_point(self.load_step.stage) {
+        if tracer.settings.ends_at_first_limit_point(self.range.load_step.stage) {
             return Some(end_path(tracer, Status::LimitPoint, String::new()));
         }
         self.after(tracer)
@@ -481,7 +452,7 @@ impl<'d> Run<'d> {
     fn snap(&mut self, tracer: &mut Tracer) -> Option<LoadStepEnding> {
         let mut pushed = tracer.state.clone();
         let work = second_order_work(&mut tracer.system, &pushed);
-        pushed.factor += SNAP * (self.target - self.load_step.start);
+        pushed.factor += SETTINGS.same_rate() * (self.range.target - self.range.load_step.start);
         let departure = match &work {
             Some(work) => leave_unstable(tracer, &pushed, work, true),
             None => Departure::Falls,
@@ -490,7 +461,7 @@ impl<'d> Run<'d> {
             Departure::Stopped => Some(LoadStepEnding::Ended),
             Departure::Stable => self.anew(tracer),
             Departure::Falls => {
-                note_peak(tracer, Some(&self.piece.tangent), self.direction);
+                note_peak(tracer, Some(&self.piece.tangent), self.range.direction);
                 let why = format!(
                     "at factor {} no equilibrium follows as the settlement goes on, and damped descent reaches none",
                     tracer.state.factor
@@ -502,9 +473,9 @@ impl<'d> Run<'d> {
 
     /// Goes on from another state than the last one of the piece.
     fn anew(&mut self, tracer: &mut Tracer) -> Option<LoadStepEnding> {
-        match Run::begin(tracer, self.load_step, self.target, self.direction) {
+        match Run::begin(tracer, self.range.load_step, self.range.target, self.range.direction) {
             Ok(run) => {
-                *self = Run { from: self.from, ..run };
+                *self = Run { range: Range { from: self.range.from, ..run.range }, states: self.states, ..run };
                 None
             }
             Err(ending) => Some(ending),
@@ -515,15 +486,15 @@ impl<'d> Run<'d> {
     /// second-order work.
     fn first_unstable(&self, tracer: &mut Tracer, start: &State, end: &StepEnd) -> Option<(StepEnd, SecondOrderWork)> {
         let factor = end.state.factor;
-        let mut own = tracer.limit.proven_peaks.iter().filter(|peak| peak.load_step == tracer.load_step);
-        let above = own.all(|peak| (factor - peak.factor) * self.direction > 0.0);
-        if self.unstable || !self.rises || !above || end.length == 0.0 {
+        let mut own = tracer.limit.proven_peaks.iter().filter(|peak| peak.load_step == tracer.in_force.load_step);
+        let above = own.all(|peak| (factor - peak.factor) * self.range.direction > 0.0);
+        if self.standing.unstable || !self.rises || !above || end.length == 0.0 {
             return None;
         }
         let mut work = instability(&mut tracer.system, &end.state)?;
         let (mut low, mut high) = (0.0, end.length);
         let mut found = None;
-        while high - low > PLACED * end.length {
+        while high - low > SETTINGS.admissible * end.length {
             // At the bifurcation itself the equations are singular.
             let looked = [0.5, 0.4, 0.6].map(|share| low + share * (high - low)).into_iter().find_map(|length| {
                 state_at(&mut tracer.system, start, &self.piece, length).map(|state| (length, state))
@@ -549,8 +520,8 @@ impl<'d> Run<'d> {
             Departure::Stable => self.anew(tracer),
             // The present modes go on under control.
             Departure::Falls => {
-                let (load_step, factor) = (tracer.load_step, here.factor);
-                self.unstable = true;
+                let (load_step, factor) = (tracer.in_force.load_step, here.factor);
+                self.standing.unstable = true;
                 tracer.record.branchings.push(Branching {
                     load_step,
                     factor,
@@ -569,14 +540,14 @@ impl<'d> Run<'d> {
     /// An event: the next piece, and what the path does at it.
     fn event(&mut self, tracer: &mut Tracer, end: StepEnd, hits: Vec<Monitor>) -> Option<LoadStepEnding> {
         tracer.system.count("events", 1);
-        let moved = end.length > 1e-9 * self.first;
-        let length = self.length;
+        let moved = end.length > 1e-9 * self.length.first;
+        let length = self.length.next;
         if end.length > 0.0
             && let Err(ending) = self.take(tracer, end)
         {
             return ending;
         }
-        self.length = self.length.max(0.1 * length);
+        self.length.next = self.length.next.max(0.1 * length);
         let ahead = length_ahead(&tracer.system, &tracer.state);
         if let Some(ending) = self.end_at_corner(tracer, ahead) {
             return ending;
@@ -599,7 +570,7 @@ impl<'d> Run<'d> {
             let modes = state.mode.clone();
             return self.go_on(tracer, LoadingRate { state, rate }, modes, None);
         }
-        match after_event(&mut tracer.system, &state, &self.piece, &points, (self.direction, self.rises)) {
+        match after_event(&mut tracer.system, &state, &self.piece, &points, (self.range.direction, self.rises)) {
             NextPiece::Goes { rate, modes, twins, open } => {
                 self.note_twins(tracer, twins);
                 self.go_on(tracer, LoadingRate { state, rate }, modes, open)
@@ -674,7 +645,7 @@ impl<'d> Run<'d> {
     /// Names other rates at an event that the rule does not tell from the one that is followed.
     fn note_twins(&self, tracer: &mut Tracer, twins: usize) {
         if twins > 0 {
-            let (load_step, factor) = (tracer.load_step, tracer.state.factor);
+            let (load_step, factor) = (tracer.in_force.load_step, tracer.state.factor);
             tracer.record.branchings.push(Branching { load_step, factor, snaps: false, released: 0.0, twins: true });
             tracer
                 .record
@@ -688,12 +659,12 @@ impl<'d> Run<'d> {
         let factor = tracer.state.factor;
         if self.rises && none_rises {
             tracer.limit.proven = Some(factor);
-            note_peak(tracer, Some(&self.piece.tangent), self.direction);
+            note_peak(tracer, Some(&self.piece.tangent), self.range.direction);
         }
         let proved = proved && tracer.limit.peak.is_some();
         if proved {
             let Tracer { system, state, record, .. } = tracer;
-            record.witnesses.extend(none_continues(system, (state, &record.state), self.direction));
+            record.witnesses.extend(none_continues(system, (state, &record.state), self.range.direction));
         }
         tracer.ending.limit_point_end = proved.then_some(LimitPointEnd::None);
         let why = format!("at factor {factor} {why}");
@@ -707,25 +678,26 @@ impl<'d> Run<'d> {
         for (own, next) in tracer.state.updates.points.iter_mut().zip(&next.updates.points) {
             (own.tangent, own.branch) = (next.tangent, next.branch);
         }
-        tracer.record.events.extend(events(&tracer.system, tracer.load_step, &before, &tracer.state));
+        tracer.record.events.extend(events(&tracer.system, tracer.in_force.load_step, &before, &tracer.state));
         self.piece = piece;
     }
 
     fn goes_up(&self, tracer: &Tracer, rate: &Tangent) -> bool {
-        rate.factor * self.direction > STILL * tracer.system.units().factor * motion_size(&tracer.system, rate)
+        rate.factor * self.range.direction
+            > SETTINGS.rounding * tracer.system.units().factor * motion_size(&tracer.system, rate)
     }
 
     /// The end at a mechanism under a constant load. Limit points from which the load has stood still up to here are the
     /// same one: where contact points pass to a corner the load of a block that slides changes a little.
     fn end_at_plateau(&mut self, tracer: &mut Tracer, found: Plateau) -> LoadStepEnding {
-        let (load_step, factor) = (tracer.load_step, tracer.state.factor);
-        let same = |other: f64| (other - factor).abs() <= SAME_LOAD * factor.abs();
+        let (load_step, factor) = (tracer.in_force.load_step, tracer.state.factor);
+        let same = |other: f64| (other - factor).abs() <= SETTINGS.distinct() * factor.abs();
         let own = |peak: &ProvenPeak| peak.load_step == load_step && same(peak.factor) && same(peak.lowest);
         while tracer.limit.proven_peaks.last().is_some_and(own) {
             tracer.limit.proven_peaks.pop();
         }
         tracer.limit.peak.take_if(|peak| same(peak.factor));
-        note_peak(tracer, Some(&self.piece.tangent), self.direction);
+        note_peak(tracer, Some(&self.piece.tangent), self.range.direction);
         if let Some(why) = found.unproved {
             tracer.limit.unproven = Some(why);
             return end_path(

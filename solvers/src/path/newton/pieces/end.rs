@@ -1,11 +1,9 @@
 //! Where a path ends: the range that a stage asks for.
 
-use super::super::tracer::{LoadStepEnding, Tracer, end_path, is_above};
+use crate::path::newton::tracing::tracer::{LoadStepEnding, Tracer, end_path, is_above};
+use crate::settings::SETTINGS;
 use voussoir_core::limit::Status;
 use voussoir_core::path::LoadStep;
-
-/// Share of the greatest limit point to which the load falls.
-const HALF: f64 = 0.5;
 
 /// The ending of a path that has gone as far as its stage asks for.
 pub(super) fn end_of_range(
@@ -33,7 +31,7 @@ pub(super) fn end_of_range(
         [None, None] if tracer.system.settles() => true,
         [None, None] => {
             let fallen = (greatest - factor) * direction;
-            fallen >= HALF * (greatest - load_step.start).abs() || gone
+            fallen >= SETTINGS.half * (greatest - load_step.start).abs() || gone
         }
         [most, least] => {
             // Counted from the last limit point.

@@ -3,24 +3,20 @@
 //! A point at its strength has one tangent if it yields on and another one if it unloads. The points that yield on are the loading
 //! set of a rate. A rate leads on if the tangents ahead of the state along it are those that it was computed with.
 
-use super::super::ahead::{facing_ahead, length_ahead};
-use super::super::inelastic::plastic_power;
-use super::super::nearby::Accuracy;
-use super::super::state::{State, Tangent};
-use super::super::system::StepSystem;
-use super::super::tangent::tangent_of_modes;
 use super::piece::{Piece, scaled_row};
 use crate::linear::inner;
+use crate::path::newton::model::state::{State, Tangent};
+use crate::path::newton::model::system::StepSystem;
+use crate::path::newton::quantities::ahead::{facing_ahead, length_ahead};
+use crate::path::newton::quantities::inelastic::plastic_power;
+use crate::path::newton::solve::nearby::Accuracy;
+use crate::path::newton::solve::tangent::tangent_of_modes;
+use crate::settings::SETTINGS;
 
 /// Loading sets that are tried one after the other.
 const MOST_SETS: usize = 30;
 /// Combinations of tangents that are tried if no set follows from another one.
 const MOST_COMBINATIONS: usize = 256;
-/// Difference from 1 of the cosine of two rates that are the same.
-const SAME: f64 = 1e-9;
-
-/// Rate of the factor of a rate of size 1, in units, that is rounding.
-const STILL: f64 = 1e-12;
 
 /// A rate with the state whose tangents it has.
 pub(super) struct LoadingRate {
@@ -71,7 +67,7 @@ pub(super) fn loading_rate(system: &mut StepSystem, state: &State, arrival: &Pie
             seen.push(ahead.clone());
             let turns = rate.rate.factor * arrival.tangent.factor < 0.0;
             let again = rate_of(system, &ahead, &arrival.row)?;
-            if inner(&again.row, &rate.row).abs() >= 1.0 - SAME && !(turns && *power <= 0.0) {
+            if inner(&again.row, &rate.row).abs() >= 1.0 - SETTINGS.admissible && !(turns && *power <= 0.0) {
                 return Some(LoadingRate { state: ahead, rate: rate.rate.clone() });
             }
         }
@@ -84,7 +80,7 @@ pub(super) fn loading_rate(system: &mut StepSystem, state: &State, arrival: &Pie
 
 /// A rate along which the factor stands still, in the sense in which the load does work; other rates as they are.
 fn with_load(system: &mut StepSystem, state: &State, found: Unit) -> Unit {
-    let stands = found.rate.factor.abs() <= STILL * system.units().factor;
+    let stands = found.rate.factor.abs() <= SETTINGS.residual() * system.units().factor;
     match stands && inner(&found.row, &system.equations(state).factor) < 0.0 {
         true => found.turned(),
         false => found,

@@ -10,32 +10,18 @@
 //! A point with a law of tractions stays in the branch that the law names. The monitor is the length along the rate up to which
 //! it does, by the law itself: where a bond begins to soften no other function is known of it.
 
-use super::super::ahead::length_ahead;
-use super::super::measure::fastest;
-use super::super::state::{State, Tangent};
-use super::super::system::StepSystem;
-use super::super::tangent::{ALLOWED, gap_rounding};
 use crate::contact::facet::{dot, norm, slack};
 use crate::contact::mode::ContactMode;
+use crate::path::newton::model::state::{State, Tangent};
+use crate::path::newton::model::system::StepSystem;
+use crate::path::newton::quantities::ahead::length_ahead;
+use crate::path::newton::quantities::measure::fastest;
+use crate::path::newton::solve::tangent::gap_rounding;
+use crate::settings::SETTINGS;
 use voussoir_core::law::{FacetMode, UpdateBranch};
 
-/// Value of a force monitor, relative to the greatest force, up to which it counts as zero.
-const FORCE: f64 = 1e-10;
-/// The same of a rate, relative to the greatest rate of its kind.
-const RATE: f64 = 1e-8;
-
-/// Rate of a gap, relative to the greatest motion, that is rounding.
-const ROUNDING: f64 = 1e-13;
-
-/// Value, relative to the tolerance, up to which a monitor takes part in an event.
-const ACTIVE: f64 = 100.0;
-
-/// Length, relative to that at which tangents are taken, to which the end of a branch is known.
-const BRANCH: f64 = 1e-3;
 /// Doublings of a length at which the branch of a law is looked for.
 const DOUBLINGS: usize = 40;
-/// Precision of that length, relative to it: a step ends short of the end of a branch, and the next one reads it again.
-const PRECISE: f64 = 1e-3;
 /// Bisections between two of them.
 const BISECTIONS: usize = 50;
 
@@ -87,7 +73,7 @@ impl Reading {
 
     /// Returns true if the mode is at its end: points of a symmetric scene end theirs within the rounding of its mesh.
     pub fn is_active(&self) -> bool {
-        let share = if self.rate.is_some() { ACTIVE } else { 1.0 };
+        let share = if self.rate.is_some() { SETTINGS.together } else { 1.0 };
         self.value <= share * self.tolerance
     }
 
@@ -160,16 +146,17 @@ impl Monitors {
         let rigidity = (0..state.gap.len()).map(|c| system.stiffness(c)).fold(0.0, |a: f64, k| a.max(k[0].max(k[1])));
         let rounding = gap_rounding(system, state);
         // Newton's method on blocks that yield gives positions to this share of the displacements.
-        let of_blocks = if state.blocks.is_empty() { 0.0 } else { FORCE * fastest(system, &state.motion) };
+        let of_blocks =
+            if state.blocks.is_empty() { 0.0 } else { SETTINGS.inequality() * fastest(system, &state.motion) };
         // A structure that moves as a whole has gaps and forces whose rates are the rounding of its motion.
         let gap_rate = greatest(&tangent.gap);
-        let gap_rounding = ROUNDING * fastest(system, &tangent.motion);
+        let gap_rounding = SETTINGS.rounding * fastest(system, &tangent.motion);
         let sizes = Sizes {
-            force: (rounding * rigidity).clamp(FORCE * force, ALLOWED * force),
-            gap: rounding.max(FORCE * force / rigidity.max(1e-300)).max(of_blocks),
-            force_rate: (RATE * greatest(&tangent.force).max(1e-6 * gap_rate * u.force / u.displacement))
+            force: (rounding * rigidity).clamp(SETTINGS.inequality() * force, SETTINGS.mode * force),
+            gap: rounding.max(SETTINGS.inequality() * force / rigidity.max(1e-300)).max(of_blocks),
+            force_rate: (SETTINGS.active * greatest(&tangent.force).max(1e-6 * gap_rate * u.force / u.displacement))
                 .max(gap_rounding * rigidity),
-            gap_rate: (RATE * gap_rate).max(gap_rounding),
+            gap_rate: (SETTINGS.active * gap_rate).max(gap_rounding),
         };
         self.0.iter().map(|monitor| monitor.read(system, (start, state), tangent, &sizes)).collect()
     }
@@ -191,7 +178,8 @@ impl Monitor {
         }
         let ahead = length_ahead(system, start);
         // The branch that a law names in a shorter step is rounding of its history and of the state.
-        let tolerance = (sizes.gap.max(FORCE * gap[0].hypot(gap[1])) / speed).max(BRANCH * ahead);
+        let tolerance =
+            (sizes.gap.max(SETTINGS.inequality() * gap[0].hypot(gap[1])) / speed).max(SETTINGS.small * ahead);
         let is_in = |length: f64| {
             let there = [0, 1].map(|k| gap[k] + length * rate[k]);
             let said = system.laws.responses.at(self.contact, there, &start.updates.memory);
@@ -216,7 +204,7 @@ impl Monitor {
             } else {
                 far = middle
             }
-            if far - near <= (1e-3 * tolerance).max(PRECISE * near) {
+            if far - near <= (1e-3 * tolerance).max(SETTINGS.small * near) {
                 break;
             }
         }

@@ -4,10 +4,10 @@
 //! q̇·K q̇ is negative along the path that falls. If it is negative in more directions with the load held, the path may bifurcate there, such as
 //! a bed joint that softens evenly and may also tilt (de Borst 1987; Hill 1958, J. Mech. Phys. Solids 6).
 
-use super::super::ahead::facing_ahead;
-use super::super::second_order::second_order_work;
-use super::super::state::Tangent;
-use super::super::tracer::Tracer;
+use crate::path::newton::model::state::Tangent;
+use crate::path::newton::quantities::ahead::facing_ahead;
+use crate::path::newton::solve::second_order::second_order_work;
+use crate::path::newton::tracing::tracer::Tracer;
 use voussoir_core::path::Branching;
 
 /// Adds a note and a branching for a limit point at the present state, behind which the path follows a rate, if the second-order work of
@@ -23,7 +23,7 @@ pub(super) fn note_other_branches(tracer: &mut Tracer, rate: &Tangent) {
     if others == 0 {
         return;
     }
-    let load_step = tracer.load_step;
+    let load_step = tracer.in_force.load_step;
     tracer.record.branchings.push(Branching { load_step, factor, snaps: false, released: 0.0, twins: false });
     tracer.record.notes.push(format!(
         "at the limit point at factor {factor} the second-order work of the points that soften or yield is negative in {others} other \

@@ -1,10 +1,10 @@
 //! A piece: its modes, its tangent and its monitors.
 
-use super::super::control::Control;
-use super::super::state::{State, Tangent};
-use super::super::system::StepSystem;
-use super::super::tangent::tangent_nearby;
 use super::monitors::{Monitors, Reading};
+use crate::path::newton::model::control::Control;
+use crate::path::newton::model::state::{State, Tangent};
+use crate::path::newton::model::system::StepSystem;
+use crate::path::newton::solve::tangent::tangent_nearby;
 use std::rc::Rc;
 
 /// Motions and factor of a tangent over the scaled unknowns.

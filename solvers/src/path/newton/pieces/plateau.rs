@@ -1,21 +1,12 @@
 //! Whether a piece is a mechanism that moves on under a constant load.
 
-use super::super::limit_point_test::{LimitPointTest, active_set, limit_point_test};
-use super::super::measure::{fastest, increment_between};
-use super::super::state::State;
-use super::super::tracer::Tracer;
 use super::advance::{Advance, StepEnd, Watched, advance};
 use super::piece::Piece;
-
-/// Rates of the factor and of forces, in units, relative to that of motions, at which they stand still.
-const STILL: [f64; 2] = [1e-9, 1e-4];
-/// Motion, as a share of the scene's size, over which a mechanism is followed, and least motion before an event.
-const FOLLOWED: f64 = 1e-2;
-const LEAST: f64 = 1e-3;
-/// Change of factor and forces, relative to them, over that motion.
-const CHANGE: f64 = 1e-8;
-/// Change of the factor in a step, relative to its motion, in units, of blocks that flow; of an elastic step it is about 1.
-const FLAT: f64 = 1e-5;
+use crate::path::newton::model::state::State;
+use crate::path::newton::quantities::measure::{fastest, increment_between};
+use crate::path::newton::solve::limit_point_test::{LimitPointTest, active_set, limit_point_test};
+use crate::path::newton::tracing::tracer::Tracer;
+use crate::settings::SETTINGS;
 
 /// A mechanism.
 pub(super) struct Plateau {
@@ -30,7 +21,7 @@ pub(super) fn stands_still(tracer: &Tracer, piece: &Piece) -> bool {
     let u = tracer.system.units();
     let motion = piece.row[..piece.row.len() - 1].iter().map(|x| x * x).sum::<f64>().sqrt();
     let force = piece.tangent.force.iter().flatten().fold(0.0, |a: f64, r| a.max((r / u.force).abs()));
-    (piece.tangent.factor / u.factor).abs() <= STILL[0] * motion && force <= STILL[1] * motion
+    (piece.tangent.factor / u.factor).abs() <= SETTINGS.admissible * motion && force <= SETTINGS.fine * motion
 }
 
 /// Moves along a piece that stands still; blocks `flows` if the last step has shown it. `None` if it is no plateau.
@@ -41,12 +32,12 @@ pub(super) fn plateau(tracer: &mut Tracer, piece: &Piece, direction: f64, flows:
     let (mut state, mut piece_here) = (start.clone(), piece.clone());
     let mut states = Vec::new();
     let watched = Watched { sense: None, target: None };
-    let whole = FOLLOWED * size / fastest;
+    let whole = SETTINGS.visible * size / fastest;
     // With small displacements the mechanism is the same all along.
     let (mut moved, mut length) = (0.0, if tracer.system.finite() { 1e-3 * whole } else { whole });
     for _ in 0..200 {
         let step = length.min(whole - moved);
-        match advance(&mut tracer.system, &state, &piece_here, step, watched) {
+        match advance(&mut tracer.system, (&state, &piece_here), step, watched, &mut 0) {
             Advance::Whole(StepEnd { state: mut next, rate, length: taken, .. }) => {
                 states.push(next.clone());
                 tracer.system.keep(&state, &mut next);
@@ -67,7 +58,7 @@ pub(super) fn plateau(tracer: &mut Tracer, piece: &Piece, direction: f64, flows:
             break;
         }
     }
-    if moved * fastest < LEAST * size || !is_same(tracer, &start, &state) {
+    if moved * fastest < SETTINGS.small * size || !is_same(tracer, &start, &state) {
         return None;
     }
     // The tangents of a loading set are linear: if no facet may change its mode their one rate has a constant factor. Those of
@@ -93,7 +84,7 @@ pub(super) fn plateau(tracer: &mut Tracer, piece: &Piece, direction: f64, flows:
 pub(super) fn stood_still(tracer: &Tracer, next: &State) -> bool {
     let motion = increment_between(&tracer.system, &tracer.state, next).motion;
     let change = (next.factor - tracer.state.factor).abs() / tracer.system.units().factor;
-    next.yields() && is_same(tracer, &tracer.state, next) && change <= FLAT * motion
+    next.yields() && is_same(tracer, &tracer.state, next) && change <= SETTINGS.flat * motion
 }
 
 /// Returns true if factor and forces of two states are the same.
@@ -104,5 +95,6 @@ fn is_same(tracer: &Tracer, start: &State, state: &State) -> bool {
     // If the load has fallen to nothing, both are rounding of their values at the limit point.
     let peak = tracer.limit.peak.as_ref().map_or(0.0, |peak| peak.factor.abs());
     let carried = largest.max(tracer.system.units().force * peak / tracer.system.units().factor);
-    change <= CHANGE * carried && (start.factor - state.factor).abs() <= CHANGE * start.factor.abs().max(peak)
+    change <= SETTINGS.active * carried
+        && (start.factor - state.factor).abs() <= SETTINGS.active * start.factor.abs().max(peak)
 }

@@ -1,16 +1,12 @@
 //! Rays: pieces with small displacements that are admissible without end.
 
-use super::super::measure::motion_size;
-use super::super::state::{State, Tangent};
-use super::super::system::StepSystem;
-use super::super::tracer::{LoadStepEnding, Tracer, end_path};
 use super::piece::Piece;
+use crate::path::newton::model::state::{State, Tangent};
+use crate::path::newton::model::system::StepSystem;
+use crate::path::newton::quantities::measure::motion_size;
+use crate::path::newton::tracing::tracer::{LoadStepEnding, Tracer, end_path};
+use crate::settings::SETTINGS;
 use voussoir_core::limit::Status;
-
-/// Rate, relative to the greatest of its kind, that is rounding.
-const ROUNDING: f64 = 1e-8;
-/// Rate of the factor, relative to motions and forces, above which the load grows.
-const GROWS: f64 = 1e-9;
 
 /// The ending of a path on which the load grows without bound along a piece with small displacements, if it does.
 pub(super) fn ray(tracer: &mut Tracer, piece: &Piece, direction: f64) -> Option<LoadStepEnding> {
@@ -22,20 +18,20 @@ pub(super) fn ray(tracer: &mut Tracer, piece: &Piece, direction: f64) -> Option<
     let motion = motion_size(&tracer.system, rate);
     let force = rate.force.iter().flatten().map(|r| (r / u.force).abs()).fold(0.0, f64::max);
     let factor = rate.factor / u.factor * direction;
-    if factor <= GROWS * (motion + force) {
+    if factor <= SETTINGS.admissible * (motion + force) {
         return None;
     }
     let goes_on = (0..rate.gap.len()).all(|c| {
         let Some(law) = tracer.system.law(c) else { return true };
         let gap = rate.gap[c].map(|g| g / (u.displacement * motion));
         let r = rate.force[c].map(|r| r / (force.max(factor) * u.force));
-        law.ray_violation(tracer.state.mode[c], r, gap) <= ROUNDING
+        law.ray_violation(tracer.state.mode[c], r, gap) <= SETTINGS.active
     });
     if !goes_on || !tractions_persist(&tracer.system, &tracer.state, rate) {
         return None;
     }
     // A support that moves a statically determinate structure asks for no forces.
-    let constant = force <= 10.0 * ROUNDING * motion && tracer.system.settles();
+    let constant = force <= 10.0 * SETTINGS.active * motion && tracer.system.settles();
     let of = |x: f64| if constant { 0.0 } else { x / rate.factor };
     tracer.ending.ray = Some(rate.force.iter().map(|r| r.map(of)).collect());
     Some(end_path(tracer, Status::Unbounded, String::new()))

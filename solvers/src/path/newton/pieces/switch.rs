@@ -1,15 +1,17 @@
 //! Which modes follow at an event: the rate problem of the points whose modes end.
 
-use super::super::control_row::add_weighted_gaps;
-use super::super::limit_point_test::{AfterEvent, EventPoints, active_facets, largest_force, rate_after_event};
-use super::super::nearby::Accuracy;
-use super::super::state::{State, Tangent};
-use super::super::system::StepSystem;
-use super::super::tangent::tangent_of_modes;
 use super::monitors::{Monitor, Monitors, What};
 use super::piece::Piece;
 use crate::contact::active_point::ActivePoint;
 use crate::contact::mode::ContactMode;
+use crate::path::newton::model::state::{State, Tangent};
+use crate::path::newton::model::system::StepSystem;
+use crate::path::newton::quantities::control_row::add_weighted_gaps;
+use crate::path::newton::solve::limit_point_test::{
+    AfterEvent, EventPoints, active_facets, largest_force, rate_after_event,
+};
+use crate::path::newton::solve::nearby::Accuracy;
+use crate::path::newton::solve::tangent::tangent_of_modes;
 use voussoir_core::law::FacetMode;
 
 /// A rate with its modes.

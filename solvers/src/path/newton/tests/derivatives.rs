@@ -2,9 +2,9 @@
 
 use crate::linear::blocks::GapRows;
 use crate::linear::csr::CsrMatrix;
-use crate::path::newton::geometry::{Geometry, Place};
-use crate::path::newton::kinematics::{gradient as gradient_of, hessian as hessian_of};
-use crate::path::newton::loads::Loads;
+use crate::path::newton::model::geometry::{Geometry, Place};
+use crate::path::newton::model::kinematics::{gradient as gradient_of, hessian as hessian_of};
+use crate::path::newton::model::loads::Loads;
 use crate::path::two_blocks::body;
 use nalgebra::{DMatrix, Rotation2};
 use voussoir_core::limit::Counters;

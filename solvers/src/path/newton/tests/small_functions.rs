@@ -1,9 +1,9 @@
 //! Pure functions of newton_path: loads in force, monitors, speeds.
 
-use crate::path::newton::loads::StagedLoads;
-use crate::path::newton::measure::fastest;
-use crate::path::newton::monitors::resolve;
-use crate::path::newton::system::StepSystem;
+use crate::path::newton::model::loads::StagedLoads;
+use crate::path::newton::model::system::StepSystem;
+use crate::path::newton::quantities::measure::fastest;
+use crate::path::newton::quantities::monitors::resolve;
 use crate::path::two_blocks::{assert_close, block, block_on, coulomb, live, pushed_at, settlement};
 use voussoir_core::path::{Loading, Monitor};
 
@@ -15,7 +15,7 @@ fn accelerated(x: f64, y: f64) -> Loading {
 #[test]
 fn the_growing_load_counts_from_its_start() {
     let (earlier, growing) = (accelerated(0.0, -10.0), accelerated(2.0, 0.0));
-    let loads = StagedLoads { earlier: vec![(0.5, &earlier)], growing: &growing, start: 1.0 };
+    let loads = StagedLoads::new(vec![(0.5, &earlier)], &growing, 1.0);
     let acceleration = loads.at(4.0).acceleration();
     assert_eq!([acceleration.x, acceleration.y], [6.0, -5.0]);
 }
@@ -24,7 +24,7 @@ fn the_growing_load_counts_from_its_start() {
 #[test]
 fn settlements_add_up() {
     let (earlier, growing) = (settlement(0, [0.1, 0.0, 0.0]), settlement(0, [0.0, 0.0, 0.2]));
-    let loads = StagedLoads { earlier: vec![(2.0, &earlier)], growing: &growing, start: 0.0 };
+    let loads = StagedLoads::new(vec![(2.0, &earlier)], &growing, 0.0);
     let settled = loads.at(3.0).settled(2);
     [0.2, 0.0, 0.6].iter().zip(settled[0]).for_each(|(right, found)| assert_close(found, *right, 1e-15));
     assert_eq!(settled[1], [0.0; 3]);

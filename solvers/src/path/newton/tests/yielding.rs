@@ -1,9 +1,9 @@
 //! Convergence of steps in which a block yields.
 
-use crate::path::newton::control::Control;
-use crate::path::newton::loads::StagedLoads;
-use crate::path::newton::step::solve_step;
-use crate::path::newton::system::StepSystem;
+use crate::path::newton::model::control::Control;
+use crate::path::newton::model::loads::StagedLoads;
+use crate::path::newton::model::system::StepSystem;
+use crate::path::newton::solve::step::solve_step;
 use crate::path::two_blocks::body;
 use std::sync::Arc;
 use voussoir_core::elastic::{Condenser, MeshDensity};
@@ -115,12 +115,12 @@ fn steps_with_yielding_blocks_converge_quadratically() {
     };
     for finite in [false, true] {
         let mut system = StepSystem::new(&problem, finite).unwrap();
-        system.load(StagedLoads { earlier: Vec::new(), growing: &loading, start: 0.0 });
+        system.load(StagedLoads::new(Vec::new(), &loading, 0.0));
         let start = system.undeformed();
         let (state, _) = solve_step(&mut system, &start, start.clone(), &Control::Factor(1.0)).unwrap();
         let yielding = state.blocks.iter().flatten().map(|inner| inner.linear.yielding).sum::<usize>();
         assert!(yielding > 10 && yielding < 36, "{yielding} of 36 points yield");
-        let r = &system.residuals;
+        let r = &system.report.residuals;
         let fast: Vec<&[f64]> = r.windows(2).filter(|p| p[0] < 0.1 && p[0] > 1e-6).collect();
         assert!(fast.len() >= 2, "{r:?}");
         assert!(fast.iter().all(|p| p[1] <= 3.0 * p[0] * p[0] + 1e-12), "finite {finite}: {r:?}");

@@ -3,24 +3,24 @@
 mod monitors;
 mod steps;
 
-use super::super::control::Control;
-use super::super::loads::StagedLoads;
-use super::super::state::State;
-use super::super::step::solve_step;
-use super::super::system::StepSystem;
-use super::super::tangent::tangent_at;
 use super::piece::Piece;
+use crate::path::newton::model::control::Control;
+use crate::path::newton::model::loads::StagedLoads;
+use crate::path::newton::model::state::State;
+use crate::path::newton::model::system::StepSystem;
+use crate::path::newton::solve::step::solve_step;
+use crate::path::newton::solve::tangent::tangent_at;
 use voussoir_core::path::PathProblem;
 
 /// The system of the second load step, and the state at its start.
 fn second_step(problem: &PathProblem) -> (StepSystem<'_>, State) {
     let mut system = StepSystem::new(problem, true).expect("a system");
     let [first, second] = [0, 1].map(|k| &problem.load_steps[k].loading);
-    system.load(StagedLoads { earlier: Vec::new(), growing: first, start: 0.0 });
+    system.load(StagedLoads::new(Vec::new(), first, 0.0));
     let start = system.undeformed();
     let (mut state, _) = solve_step(&mut system, &start, start.clone(), &Control::Factor(1.0)).expect("a state");
     system.keep(&start, &mut state);
-    system.load(StagedLoads { earlier: vec![(1.0, first)], growing: second, start: 0.0 });
+    system.load(StagedLoads::new(vec![(1.0, first)], second, 0.0));
     state.factor = 0.0;
     (system, state)
 }

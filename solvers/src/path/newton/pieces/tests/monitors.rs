@@ -1,9 +1,9 @@
 //! Monitors of a block of 1 N on two points with friction μ that is pushed at height h.
 
-use super::super::super::state::State;
-use super::super::monitors::{Monitors, Reading, What};
 use super::{piece_at, second_step};
 use crate::contact::mode::ContactMode;
+use crate::path::newton::model::state::State;
+use crate::path::newton::pieces::monitors::{Monitors, Reading, What};
 use crate::path::two_blocks::{STIFFNESS, assert_close, block, pushed_at};
 
 const FRICTION: f64 = 0.3;

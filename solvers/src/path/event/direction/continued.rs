@@ -1,0 +1,32 @@
+//! The answer of a rate problem on the path.
+
+use crate::path::event::piece::rates::Direction;
+use crate::rate::proof::NoRate;
+
+/// The continuation of the path.
+pub enum Next {
+    /// With λ rising or standing still.
+    Go(Direction),
+    /// With λ falling; on a path that has risen it is proved that no rate rises.
+    Falling(Direction),
+    /// It is proved that no rate goes on.
+    Nothing,
+    /// It is proved that no rate rises. It is not decided whether one stands still or falls, and why.
+    NoneRises(String),
+    /// Not decided, and why.
+    Lost(String),
+}
+
+/// The continuation of the path and, if it was sought and found, the proof that no rate raises the load.
+pub struct Continued {
+    pub next: Next,
+    pub none_rises: Option<NoRate>,
+    /// Whether the chain of joints gave the direction.
+    pub by_chain: bool,
+}
+
+impl From<Next> for Continued {
+    fn from(next: Next) -> Self {
+        Continued { next, none_rises: None, by_chain: false }
+    }
+}

@@ -1,0 +1,329 @@
+//! The rate problem over a few points, on one factorisation for many events: those next to the arrival, or the whole active
+//! set.
+
+use super::continued::{Continued, Next};
+use crate::contact::mode::ContactMode;
+use crate::path::event::piece::factorisation::FactorisedModes;
+use crate::path::event::piece::point::Point;
+use crate::path::event::piece::rates::{Rates, direction_of, leaving, motion_alone, residual};
+use crate::path::event::piece::schur::SchurComplement;
+use crate::path::event::trace::{Log, Trace};
+use crate::path::system::{Load, System};
+use crate::path::twins::favoured;
+use crate::rate::answer::{Budget, Continuation, Neighbour, RateAnswer, answer, only_neighbour};
+use crate::rate::neighbours::settled;
+use crate::rate::problem::Rate;
+use crate::settings::SETTINGS;
+use voussoir_core::path::{Branching, PathProblem};
+
+/// Steps of refinement of a direction.
+const REFINEMENTS: usize = 3;
+/// Points with a mode of their own beside the factorised one before factorising anew.
+const UPDATES: usize = 40;
+/// Points whose responses are found for one rate problem: for more of them it is factorised anew.
+const AT_ONCE: usize = 8;
+/// Points that are solved for next to the arrival, at most.
+const MANY: usize = 24;
+/// Points of the active set up to which its rate problem is solved by itself where flow is not associated: its matrix is
+/// dense, and pivoting takes as many steps of its size squared as it has points.
+const DENSE: usize = 400;
+
+/// The answer to the rate problem of the whole active set.
+pub fn by_active_set(trace: &mut Trace, load: &Load, active: &[usize]) -> Continued {
+    if active.len() > DENSE {
+        return Next::Lost(format!(
+            "the rate problem at λ = {:.9} has {} contact points in its active set, and neither the active set on the whole system nor the path with strength solved it: newton_path may",
+            trace.state.factor,
+            active.len()
+        ))
+        .into();
+    }
+    // One attempt on the present factorisation, one on a fresh one.
+    for fresh in [false, true] {
+        // Closed points of the active set make the best conditioned factorisation: close to a collapse
+        // one in which they flow is nearly singular.
+        let stale = trace.factors.present.as_ref().is_none_or(|factors| {
+            // What is claimed here rests on the responses themselves.
+            !factors.refine_columns
+                || factors.responses() > UPDATES.max(2 * active.len())
+                || active.iter().any(|c| factors.modes[*c] != ContactMode::Stick)
+        });
+        let closed = |p: &Point| p.settled().unwrap_or(ContactMode::Stick);
+        if (fresh || stale) && !trace.factorise(trace.state.points.iter().map(closed).collect(), true) {
+            return Next::Lost(
+                "the system is singular with the contact points of the active set closed: a block is held by nothing"
+                    .into(),
+            )
+            .into();
+        }
+        if let Some(next) = by_rate_problem(trace, load, active) {
+            return next;
+        }
+    }
+    Next::Lost("the stiffness of the contact points of the active set could not be found".into()).into()
+}
+
+/// Factorises anew where the present factorisation does not serve to open some points in these modes.
+fn refresh_for(trace: &mut Trace, open: &[usize], modes: &[ContactMode]) -> bool {
+    let refine_columns = trace.factors.refine_columns;
+    let changed =
+        |factors: &FactorisedModes| modes.iter().zip(&factors.modes).filter(|(now, then)| now != then).count();
+    let stale = |factors: &FactorisedModes| {
+        (!factors.refine_columns && refine_columns)
+            || factors.responses() > UPDATES.max(2 * open.len())
+            || changed(factors) > 2 * UPDATES
+            // After events that others followed: a factorisation costs less than so many responses.
+            || changed(factors) > factors.responses() + AT_ONCE
+    };
+    if !trace.factors.present.as_ref().is_none_or(stale) {
+        return true;
+    }
+    // With open points closed: what flows there may be a mechanism.
+    let mut closed = modes.to_vec();
+    open.iter().for_each(|c| closed[*c] = ContactMode::Stick);
+    if let Some(present) = trace.factors.present.as_mut().filter(|present| present.modes == closed) {
+        // Stale for its responses alone.
+        present.set_refined(refine_columns);
+        return true;
+    }
+    trace.factorise(closed, refine_columns)
+}
+
+/// The continuation next to the arrival.
+pub enum Neighbourhood {
+    /// The only one.
+    Next(Next),
+    /// The search found no rate.
+    NotFound,
+    /// Several, or not decided.
+    Several,
+}
+
+/// The only rate next to the arrival: over the points of the event and those that it moves
+/// out of their modes, while all others keep theirs.
+pub fn by_neighbours(trace: &mut Trace, load: &Load, active: &[usize]) -> Neighbourhood {
+    let mut open: Vec<usize> =
+        active.iter().copied().filter(|c| trace.state.points[*c].arrived_from.is_some()).collect();
+    loop {
+        if open.len() > MANY {
+            return Neighbourhood::NotFound;
+        }
+        match by_newcomers(trace, load, active, &open) {
+            Some(Newcomers::Next(next)) => return Neighbourhood::Next(next),
+            Some(Newcomers::Move(points)) => open.extend(points),
+            Some(Newcomers::Again) => {}
+            Some(Newcomers::Several) => return Neighbourhood::Several,
+            None => return Neighbourhood::NotFound,
+        }
+    }
+}
+
+/// The rates next to the arrival over some open points.
+enum Newcomers {
+    Next(Next),
+    /// They move these points out of their modes.
+    Move(Vec<usize>),
+    /// A mechanism is near: the same with refined responses.
+    Again,
+    Several,
+}
+
+/// The only rate over the `open` points while all others keep their modes. `None` if no rate continues the path so.
+fn by_newcomers(trace: &mut Trace, load: &Load, active: &[usize], open: &[usize]) -> Option<Newcomers> {
+    let mut modes = trace.present_modes();
+    if !refresh_for(trace, open, &modes) {
+        return None;
+    }
+    let arrival = trace.arrival(open);
+    let Trace { system, state, factors, log, associated, .. } = &mut *trace;
+    let base = factors.present.as_mut()?;
+    let refined_columns = base.refine_columns;
+    let at = (state.load_step, load);
+    let local = SchurComplement::new((system, &state.points), base, at, open, &modes, &mut log.counts.solves)?;
+    let trials = &mut log.counts.rates.trials;
+    let rate = if *associated {
+        // All rates that rise have the same forces, and a mechanism proves that none rises. A moving support does no
+        // work on a mechanism: if it can move on, it does.
+        let (guess, free) = (open.iter().map(|c| modes[*c]).collect(), vec![false; open.len()]);
+        settled(&local.rate, guess, &free, 1.0, trials)
+            .filter(|rate| rate.factor > 0.0 || !load.settles && local.rate.leads_on(rate))?
+    } else {
+        match only_neighbour(&local.rate, &arrival, &Budget::default(), trials) {
+            Neighbour::Only(rate) => rate,
+            Neighbour::None => return None,
+            Neighbour::Several => return Some(Newcomers::Several),
+        }
+    };
+    let falls = rate.factor < 0.0;
+    let mut rates = rates_of(&local, base, at, &rate, (open, &mut modes))?;
+    log.counts.solves += rates.refinements;
+    let forces = 2 * system.contacts;
+    if rates.factor == 0.0 {
+        rates.x[..forces].fill(0.0);
+        rates = Rates::new(system, rates.x, 0.0, load);
+        rates.worst = residual(system, &rates, load, &modes).0;
+    } else if !refined_columns && rates.nears_mechanism(forces) {
+        factors.refine_columns = true;
+        return Some(Newcomers::Again);
+    }
+    let moved = leaving((system, &state.points), (&rates, load), active, &modes)?;
+    if moved.is_empty() {
+        let rates = solved_anew(trace, rates, load, &modes);
+        let believed = rates.worst <= trace.believed();
+        return believed.then(|| {
+            let direction = trace.take(modes, rates, load);
+            Newcomers::Next(if falls { Next::Falling(direction) } else { Next::Go(direction) })
+        });
+    }
+    let new: Vec<usize> = moved.into_iter().map(|(_, c, _)| c).filter(|c| !open.contains(c)).collect();
+    (!new.is_empty()).then_some(Newcomers::Move(new))
+}
+
+/// Refined rates of all unknowns of a solution over the open points, whose modes are put among all.
+fn rates_of(
+    local: &SchurComplement,
+    base: &mut FactorisedModes,
+    at: (usize, &Load),
+    rate: &Rate,
+    (open, modes): (&[usize], &mut [ContactMode]),
+) -> Option<Rates> {
+    open.iter().zip(&rate.modes).for_each(|(c, mode)| modes[*c] = *mode);
+    let x = local.combine(base, at, rate)?;
+    Some(refined(local, base, Rates::new(local.system, x, rate.factor, at.1), at.1, modes))
+}
+
+/// The answer to the rate problem over the active set. `None` if linear algebra fails.
+fn by_rate_problem(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<Continued> {
+    let mut modes = trace.present_modes();
+    let arrival = trace.arrival(active);
+    let Trace { system, state, factors, log, problem, associated, .. } = &mut *trace;
+    let base = factors.present.as_mut()?;
+    let (at, solves) = ((state.load_step, load), &mut log.counts.solves);
+    let mut local = SchurComplement::new((system, &state.points), base, at, active, &modes, solves)?;
+    local.measure(base, at, system.units.of_factor(problem, &problem.load_steps[state.load_step].loading))?;
+    let RateAnswer { continuation, none_rises } =
+        answer(&local.rate, &arrival, &Budget::default(), &mut log.counts.rates);
+    let (rate, twins) = match continuation {
+        Continuation::Goes { rate, twins } => (rate, twins),
+        Continuation::NoneContinues(_) => return Some(Continued { next: Next::Nothing, none_rises, by_chain: false }),
+        Continuation::Open(why) if none_rises.is_some() => {
+            return Some(Continued { next: Next::NoneRises(why), none_rises, by_chain: false });
+        }
+        Continuation::Open(why) => return Some(Next::Lost(lost(state.factor, active.len(), &why)).into()),
+    };
+    // A mechanism of associated flow is the proof itself.
+    let proved = none_rises.is_some() || arrival.factor < 0.0 || (*associated && rate.factor == 0.0);
+    if rate.factor <= 0.0 && !proved {
+        let why = "it is not decided whether a rate raises the load";
+        return Some(Next::Lost(lost(state.factor, active.len(), why)).into());
+    }
+    let rate = favoured_twin(&local, base, (problem, at, state.factor), rate, twins, log)?;
+    let rates = rates_of(&local, base, at, &rate, (active, &mut modes))?;
+    log.counts.solves += rates.refinements;
+    let mut rates = solved_anew(trace, rates, load, &modes);
+    if rates.factor != 0.0 && rates.worst > SETTINGS.distinct() {
+        let Some(motion) = motion_alone((&trace.system, &trace.state.points), &rates, load, active, &modes) else {
+            let why = format!(
+                "the rates at λ = {:.9} leave {:.1e} of their equations: the system is singular to rounding",
+                trace.state.factor, rates.worst
+            );
+            return Some(Next::Lost(why).into());
+        };
+        rates = motion;
+    }
+    active.iter().zip(&rate.modes).for_each(|(c, mode)| trace.state.points[*c].mode = *mode);
+    let direction = direction_of(&trace.system, &mut trace.state.points, rates, load);
+    let next = if rate.factor < 0.0 { Next::Falling(direction) } else { Next::Go(direction) };
+    Some(Continued { next, none_rises, by_chain: false })
+}
+
+fn lost(factor: f64, points: usize, why: &str) -> String {
+    format!(
+        "the rate problem at λ = {factor:.9} has {points} contact points in its active set and is not decided: {why}; a slightly different mesh or load may pass"
+    )
+}
+
+/// A rate or the one of its twins that later loads favour. Twins are noted.
+fn favoured_twin(
+    local: &SchurComplement,
+    base: &mut FactorisedModes,
+    (problem, at, factor): (&PathProblem, (usize, &Load), f64),
+    rate: Rate,
+    twins: Vec<Rate>,
+    log: &mut Log,
+) -> Option<Rate> {
+    if twins.is_empty() {
+        return Some(rate);
+    }
+    let mut rates: Vec<Rate> = std::iter::once(rate).chain(twins).collect();
+    let (system, load_step) = (local.system, at.0);
+    let motion = |rate: &Rate| {
+        let x = local.combine(base, at, rate)?;
+        Some(system.motions(&x[2 * system.contacts..]))
+    };
+    let motions: Option<Vec<Vec<[f64; 3]>>> = rates.iter().map(motion).collect();
+    let motions = motions?;
+    let motions: Vec<&[[f64; 3]]> = motions.iter().map(Vec::as_slice).collect();
+    let chosen = favoured(problem, load_step, &motions);
+    let others = rates.len() - 1;
+    log.branchings.push(Branching { load_step, factor, snaps: false, released: 0.0, twins: true });
+    log.notes.push(format!("at factor {factor} {others} other rate(s) are twins of the one that is followed"));
+    Some(rates.swap_remove(chosen))
+}
+
+/// Refined against all equations in the modes that were found: responses of single points are not,
+/// and close to a collapse they cancel.
+fn refined(
+    local: &SchurComplement,
+    base: &FactorisedModes,
+    mut rates: Rates,
+    load: &Load,
+    modes: &[ContactMode],
+) -> Rates {
+    let system: &System = local.system;
+    let still = rates.factor == 0.0;
+    let (mut worst, mut left) = residual(system, &rates, load, modes);
+    for _ in 0..REFINEMENTS {
+        if worst <= SETTINGS.refined && !still {
+            break;
+        }
+        let Some(step) = local.refinement(base, modes, still, &left) else { break };
+        let x = rates.x.iter().zip(&step).map(|(x, s)| x + s).collect();
+        let mut better = Rates::new(system, x, rates.factor, load);
+        let now = residual(system, &better, load, modes);
+        better.refinements = rates.refinements + 1;
+        if !still && now.0 >= worst {
+            rates.refinements += 1;
+            break;
+        }
+        let rounding = now.0 > 0.5 * worst;
+        (rates, (worst, left)) = (better, now);
+        if still || rounding {
+            break;
+        }
+    }
+    rates.worst = worst;
+    rates
+}
+
+/// The direction solved anew with all modes in the factorisation, where refinement leaves residuals.
+fn solved_anew(trace: &mut Trace, rates: Rates, load: &Load, modes: &[ContactMode]) -> Rates {
+    if rates.factor == 0.0 || rates.worst <= SETTINGS.residual() {
+        return rates;
+    }
+    trace.log.counts.factorisations += 1;
+    let system = &trace.system;
+    let Some(mut base) = FactorisedModes::new(system, modes.to_vec(), trace.factors.refine_columns) else {
+        return rates;
+    };
+    let Some(direct) = base.load_rate(system, trace.state.load_step, load) else { return rates };
+    let x: Vec<f64> = direct.iter().map(|v| v * rates.factor).collect();
+    // Where the matrix is singular the sense of its solution is rounding.
+    let along: f64 = x.iter().zip(&rates.x).map(|(a, b)| a * b).sum();
+    let direct = Rates::new(system, x, rates.factor, load);
+    if along > 0.0 && residual(system, &direct, load, modes).0 < rates.worst {
+        trace.factors.present = Some(base);
+        return direct;
+    }
+    rates
+}

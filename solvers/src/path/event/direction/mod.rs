@@ -1,0 +1,56 @@
+//! The direction of the next piece of the path: the order in which its rate problem is solved.
+
+mod continued;
+mod few;
+mod strengthened;
+mod whole_system;
+
+pub use self::continued::{Continued, Next};
+use self::few::{Neighbourhood, by_active_set, by_neighbours};
+use self::strengthened::by_strength;
+use self::whole_system::on_whole_system;
+use crate::path::event::piece::rates::Rates;
+use crate::path::event::trace::Trace;
+use crate::path::system::Load;
+
+/// Points of the active set above which all of them are solved for at once, if the rate is not next to the arrival.
+const MANY: usize = 24;
+
+/// The direction from the present state: of a chain by its joints, else by the only rate next to the arrival if there is one,
+/// else by the answer to the rate problem of the whole active set.
+pub fn next_direction(trace: &mut Trace, load: &Load) -> Continued {
+    trace.log.counts.rate_problems += 1;
+    let active = trace.active_points();
+    // One point that arrives has one cell to go to: the present modes lead there.
+    if trace.state.sense > 0.0 && (trace.associated || trace.arrived() <= 1) {
+        let modes = trace.present_modes();
+        if let Some((modes, rates)) = trace.by_chain(load, &active, modes) {
+            trace.log.counts.by_chain += 1;
+            return Continued { by_chain: true, ..Next::Go(trace.take(modes, rates, load)).into() };
+        }
+    }
+    // From nothing all points are in the active set, and no rate is next to another one.
+    let many = if trace.state.x.iter().all(|v| *v == 0.0) {
+        true
+    } else {
+        match by_neighbours(trace, load, &active) {
+            Neighbourhood::Next(next) => return next.into(),
+            Neighbourhood::NotFound => active.len() > MANY && trace.state.sense > 0.0,
+            Neighbourhood::Several => false,
+        }
+    };
+    if many {
+        if let Some(direction) = on_whole_system(trace, load, &active) {
+            return Next::Go(direction).into();
+        }
+        // With associated flow a mechanism is the proof itself that no rate raises the load.
+        let proves =
+            |rates: &Rates, associated| rates.factor > 0.0 || associated && rates.factor == 0.0 && !load.settles;
+        if let Some((modes, rates)) = by_strength(trace, load, &active)
+            && proves(&rates, trace.associated)
+        {
+            return Next::Go(trace.take(modes, rates, load)).into();
+        }
+    }
+    by_active_set(trace, load, &active)
+}

@@ -1,0 +1,401 @@
+//! What all joints of the chain do for the redundants and the load, while points change their modes.
+
+use super::factors::{Factor, Factors};
+use super::joint::joints;
+use super::rates::ChainRates;
+use super::redundants::{MOST_WEAK, Open, closing};
+use super::sections::Sections;
+use crate::contact::mode::ContactMode;
+use crate::linear::dense::add_product;
+use crate::path::event::piece::rates::Rates;
+use crate::path::system::{Load, System};
+use crate::settings::SETTINGS;
+use nalgebra::{DMatrix, DVector, Matrix3xX, Vector3};
+use voussoir_core::path::PathProblem;
+
+/// Changes of modes after which everything is factorised anew.
+const CHANGES: usize = 1000;
+/// Changes at once from which on that is cheaper.
+const AT_ONCE: usize = 24;
+
+/// A chain of joints in the present modes.
+pub struct JointChain {
+    /// The sections that the joints are.
+    sections: Sections,
+    factors: Factors,
+    /// Joint and place in it of every contact point.
+    places: Vec<(usize, usize)>,
+    modes: Vec<ContactMode>,
+    load: LoadStatics,
+    columns: Columns,
+    /// Rates with λ̇ = 1. Each change of modes corrects them, so that they stay as exact as they were made.
+    rates: Option<ChainRates>,
+    updates: Updates,
+}
+
+/// The statics of a load.
+#[derive(Default)]
+struct LoadStatics {
+    /// R about the centre of every joint from (X, s).
+    resultants: Vec<Matrix3xX<f64>>,
+    /// The load step whose load it is.
+    step: Option<usize>,
+}
+
+/// Responses of every joint.
+#[derive(Default)]
+struct Columns {
+    /// To (X, s) and the twists of weak joints.
+    responses: Vec<DMatrix<f64>>,
+    /// Joints with a twist of their own, in the order of its columns.
+    weak: Vec<usize>,
+}
+
+/// The age of the factors.
+#[derive(Default)]
+struct Updates {
+    /// True if there are factors.
+    ready: bool,
+    /// Changes of modes since they were made.
+    changes: usize,
+    /// Number of factorisations of all joints.
+    factorisations: u64,
+}
+
+impl JointChain {
+    /// Of the joints of a problem. `None` where they do not form chains.
+    pub fn new(system: &System, problem: &PathProblem) -> Option<Self> {
+        let sections = Sections::new(system, problem)?;
+        let (joints, places) = joints(system, &sections)?;
+        Some(JointChain {
+            sections,
+            factors: Factors { all: joints.into_iter().map(Factor::new).collect() },
+            places,
+            modes: Vec::new(),
+            load: LoadStatics::default(),
+            columns: Columns::default(),
+            rates: None,
+            updates: Updates::default(),
+        })
+    }
+
+    /// Number of joints.
+    pub fn joints(&self) -> usize {
+        self.factors.all.len()
+    }
+
+    /// Number of factorisations of all joints.
+    pub fn factorisations(&self) -> u64 {
+        self.updates.factorisations
+    }
+
+    /// Another load comes.
+    pub fn forget_load(&mut self) {
+        self.load.step = None;
+    }
+
+    /// Gives the points these modes. `None` where the equations are singular.
+    pub fn set_modes(&mut self, system: &System, (step, load): (usize, &Load), modes: &[ContactMode]) -> Option<()> {
+        if self.load.step != Some(step) {
+            let resultants = self.sections.resultants(&load.wrench);
+            let section = |f: &Factor| self.sections.all[f.joint.section].statics(&resultants[f.joint.section]);
+            self.load.resultants = self.factors.all.iter().map(section).collect();
+            (self.load.step, self.updates.ready) = (Some(step), false);
+        }
+        if !self.updates.ready {
+            return self.factorise(system, load, modes);
+        }
+        let changed: Vec<usize> = (0..modes.len()).filter(|c| modes[*c] != self.modes[*c]).collect();
+        if changed.len() > AT_ONCE || self.updates.changes + changed.len() > CHANGES {
+            return self.factorise(system, load, modes);
+        }
+        for c in changed {
+            if self.set_mode(system, load, c, modes[c]).is_none() {
+                return self.factorise(system, load, modes);
+            }
+        }
+        Some(())
+    }
+
+    /// Factorises everything in given modes. `None` where that is singular.
+    pub fn factorise(&mut self, system: &System, load: &Load, modes: &[ContactMode]) -> Option<()> {
+        self.updates.factorisations += 1;
+        (self.updates.changes, self.updates.ready, self.rates) = (0, false, None);
+        self.modes = modes.to_vec();
+        for factor in &mut self.factors.all {
+            factor.rows = factor.joint.rows(system, modes)?;
+            factor.weak = factor.joint.is_weak(modes);
+        }
+        self.columns.weak = (0..self.joints()).filter(|e| self.factors.all[*e].weak).collect();
+        if self.columns.weak.len() > MOST_WEAK {
+            return None;
+        }
+        self.factors.factorise()?;
+        let n = 3 * self.sections.cycles + 1;
+        let columns = n + 3 * self.columns.weak.len();
+        let mut right = Vec::with_capacity(self.joints());
+        for (e, (factor, statics)) in self.factors.all.iter().zip(&self.load.resultants).enumerate() {
+            let m = 2 * factor.joint.contacts.len();
+            let mut own = DMatrix::zeros(m + 3, columns);
+            for (p, (c, rows)) in factor.joint.contacts.iter().zip(&factor.rows).enumerate() {
+                let gap = load.gap[*c];
+                (0..2).for_each(|i| own[(2 * p + i, n - 1)] = -(rows[i][2] * gap[0] + rows[i][3] * gap[1]));
+            }
+            own.view_mut((m, 0), (3, n)).copy_from(statics);
+            if let Some(w) = self.columns.weak.iter().position(|w| *w == e) {
+                (0..3).for_each(|i| own[(m + i, n + 3 * w + i)] = -factor.joint.spring[i]);
+            }
+            right.push(own);
+        }
+        self.columns.responses = self.factors.solve(right.clone());
+        self.refine_responses(right);
+        self.updates.ready = true;
+        Some(())
+    }
+
+    /// One step of refinement of all responses.
+    fn refine_responses(&mut self, mut right: Vec<DMatrix<f64>>) {
+        for (e, factor) in self.factors.all.iter().enumerate() {
+            let m = 2 * factor.joint.contacts.len();
+            for j in 0..right[e].ncols() {
+                let column = |e: usize| column(&self.columns.responses[e], j);
+                let (own, gap) = (column(e), factor.joint.gaps(e, &column));
+                for (p, rows) in factor.rows.iter().enumerate() {
+                    for (i, row) in rows.iter().enumerate() {
+                        let (force, gap) = (&own[2 * p..2 * p + 2], &gap[2 * p..2 * p + 2]);
+                        right[e][(2 * p + i, j)] -=
+                            row[0] * force[0] + row[1] * force[1] + row[2] * gap[0] + row[3] * gap[1];
+                    }
+                }
+                for i in 0..3 {
+                    let twist = if factor.weak { factor.joint.spring[i] * own[m + i] } else { 0.0 };
+                    right[e][(m + i, j)] -= factor.joint.resultant(i, own) - twist;
+                }
+            }
+        }
+        let added = self.factors.solve(right);
+        self.columns.responses.iter_mut().zip(&added).for_each(|(response, added)| *response += added);
+    }
+
+    fn set_mode(&mut self, system: &System, load: &Load, c: usize, mode: ContactMode) -> Option<()> {
+        let (e, p) = self.places[c];
+        self.updates.changes += 1;
+        self.modes[c] = mode;
+        if !self.factors.all[e].weak && self.factors.all[e].joint.is_weak(&self.modes) {
+            self.set_weak(e)?;
+        }
+        let rows = system.rows(c, mode)?;
+        self.factors.set_rows(e, p, rows)?;
+        let columns = self.columns.responses[e].ncols();
+        let mut left = DMatrix::zeros(2, columns);
+        for j in 0..columns {
+            let mut gap = self.factors.all[e].joint.gap(e, p, &|e: usize| column(&self.columns.responses[e], j));
+            if j == 3 * self.sections.cycles {
+                (0..2).for_each(|i| gap[i] += load.gap[c][i]);
+            }
+            let force = [self.columns.responses[e][(2 * p, j)], self.columns.responses[e][(2 * p + 1, j)]];
+            left.column_mut(j).copy_from_slice(&left_of(&rows, force, gap));
+        }
+        let kept = self.rates.as_ref().map(|rates| {
+            let gap = self.factors.all[e].joint.gap(e, p, &|e: usize| &rates.own[e]);
+            let gap = [gap[0] + load.gap[c][0], gap[1] + load.gap[c][1]];
+            let force = [rates.own[e][2 * p], rates.own[e][2 * p + 1]];
+            left_of(&rows, force, gap)
+        });
+        self.respond(e, 2 * p, &left, kept.as_ref().map_or(&[], |kept| kept));
+        if matches!(mode, ContactMode::Open | ContactMode::Corner(..)) {
+            (0..columns).for_each(|j| (0..2).for_each(|i| self.columns.responses[e][(2 * p + i, j)] = 0.0));
+            self.rates.iter_mut().for_each(|rates| rates.own[e][2 * p..2 * p + 2].fill(0.0));
+        }
+        Some(())
+    }
+
+    /// Adds what right-hand sides of some rows of a joint give to all columns, and to the rates where any are `kept`.
+    fn respond(&mut self, e: usize, first: usize, left: &DMatrix<f64>, kept: &[f64]) {
+        let window = self.factors.respond(e, first, left.nrows());
+        for (response, columns) in self.columns.responses[window.first..].iter_mut().zip(&window.columns) {
+            let height = response.nrows();
+            let lefts = left.as_slice().chunks_exact(left.nrows());
+            for (response, left) in response.as_mut_slice().chunks_exact_mut(height).zip(lefts) {
+                add_product(response, columns, left);
+            }
+        }
+        if let (Some(rates), false) = (&mut self.rates, kept.is_empty()) {
+            let own = rates.own[window.first..].iter_mut().zip(&window.columns);
+            own.for_each(|(own, columns)| add_product(own, columns, kept));
+        }
+    }
+
+    /// Gives a joint a twist of its own.
+    fn set_weak(&mut self, e: usize) -> Option<()> {
+        if self.columns.weak.len() == MOST_WEAK {
+            return None;
+        }
+        self.factors.set_weak(e)?;
+        let (m, spring) = (2 * self.factors.all[e].joint.contacts.len(), self.factors.all[e].joint.spring);
+        let columns = self.columns.responses[e].ncols();
+        let mut left = DMatrix::zeros(3, columns + 3);
+        for i in 0..3 {
+            (0..columns).for_each(|j| left[(i, j)] = spring[i] * self.columns.responses[e][(m + i, j)]);
+            left[(i, columns + i)] = -spring[i];
+        }
+        for response in &mut self.columns.responses {
+            *response = std::mem::replace(response, DMatrix::zeros(0, 0)).insert_columns(columns, 3, 0.0);
+        }
+        self.respond(e, m, &left, &[]);
+        if let Some(rates) = &mut self.rates {
+            let twist = &rates.own[e][m..];
+            rates.share = DVector::from_iterator(columns + 3, rates.share.iter().chain(twist).copied());
+        }
+        self.columns.weak.push(e);
+        Some(())
+    }
+
+    /// Finds what the joints do in the present modes with λ̇ = 1. `None` near a mechanism.
+    pub fn find_rates(&mut self) -> Option<()> {
+        if let Some(mut rates) = self.rates.take() {
+            let before = rates.size();
+            let share = self.closing(&Open::Corrected(&rates))?;
+            rates.add(&self.columns.responses, share);
+            rates.unchecked = rates.unchecked.saturating_add(1);
+            if before <= SETTINGS.cancels * rates.size() {
+                self.rates = Some(rates);
+                return Some(());
+            }
+        }
+        let share = self.closing(&Open::Load)?;
+        let own = self.columns.responses.iter().map(|b| vec![0.0; b.nrows()]).collect();
+        let mut rates = ChainRates { own, share: DVector::zeros(share.len()), unchecked: usize::MAX };
+        rates.add(&self.columns.responses, share);
+        self.rates = Some(rates);
+        Some(())
+    }
+
+    fn closing(&self, open: &Open) -> Option<DVector<f64>> {
+        closing(&self.sections, &self.factors.all, &self.columns.responses, &self.columns.weak, open)
+    }
+
+    /// Changes of modes since the rates were last examined. `None` without rates.
+    pub fn unchecked(&self) -> Option<usize> {
+        self.rates.as_ref().map(|rates| rates.unchecked)
+    }
+
+    /// Rates as those of the whole system; gaps of points that stick are zero.
+    pub fn rates(&self, system: &System, load: &Load) -> Option<Rates> {
+        let rates = self.rates.as_ref()?;
+        let mut gaps = vec![[0.0; 2]; system.contacts];
+        for (e, factor) in self.factors.all.iter().enumerate() {
+            let contacts = &factor.joint.contacts;
+            if contacts.iter().all(|c| self.modes[*c] == ContactMode::Stick) {
+                continue;
+            }
+            let own = |e: usize| rates.own[e].as_slice();
+            let moving = contacts.iter().enumerate().filter(|(_, c)| self.modes[**c] != ContactMode::Stick);
+            if 2 * moving.clone().count() <= contacts.len() {
+                moving.for_each(|(p, c)| gaps[*c] = factor.joint.gap(e, p, &own));
+            } else {
+                let all = factor.joint.gaps(e, &own);
+                moving.for_each(|(p, c)| gaps[*c] = [all[2 * p], all[2 * p + 1]]);
+            }
+            contacts.iter().filter(|c| self.modes[**c] != ContactMode::Stick).for_each(|c| {
+                (0..2).for_each(|i| gaps[*c][i] += load.gap[*c][i]);
+            });
+        }
+        Some(Rates { x: self.unknowns(system, &rates.own), factor: 1.0, gaps, worst: 0.0, refinements: 0 })
+    }
+
+    /// What the rates leave of the resultants, at most: a correction that is far smaller than a step that follows may
+    /// leave more than that may.
+    pub fn unbalanced(&self) -> f64 {
+        let Some(rates) = &self.rates else { return f64::INFINITY };
+        let mut worst = 0.0f64;
+        for ((factor, statics), own) in self.factors.all.iter().zip(&self.load.resultants).zip(&rates.own) {
+            for i in 0..3 {
+                worst = worst.max((given(statics, i, &rates.share) - factor.joint.resultant(i, own)).abs());
+            }
+        }
+        worst
+    }
+
+    /// The worst relative residual of the rates, with what they leave of the equations of every joint. `sizes`: of
+    /// forces and motions.
+    pub fn examined(&self, load: &Load, [forces, motions]: [f64; 2]) -> Option<(f64, Vec<DMatrix<f64>>)> {
+        let rates = self.rates.as_ref()?;
+        let mut worst = 0.0f64;
+        let mut left = Vec::with_capacity(rates.own.len());
+        for (e, factor) in self.factors.all.iter().enumerate() {
+            let (joint, own) = (&factor.joint, &rates.own[e]);
+            let m = 2 * joint.contacts.len();
+            let mut gap = joint.gaps(e, &|e: usize| rates.own[e].as_slice());
+            gap.iter_mut().zip(joint.contacts.iter().flat_map(|c| load.gap[*c])).for_each(|(g, load)| *g += load);
+            let mut all = vec![0.0; m + 3];
+            for (p, rows) in factor.rows.iter().enumerate() {
+                let (force, gap) = ([own[2 * p], own[2 * p + 1]], [gap[2 * p], gap[2 * p + 1]]);
+                for (i, row) in rows.iter().enumerate() {
+                    let (by_force, by_gap) = (row[0] * force[0] + row[1] * force[1], row[2] * gap[0] + row[3] * gap[1]);
+                    worst = worst.max(by_force.abs() / forces).max(by_gap.abs() / motions);
+                    all[2 * p + i] = -(by_force + by_gap);
+                }
+            }
+            for i in 0..3 {
+                all[m + i] = given(&self.load.resultants[e], i, &rates.share) - joint.resultant(i, own);
+                worst = worst.max(all[m + i].abs() / forces);
+            }
+            left.push(DMatrix::from_vec(m + 3, 1, all));
+        }
+        Some((worst, left))
+    }
+
+    /// Takes away what is left of the equations. Returns the rates before. `None` near a mechanism.
+    pub fn refine(&mut self, left: Vec<DMatrix<f64>>) -> Option<ChainRates> {
+        let before = self.rates.clone()?;
+        let added = self.factors.solve(left);
+        let share = self.closing(&Open::Refined(&before.own, &added))?;
+        let rates = self.rates.as_mut()?;
+        rates.own.iter_mut().zip(&added).for_each(|(own, added)| own.iter_mut().zip(added).for_each(|(o, a)| *o += a));
+        rates.add(&self.columns.responses, share);
+        Some(before)
+    }
+
+    /// Puts rates in the place of the present ones, or forgets these.
+    pub fn set_rates(&mut self, rates: Option<ChainRates>) {
+        self.rates = rates;
+    }
+
+    /// The present rates have been examined: as if after so many corrections.
+    pub fn checked(&mut self, unchecked: usize) {
+        self.rates.iter_mut().for_each(|rates| rates.unchecked = unchecked);
+    }
+
+    /// All unknowns of the system from what the joints do.
+    fn unknowns(&self, system: &System, own: &[Vec<f64>]) -> Vec<f64> {
+        let mut x = vec![0.0; system.size()];
+        let mut twists = vec![Vector3::zeros(); own.len()];
+        for (factor, own) in self.factors.all.iter().zip(own) {
+            let m = 2 * factor.joint.contacts.len();
+            for (p, c) in factor.joint.contacts.iter().enumerate() {
+                x[2 * c..2 * c + 2].copy_from_slice(&own[2 * p..2 * p + 2]);
+            }
+            twists[factor.joint.section] = Vector3::new(own[m], own[m + 1], own[m + 2]);
+        }
+        for (b, motion) in self.sections.motions(&twists).into_iter().enumerate() {
+            x[2 * system.contacts + 3 * b..][..3].copy_from_slice(&motion);
+        }
+        x
+    }
+}
+
+/// What a force and a gap leave of the two equations of a point.
+fn left_of(rows: &[[f64; 4]; 2], force: [f64; 2], gap: [f64; 2]) -> [f64; 2] {
+    rows.map(|row| -(row[0] * force[0] + row[1] * force[1] + row[2] * gap[0] + row[3] * gap[1]))
+}
+
+/// A component of the resultant that redundants and load give.
+fn given(statics: &Matrix3xX<f64>, i: usize, share: &DVector<f64>) -> f64 {
+    (0..statics.ncols()).map(|j| statics[(i, j)] * share[j]).sum()
+}
+
+/// One column.
+fn column(columns: &DMatrix<f64>, j: usize) -> &[f64] {
+    &columns.as_slice()[columns.nrows() * j..columns.nrows() * (j + 1)]
+}

@@ -1,0 +1,198 @@
+//! A joint of the chain: which points it has, what they feel of each other and of the joints beside them.
+
+use super::sections::{Section, Sections};
+use crate::contact::mode::ContactMode;
+use crate::linear::dense::{add_product, dot};
+use crate::path::system::System;
+use crate::settings::SETTINGS;
+use nalgebra::{DMatrix, Vector3};
+use std::rc::Rc;
+
+/// Kinds of matrices that are looked through.
+const KINDS: usize = 16;
+
+/// A joint.
+pub struct Joint {
+    /// Index of its section.
+    pub section: usize,
+    /// Its contact points.
+    pub contacts: Vec<usize>,
+    /// H of all of them.
+    pub by_twist: DMatrix<f64>,
+    /// Gaps from the joint's own forces.
+    pub own: Rc<DMatrix<f64>>,
+    /// Gaps from the forces of the joint before, where a voussoir lies between them.
+    pub before: Option<Rc<DMatrix<f64>>>,
+    /// The same of the joint after.
+    pub after: Option<Rc<DMatrix<f64>>>,
+    /// The three the other way round, so that the gap of one point reads columns.
+    rows: [Option<Rc<DMatrix<f64>>>; 3],
+    /// κ.
+    pub spring: Vector3<f64>,
+}
+
+/// Order of the sections in which each feels its neighbours only, and where a chain of them begins. `None` where there
+/// is no such order.
+fn ordered(system: &System, sections: &Sections) -> Option<Vec<(usize, bool)>> {
+    let mut beside: Vec<Vec<usize>> = vec![Vec::new(); sections.all.len()];
+    for (e, section) in sections.all.iter().enumerate() {
+        let rows = section.places.iter().flat_map(|p| [2 * p.contact, 2 * p.contact + 1]);
+        let felt = rows.flat_map(|row| system.flexibility.row(row)).map(|entry| sections.of[entry.0 / 2]);
+        beside[e].extend(felt.filter(|other| *other != e));
+        beside[e].sort_unstable();
+        beside[e].dedup();
+        if beside[e].len() > 2 {
+            return None;
+        }
+    }
+    let mut order: Vec<(usize, bool)> = Vec::with_capacity(beside.len());
+    let mut met = vec![false; beside.len()];
+    for end in (0..beside.len()).filter(|e| beside[*e].len() < 2) {
+        let mut next = Some(end).filter(|e| !met[*e]);
+        let mut begins = true;
+        while let Some(e) = next {
+            met[e] = true;
+            order.push((e, begins));
+            begins = false;
+            next = beside[e].iter().copied().find(|other| !met[*other]);
+        }
+    }
+    (order.len() == beside.len()).then_some(order)
+}
+
+/// Gaps at the points of a section from forces at those of another.
+fn felt(system: &System, at: &Section, from: &Section, place: &[usize]) -> DMatrix<f64> {
+    let mut block = DMatrix::zeros(2 * at.places.len(), 2 * from.places.len());
+    let own: Vec<usize> = from.places.iter().map(|p| p.contact).collect();
+    for (k, p) in at.places.iter().enumerate() {
+        for i in 0..2 {
+            for &(j, value) in system.flexibility.row(2 * p.contact + i) {
+                if own.get(place[j / 2]) == Some(&(j / 2)) {
+                    block[(2 * k + i, 2 * place[j / 2] + j % 2)] += value;
+                }
+            }
+        }
+    }
+    block
+}
+
+/// Matrices that differ by rounding only are one: those of congruent voussoirs then stay in the cache.
+#[derive(Default)]
+struct Shared(Vec<Rc<DMatrix<f64>>>);
+
+impl Shared {
+    fn of(&mut self, matrix: DMatrix<f64>) -> Rc<DMatrix<f64>> {
+        let size = matrix.amax();
+        let same = |other: &&Rc<DMatrix<f64>>| {
+            other.shape() == matrix.shape()
+                && other.iter().zip(&matrix).all(|(a, b)| (a - b).abs() <= SETTINGS.negligible() * size)
+        };
+        if let Some(known) = self.0.iter().find(same) {
+            return known.clone();
+        }
+        let new = Rc::new(matrix);
+        if self.0.len() < KINDS {
+            self.0.push(new.clone());
+        }
+        new
+    }
+}
+
+/// The joints in their order, and the place (joint, position in it) of every contact point.
+pub type Ordered = (Vec<Joint>, Vec<(usize, usize)>);
+
+/// The joints of chains. `None` where sections do
+/// not form chains, or where nothing gives way in one.
+pub fn joints(system: &System, sections: &Sections) -> Option<Ordered> {
+    let order = ordered(system, sections)?;
+    let mut within = vec![usize::MAX; system.contacts];
+    for section in &sections.all {
+        section.places.iter().enumerate().for_each(|(k, p)| within[p.contact] = k);
+    }
+    let mut places = vec![(0, 0); system.contacts];
+    let (mut all, mut kinds, mut turned) = (Vec::with_capacity(order.len()), Shared::default(), Shared::default());
+    for (position, &(e, begins)) in order.iter().enumerate() {
+        let section = &sections.all[e];
+        let n = section.places.len();
+        for (k, p) in section.places.iter().enumerate() {
+            places[p.contact] = (position, k);
+        }
+        let by_twist = DMatrix::from_fn(2 * n, 3, |i, j| section.places[i / 2].rows[(i % 2, j)]);
+        let own = felt(system, section, section, &within);
+        let stuck = own.clone().cholesky()?.solve(&by_twist);
+        let stiffness = by_twist.transpose() * stuck;
+        let last = order.get(position + 1).is_none_or(|next| next.1);
+        let beside = |other: usize| felt(system, section, &sections.all[order[other].0], &within);
+        let own = kinds.of(own);
+        let before = (!begins).then(|| kinds.of(beside(position - 1)));
+        let after = (!last).then(|| kinds.of(beside(position + 1)));
+        let rows = [Some(&own), before.as_ref(), after.as_ref()];
+        let rows = rows.map(|block| block.map(|block| turned.of(block.transpose())));
+        all.push(Joint {
+            rows,
+            section: e,
+            contacts: section.places.iter().map(|p| p.contact).collect(),
+            by_twist,
+            own,
+            before,
+            after,
+            spring: Vector3::from_fn(|i, _| SETTINGS.spring * stiffness[(i, i)]),
+        });
+    }
+    Some((all, places))
+}
+
+/// The rows of points in their modes.
+pub type ModeRows = Vec<[[f64; 4]; 2]>;
+
+impl Joint {
+    /// Number of its equations.
+    pub fn size(&self) -> usize {
+        2 * self.contacts.len() + 3
+    }
+
+    /// Rows of its points in given modes of all points. `None` where there is no such facet.
+    pub fn rows(&self, system: &System, modes: &[ContactMode]) -> Option<ModeRows> {
+        self.contacts.iter().map(|c| system.rows(*c, modes[*c])).collect()
+    }
+
+    /// Whether it may have no room for a resultant.
+    pub fn is_weak(&self, modes: &[ContactMode]) -> bool {
+        self.contacts.iter().filter(|c| modes[**c] == ContactMode::Stick).count() < 2
+    }
+
+    /// Gaps of its points, it being joint `e`, by what the joints do.
+    pub fn gaps<'a>(&self, e: usize, of: &dyn Fn(usize) -> &'a [f64]) -> Vec<f64> {
+        let m = 2 * self.contacts.len();
+        let mut gaps = vec![0.0; m];
+        add_product(&mut gaps, &self.own, &of(e)[..m]);
+        add_product(&mut gaps, &self.by_twist, &of(e)[m..]);
+        for (block, other) in [(&self.before, e.wrapping_sub(1)), (&self.after, e + 1)] {
+            if let Some(block) = block {
+                add_product(&mut gaps, block, &of(other)[..block.ncols()]);
+            }
+        }
+        gaps
+    }
+
+    /// Gap of one of its points.
+    pub fn gap<'a>(&self, e: usize, p: usize, of: &dyn Fn(usize) -> &'a [f64]) -> [f64; 2] {
+        let m = 2 * self.contacts.len();
+        let row = |k: usize, i: usize, e: usize| {
+            let block = self.rows[k].as_ref()?;
+            let row = &block.as_slice()[block.nrows() * (2 * p + i)..][..block.nrows()];
+            Some(dot(row, &of(e)[..row.len()]))
+        };
+        [0, 1].map(|i| {
+            let twist: f64 = (0..3).map(|j| self.by_twist[(2 * p + i, j)] * of(e)[m + j]).sum();
+            let beside = row(1, i, e.wrapping_sub(1)).unwrap_or(0.0) + row(2, i, e + 1).unwrap_or(0.0);
+            row(0, i, e).unwrap_or(0.0) + twist + beside
+        })
+    }
+
+    /// A component of the resultant of its forces.
+    pub fn resultant(&self, i: usize, forces: &[f64]) -> f64 {
+        let rows = self.by_twist.nrows();
+        dot(&self.by_twist.as_slice()[i * rows..(i + 1) * rows], &forces[..rows])
+    }
+}

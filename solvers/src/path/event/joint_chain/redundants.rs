@@ -1,0 +1,125 @@
+//! The few equations that are left of a rate problem: compatibility of the cycles, and the twists of weak joints.
+
+use super::factors::Factor;
+use super::rates::ChainRates;
+use super::sections::Sections;
+use crate::settings::SETTINGS;
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+
+/// Joints with a twist of their own above which the whole system is asked.
+pub const MOST_WEAK: usize = 24;
+
+/// Twist of a joint in a column of its unknowns.
+fn twist(factor: &Factor, columns: &DMatrix<f64>, column: usize) -> Vector3<f64> {
+    let m = 2 * factor.joint.contacts.len();
+    Vector3::from_fn(|i, _| columns[(m + i, column)])
+}
+
+/// What the redundants close: the rates for λ̇ = 1, or what a step of refinement leaves.
+pub enum Open<'a> {
+    /// The load alone.
+    Load,
+    /// Rates of the joints, and what right-hand sides of their own equations add to them.
+    Refined(&'a [Vec<f64>], &'a [DMatrix<f64>]),
+    /// Rates whose joints satisfy their own equations with the resultants that they had.
+    Corrected(&'a ChainRates),
+}
+
+/// Factors of the columns of all responses that close the cycles and give weak joints their twists: redundants, then
+/// λ̇, then twists of the `weak` joints. `None` near a mechanism.
+pub fn closing(
+    sections: &Sections,
+    factors: &[Factor],
+    responses: &[DMatrix<f64>],
+    weak: &[usize],
+    open: &Open,
+) -> Option<DVector<f64>> {
+    let n = 3 * sections.cycles;
+    let size = n + 3 * weak.len();
+    let column = |j: usize| if j < n { j } else { j + 1 };
+    let mut matrix: DMatrix<f64> = DMatrix::zeros(size, size);
+    let mut right: DVector<f64> = DVector::zeros(size);
+    for (e, factor) in factors.iter().enumerate() {
+        let section = &sections.all[factor.joint.section];
+        let to_origin: Matrix3<f64> = section.to_centre.transpose();
+        let m = 2 * factor.joint.contacts.len();
+        let w = weak.iter().position(|w| *w == e);
+        let own = |own: &[Vec<f64>]| Vector3::new(own[e][m], own[e][m + 1], own[e][m + 2]);
+        let (constant, before) = match open {
+            Open::Load => (twist(factor, &responses[e], n), Vector3::zeros()),
+            Open::Refined(rates, added) => (twist(factor, &added[e], 0), own(rates)),
+            Open::Corrected(rates) => {
+                let given = w.map(|w| Vector3::from_fn(|i, _| rates.share[n + 1 + 3 * w + i]));
+                let twist = own(&rates.own);
+                (twist - given.unwrap_or(twist), given.unwrap_or(twist))
+            }
+        };
+        if section.shares.iter().any(|s| *s != 0.0) {
+            let shares = || section.shares.iter().enumerate().filter(|s| *s.1 != 0.0);
+            for j in 0..size {
+                let v = to_origin * twist(factor, &responses[e], column(j));
+                shares().for_each(|(k, share)| (0..3).for_each(|i| matrix[(3 * k + i, j)] += share * v[i]));
+            }
+            let constant = to_origin * (constant + before);
+            shares().for_each(|(k, share)| (0..3).for_each(|i| right[3 * k + i] -= share * constant[i]));
+        }
+        if let Some(w) = w {
+            let at = n + 3 * w;
+            for i in 0..3 {
+                for j in 0..size {
+                    matrix[(at + i, j)] = twist(factor, &responses[e], column(j))[i];
+                }
+                matrix[(at + i, at + i)] -= 1.0;
+                right[at + i] = -constant[i];
+            }
+        }
+    }
+    let solved = solved(matrix, &right)?;
+    let load = if matches!(open, Open::Load) { 1.0 } else { 0.0 };
+    Some(DVector::from_fn(size + 1, |j, _| match j.cmp(&n) {
+        std::cmp::Ordering::Less => solved[j],
+        std::cmp::Ordering::Equal => load,
+        std::cmp::Ordering::Greater => solved[j - 1],
+    }))
+}
+
+/// The solution of a small system: rows and columns scaled to one, full pivoting, one step of refinement. `None` if the
+/// matrix is singular to rounding.
+fn solved(matrix: DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
+    let n = matrix.nrows();
+    if n == 0 {
+        return Some(DVector::zeros(0));
+    }
+    let mut scaled = matrix;
+    let (mut rows, mut columns) = (vec![1.0; n], vec![1.0; n]);
+    for _ in 0..3 {
+        for (i, all) in rows.iter_mut().enumerate() {
+            let size = scaled.row(i).amax().sqrt();
+            if size == 0.0 || !size.is_finite() {
+                return None;
+            }
+            scaled.row_mut(i).unscale_mut(size);
+            *all *= size;
+        }
+        for (j, all) in columns.iter_mut().enumerate() {
+            let size = scaled.column(j).amax().sqrt();
+            if size == 0.0 || !size.is_finite() {
+                return None;
+            }
+            scaled.column_mut(j).unscale_mut(size);
+            *all *= size;
+        }
+    }
+    let right = DVector::from_fn(n, |i, _| right[i] / rows[i]);
+    let lu = scaled.clone().full_piv_lu();
+    let pivots = lu.u().diagonal().abs();
+    if pivots.min() <= SETTINGS.shift() * pivots.max() {
+        return None;
+    }
+    let mut x = lu.solve(&right)?;
+    x += lu.solve(&(&right - &scaled * &x))?;
+    let size = (0..n).map(|i| (0..n).map(|j| (scaled[(i, j)] * x[j]).abs()).sum::<f64>()).fold(right.amax(), f64::max);
+    let left = (&right - &scaled * &x).amax();
+    (left <= SETTINGS.residual() * size && x.iter().all(|v| v.is_finite()))
+        .then(|| DVector::from_fn(n, |j, _| x[j] / columns[j]))
+}

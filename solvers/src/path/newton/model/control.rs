@@ -1,0 +1,22 @@
+//! What fixes a step: a factor, or a length along a row of the unknowns. The strategies' monitors.
+
+use std::rc::Rc;
+use voussoir_core::model::geometry::Vec2;
+
+/// What fixes a step.
+#[derive(Debug, Clone)]
+pub enum Control {
+    /// λ itself.
+    Factor(f64),
+    /// Along a row over the scaled unknowns: row · (x − x_start) = length.
+    Along { row: Rc<Vec<f64>>, length: f64 },
+}
+
+/// A monitor of a problem.
+#[derive(Debug, Clone, Default)]
+pub struct MonitorWeights {
+    /// Contact points with the weights of their normal gaps.
+    pub gaps: Vec<(usize, f64)>,
+    /// A body, a point of it and a direction.
+    pub point: Option<(usize, Vec2, Vec2)>,
+}

@@ -1,0 +1,98 @@
+//! The factorised equations of contact modes, and what one factorisation leaves to the next.
+
+use super::equations::Equations;
+use crate::contact::mode::ContactMode;
+use crate::linear::bordered::BorderedFactors;
+use crate::linear::chain::ChainFactors;
+use crate::linear::condensed::{Condensed, Elimination};
+use crate::linear::factorised::Factorised;
+use std::cell::RefCell;
+use std::collections::{BTreeMap, VecDeque};
+use std::rc::Rc;
+
+/// Factorised equations of contact modes.
+pub enum ModeEquations {
+    /// Whatever bodies stand beside each other.
+    Sparse(Condensed),
+    /// Of elastic bodies in a chain.
+    Chain(ChainFactors),
+}
+
+impl ModeEquations {
+    /// Unknowns from the `first` that is no force, for right-hand sides that the rows of contact points have none of.
+    pub fn motions(&self, first: usize, rights: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
+        match self {
+            ModeEquations::Chain(factors) => factors.motions(rights),
+            ModeEquations::Sparse(factors) => {
+                let size = rights.first().map_or(first, Vec::len);
+                let found = factors.condense(rights)?;
+                Some(found.iter().map(|y| (first..size).map(|j| factors.other(j, y)).collect()).collect())
+            }
+        }
+    }
+}
+
+impl Factorised for ModeEquations {
+    fn apply(&self, right: &[f64]) -> Option<Vec<f64>> {
+        match self {
+            ModeEquations::Sparse(factors) => factors.apply(right),
+            ModeEquations::Chain(factors) => factors.apply(right),
+        }
+    }
+
+    fn errors(&self, right: &[f64], x: &[f64]) -> (Vec<f64>, f64) {
+        match self {
+            ModeEquations::Sparse(factors) => factors.errors(right, x),
+            ModeEquations::Chain(factors) => factors.errors(right, x),
+        }
+    }
+
+    fn last_row_dot(&self, x: &[f64]) -> f64 {
+        match self {
+            ModeEquations::Sparse(factors) => factors.last_row_dot(x),
+            ModeEquations::Chain(factors) => factors.last_row_dot(x),
+        }
+    }
+}
+
+/// Factors with what they are of.
+pub struct Kept {
+    pub equations: Rc<Equations>,
+    pub modes: Vec<ContactMode>,
+    /// Normals and flows of the laws' facets.
+    pub directions: Vec<[f64; 4]>,
+    /// Rate of viscous wrenches.
+    pub damping: f64,
+    pub held: Rc<BorderedFactors<ModeEquations>>,
+    /// What unit right-hand sides of the two rows of contact points give, an unknown held in the control's place.
+    pub responses: RefCell<BTreeMap<usize, [Vec<f64>; 2]>>,
+}
+
+/// Factors that are held: of the beginning and the end of a step, and of what lies between.
+const HELD: usize = 4;
+
+/// What factorisations leave to the next.
+#[derive(Default)]
+pub struct LastFactors {
+    /// The last ones, where nothing but modes and laws makes the matrix; the latest first.
+    held: VecDeque<Rc<Kept>>,
+    pub elimination: Elimination,
+}
+
+impl LastFactors {
+    /// Another load grows, or factors have not served.
+    pub fn forget(&mut self) {
+        self.held.clear();
+    }
+
+    /// Holds factors.
+    pub fn hold(&mut self, kept: Kept) {
+        self.held.push_front(Rc::new(kept));
+        self.held.truncate(HELD);
+    }
+
+    /// All that are held.
+    pub fn held(&self) -> impl Iterator<Item = &Rc<Kept>> {
+        self.held.iter()
+    }
+}

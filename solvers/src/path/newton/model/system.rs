@@ -1,0 +1,277 @@
+//! The system of a step as data: units, laws, loads, geometry; and what the last evaluations leave to the next.
+
+use super::blocks::{YieldingBlock, undeformed};
+use super::control::MonitorWeights;
+use super::derivatives::Gradient;
+use super::equations::Equations;
+use super::factors::LastFactors;
+use super::geometry::Geometry;
+use super::kinematics::{gradient, hessian};
+use super::loads::StagedLoads;
+use super::state::State;
+use super::tractions::{Responses, TractionUpdates};
+use crate::contact::mode::ContactMode;
+use crate::contact::yield_polygon::YieldPolygon;
+use crate::linear::condensed::Elimination;
+use crate::path::system::{Load, System, Units};
+use crate::settings::SETTINGS;
+use std::cell::RefCell;
+use std::collections::VecDeque;
+use std::rc::Rc;
+use voussoir_core::law::TractionPoint;
+use voussoir_core::limit::Counters;
+use voussoir_core::path::PathProblem;
+
+/// Laws of the contact points.
+pub struct Laws {
+    /// Of facets, each once.
+    pub polygons: Vec<YieldPolygon>,
+    /// For each contact point the index of its polygon.
+    pub polygon_of: Vec<Option<usize>>,
+    /// Of tractions from gaps.
+    pub responses: Responses,
+    /// Undeformed bodies whose material yields.
+    undeformed: Vec<Option<YieldingBlock>>,
+}
+
+/// Work and failures of the last steps. People read it, the solver does not.
+#[derive(Default)]
+pub struct Report {
+    pub counters: Counters,
+    /// Greatest relative residual of each iteration of the last step that was tried.
+    pub residuals: Vec<f64>,
+    /// The reason why a law or a block gave no stresses last.
+    pub failure: Option<String>,
+}
+
+/// Places whose equations are held: the beginning and the end of a step, and what lies between.
+const PLACES: usize = 4;
+
+/// What is computed once for many iterations.
+#[derive(Default)]
+pub struct Cache {
+    /// Gaps and balance of linear blocks with small displacements, of the present load step.
+    pub equations: Option<Rc<Equations>>,
+    /// The last ones of finite displacements or blocks that yield, with the states that they are of; the latest first.
+    pub at: VecDeque<(State, Rc<Equations>)>,
+    /// The last gradient, with the state that it is of.
+    pub gradient: RefCell<Option<(State, Rc<Gradient>)>>,
+    pub factors: LastFactors,
+}
+
+/// The system of a step.
+pub struct StepSystem<'a> {
+    pub problem: &'a PathProblem,
+    pub geometry: Geometry<'a>,
+    pub laws: Laws,
+    /// The problem in its units, with the unit of the factor that grows now.
+    pub scaled: System,
+    pub loads: StagedLoads<'a>,
+    pub cache: Cache,
+    /// What the strategy watches.
+    pub monitors: Vec<MonitorWeights>,
+    pub report: Report,
+    /// Relative tolerance of loads.
+    pub tolerance: f64,
+}
+
+/// What laws of tractions from gaps add to the compliance of contact points before anything has moved.
+fn softening(problem: &PathProblem, responses: &Responses) -> Result<Vec<[f64; 2]>, String> {
+    let untouched = responses.update(&vec![[0.0; 2]; problem.contacts.len()], &problem.untouched())?;
+    let of_point = |(point, c): (&TractionPoint, &voussoir_core::path::Contact)| {
+        [0, 1].map(|k| {
+            let stiffness = -point.tangent[k][k] * c.area;
+            if stiffness > 0.0 { 1.0 / stiffness } else { 0.0 }
+        })
+    };
+    Ok(untouched.points.iter().zip(&problem.contacts).map(of_point).collect())
+}
+
+impl<'a> StepSystem<'a> {
+    pub fn new(problem: &'a PathProblem, finite: bool) -> Result<Self, String> {
+        let responses = Responses::new(problem);
+        let softening = softening(problem, &responses)?;
+        let own = |c: usize| softening.get(c).copied().filter(|_| responses.is(c)).unwrap_or_default();
+        let scaled = System::new(problem, own);
+        if scaled.compliance.iter().flatten().all(|c| *c <= 0.0) {
+            return Err("nothing in the scene deforms: rigid blocks without joint compliance have no path before their collapse; limit analysis answers that".into());
+        }
+        let mut cache = Cache::default();
+        cache.factors.elimination = Elimination::along(scaled.chain.clone());
+        let (facets, polygon_of) = problem.shared_facets();
+        let polygons = facets.into_iter().map(YieldPolygon::new).collect();
+        Ok(StepSystem {
+            geometry: Geometry::new(problem, finite),
+            problem,
+            laws: Laws { polygons, polygon_of, responses, undeformed: undeformed(problem)? },
+            scaled,
+            loads: StagedLoads::new(Vec::new(), &problem.load_steps[0].loading, 0.0),
+            report: Report::default(),
+            tolerance: SETTINGS.admissible,
+            cache,
+            monitors: Vec::new(),
+        })
+    }
+
+    /// Relative residual of a state that is found. The error of a load is about the residual divided by the remaining stiffness, so
+    /// that residuals are kept four orders of magnitude below the tolerance of loads, but not below rounding.
+    pub fn found(&self) -> f64 {
+        (SETTINGS.fine * self.tolerance).clamp(SETTINGS.rounding, SETTINGS.inequality())
+    }
+
+    /// Units of the unknowns.
+    pub fn units(&self) -> Units {
+        self.scaled.units
+    }
+
+    /// Number of unknowns.
+    pub fn size(&self) -> usize {
+        self.scaled.size() + 1
+    }
+
+    /// Begins a load step.
+    pub fn load(&mut self, loads: StagedLoads<'a>) {
+        self.scaled.units.factor = self.scaled.units.of_factor(self.problem, loads.growing);
+        self.loads = loads;
+        self.cache.equations = None;
+        self.cache.at.clear();
+        self.cache.gradient.take();
+        self.cache.factors.forget();
+    }
+
+    /// Adds to a counter of the work done.
+    pub fn count(&mut self, what: &str, by: u64) {
+        *self.report.counters.entry(what.into()).or_default() += by;
+    }
+
+    /// Whether equilibrium is that of displaced positions.
+    pub fn finite(&self) -> bool {
+        self.geometry.finite
+    }
+
+    /// Whether with small displacements every law is one of facets.
+    pub fn piecewise_linear(&self) -> bool {
+        self.laws.responses.is_empty() && self.laws.undeformed.iter().all(Option::is_none)
+    }
+
+    /// Returns true if the present load step moves supports and adds no load.
+    pub fn settles(&self) -> bool {
+        self.problem.load_size(self.loads.growing) == 0.0
+    }
+
+    /// Whether factors may serve equations that are near theirs: those of a chain of elastic blocks with laws of facets.
+    pub fn solves_nearby(&self) -> bool {
+        self.piecewise_linear() && self.scaled.chain.is_some() && self.geometry.pattern.couples()
+    }
+
+    /// Forces and a factor that are rounding of the loads become nothing (small displacements). A law of tractions has given its own.
+    pub fn drop_rounding(&self, state: &mut State, start: f64) {
+        let u = self.scaled.units;
+        let largest = state.force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
+        if self.loads.earlier.is_empty()
+            && self.laws.responses.is_empty()
+            && largest <= 1e-10 * u.force
+            && (state.factor - start).abs() <= 1e-10 * u.factor
+        {
+            state.force.fill([0.0; 2]);
+            state.factor = start;
+        }
+    }
+
+    /// The state before anything has moved.
+    pub fn undeformed(&self) -> State {
+        let points = self.problem.contacts.len();
+        let motion = vec![[0.0; 3]; self.problem.bodies.len()];
+        let mut state = State {
+            force: vec![[0.0; 2]; points],
+            gap: self.problem.contacts.iter().map(|c| [c.gap, 0.0]).collect(),
+            motion,
+            factor: 0.0,
+            mode: vec![ContactMode::Stick; points],
+            slip: vec![[0.0; 2]; points],
+            updates: TractionUpdates { memory: self.problem.untouched(), ..TractionUpdates::default() },
+            blocks: self.laws.undeformed.clone(),
+        };
+        // The update of untouched joints has succeeded in `new`.
+        if let Ok(updates) = self.laws.responses.update(&state.gap, &state.updates.memory) {
+            state.updates = updates;
+        }
+        state
+    }
+
+    /// The facets of a contact point, where its law has that form.
+    pub fn law(&self, contact: usize) -> Option<&YieldPolygon> {
+        self.laws.polygon_of[contact].map(|law| &self.laws.polygons[law])
+    }
+
+    /// ρ of a contact point: the inverse of its own compliance \[N/m\].
+    pub fn stiffness(&self, contact: usize) -> [f64; 2] {
+        let mean = self.scaled.units.displacement / self.scaled.units.force;
+        self.scaled.compliance[contact].map(|own| 1.0 / if own > 1e-9 * mean { own } else { mean })
+    }
+
+    /// Motions with the held bodies where their settlements put them.
+    pub fn settle(&self, motion: &mut [[f64; 3]], factor: f64) {
+        let settled = self.loads.at(factor).settled(motion.len());
+        for (body, motion) in motion.iter_mut().enumerate() {
+            if self.scaled.free[body].is_none() {
+                *motion = settled[body];
+            }
+        }
+    }
+
+    /// First derivatives of Π at a state.
+    pub fn gradient(&self, state: &State) -> Rc<Gradient> {
+        let mut last = self.cache.gradient.borrow_mut();
+        if let Some((_, found)) = last.as_ref().filter(|(at, _)| at.is_at_place_of(state)) {
+            return found.clone();
+        }
+        let loads = self.loads.at(state.factor);
+        let found = Rc::new(gradient(&self.geometry, &state.place(&loads)));
+        *last = Some((state.clone(), found.clone()));
+        found
+    }
+
+    /// Gaps and balance linearised at a state.
+    pub fn equations(&mut self, state: &State) -> Rc<Equations> {
+        if self.finite() || state.yields() {
+            let known = self.cache.at.iter().position(|(at, _)| at.is_at_place_of(state));
+            let own = match known.and_then(|known| self.cache.at.remove(known)) {
+                Some(own) => own,
+                None => {
+                    let (gradient, loads) = (self.gradient(state), self.loads.at(state.factor));
+                    let hessian = hessian(&self.geometry, &state.place(&loads), &gradient);
+                    self.count("assemblies", 1);
+                    (state.clone(), Rc::new(Equations::new(&self.scaled, hessian)))
+                }
+            };
+            let equations = own.1.clone();
+            self.cache.at.push_front(own);
+            self.cache.at.truncate(PLACES);
+            return equations;
+        }
+        let linear = || {
+            let load = Load::new(&self.scaled, self.problem, self.loads.growing);
+            Rc::new(Equations::linear(&self.scaled, &load, self.geometry.pattern.clone()))
+        };
+        self.cache.equations.get_or_insert_with(linear).clone()
+    }
+
+    /// Δg of a step at a contact point.
+    pub fn step_gap(&self, start: &State, state: &State, contact: usize) -> [f64; 2] {
+        [state.gap[contact][0] - start.slip[contact][0], state.gap[contact][1] - start.slip[contact][1]]
+    }
+
+    /// The irreversible gaps and the plastic strains of a step become history.
+    pub fn keep(&self, start: &State, state: &mut State) {
+        state.blocks.iter_mut().flatten().for_each(|inner| inner.base = inner.linear.end.clone());
+        for c in 0..state.gap.len() {
+            let gap = self.step_gap(start, state, c);
+            state.slip[c] = start.slip[c];
+            if let Some(law) = self.law(c) {
+                let (kept, _) = law.irreversible(state.mode[c], gap);
+                (0..2).for_each(|k| state.slip[c][k] += kept[k]);
+            }
+        }
+    }
+}

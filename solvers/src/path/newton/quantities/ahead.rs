@@ -1,0 +1,39 @@
+//! One-sided tangents: a point at its strength is stiff on one side of a state and yields or softens on the other.
+
+use super::inelastic::update_blocks;
+use super::measure::fastest;
+use crate::path::newton::model::state::{State, Tangent, moved};
+use crate::path::newton::model::system::StepSystem;
+use crate::settings::SETTINGS;
+
+/// Length along a rate of size 1 at which the tangents of a state are taken: beyond the rounding of its motions.
+pub fn length_ahead(system: &StepSystem, state: &State) -> f64 {
+    SETTINGS.distinct() * (fastest(system, &state.motion) / system.units().displacement).max(1.0)
+}
+
+/// The state with blocks and laws of tractions that have the tangents of a place a short length ahead along a rate of size 1. `None` if the
+/// laws give no stresses there.
+pub fn facing_ahead(system: &mut StepSystem, state: &State, rate: &Tangent) -> Option<State> {
+    let (mut facing, length) = (state.clone(), length_ahead(system, state));
+    if !state.blocks.is_empty() {
+        let mut ahead = moved(state, rate, length);
+        update_blocks(system, &mut ahead).ok()?;
+        facing.blocks = ahead.blocks;
+    }
+    if !system.laws.responses.is_empty() {
+        system.count("law_evaluations", system.laws.responses.count());
+        let speed = |rate: &[f64; 2]| rate[0].hypot(rate[1]);
+        let fastest = rate.gap.iter().map(speed).fold(0.0, f64::max);
+        let mut gap = state.gap.clone();
+        for (own, rate) in gap.iter_mut().zip(&rate.gap) {
+            (0..2).for_each(|k| own[k] += length * rate[k]);
+        }
+        let ahead = system.laws.responses.update(&gap, &state.updates.memory).ok()?;
+        for ((own, ahead), rate) in facing.updates.points.iter_mut().zip(&ahead.points).zip(&rate.gap) {
+            if speed(rate) > SETTINGS.active * fastest {
+                (own.tangent, own.branch) = (ahead.tangent, ahead.branch);
+            }
+        }
+    }
+    Some(facing)
+}

@@ -1,0 +1,49 @@
+//! The last row of the linear equations of a step: the gradient of its control.
+
+use crate::path::newton::model::control::Control;
+use crate::path::newton::model::equations::Equations;
+use crate::path::newton::model::state::State;
+use crate::path::newton::model::system::StepSystem;
+
+/// The gradient of a control over the scaled unknowns.
+pub fn control_row(system: &StepSystem, control: &Control) -> Vec<f64> {
+    match control {
+        Control::Along { row, .. } => row.to_vec(),
+        Control::Factor(_) => {
+            let mut row = vec![0.0; system.size()];
+            row[system.size() - 1] = 1.0;
+            row
+        }
+    }
+}
+
+/// Distance of a state from the aim of a control.
+pub fn control_value(system: &StepSystem, start: &State, state: &State, control: &Control) -> f64 {
+    match control {
+        Control::Factor(target) => (state.factor - target) / system.units().factor,
+        Control::Along { row, length } => along(system, start, state, row) - length,
+    }
+}
+
+/// Adds weighted gaps to a row over the scaled unknowns.
+pub fn add_weighted_gaps(system: &StepSystem, row: &mut [f64], by_gap: &[f64], equations: &Equations) {
+    if by_gap.iter().all(|w| *w == 0.0) {
+        return;
+    }
+    let weights: Vec<f64> = by_gap.iter().map(|weight| weight * system.units().displacement).collect();
+    equations.gaps.add_weighted(&weights, row);
+}
+
+/// row · (x − x_start) over the scaled motions and the scaled factor.
+fn along(system: &StepSystem, start: &State, state: &State, row: &[f64]) -> f64 {
+    let u = system.units();
+    let first = 2 * system.scaled.contacts;
+    let of_body = |(body, free): (usize, &Option<usize>)| -> f64 {
+        let Some(free) = free else { return 0.0 };
+        let unit = u.motion();
+        let moved = |k: usize| (state.motion[body][k] - start.motion[body][k]) / unit[k];
+        (0..3).map(|k| row[first + 3 * free + k] * moved(k)).sum()
+    };
+    let motions: f64 = system.scaled.free.iter().enumerate().map(of_body).sum();
+    motions + row[row.len() - 1] * (state.factor - start.factor) / u.factor
+}

@@ -1,0 +1,84 @@
+//! Blocks whose material yields: their inner iteration, which goes along with Newton's method on contact
+//! forces and motions.
+//!
+//! An iteration sees such a block as u = C f + c at its points, the linearisation at the displacements of
+//! its nodes ([`Linearisation`]). Once forces and motions have moved, the nodes follow by the same
+//! linearisation, stresses are updated there, and the block is linearised again: Newton's method on all
+//! unknowns together, the nodes condensed. What stresses leave of inner equilibrium counts in the
+//! residual of the step. History is that of the last converged step until [`StepSystem::keep`].
+
+use crate::path::newton::model::blocks::YieldingBlock;
+use crate::path::newton::model::deformation::by_forces;
+use crate::path::newton::model::state::{State, Tangent};
+use crate::path::newton::model::system::StepSystem;
+use std::rc::Rc;
+
+/// The nodes of all blocks follow forces and motions; blocks are linearised where they come to lie.
+pub fn update_blocks(system: &mut StepSystem, state: &mut State) -> Result<(), String> {
+    if state.blocks.is_empty() {
+        return Ok(());
+    }
+    let loads = system.loads.at(state.factor);
+    for index in 0..state.blocks.len() {
+        let (Some(inner), Some(inelastic)) = (&state.blocks[index], &system.problem.bodies[index].inelastic) else {
+            continue;
+        };
+        let forces = system.geometry.body_forces(index, &state.force, &state.motion, &loads);
+        let displacement = inelastic.displaced(&inner.linear, &forces);
+        system.count("stress_updates", inelastic.gauss_points() as u64);
+        let linear = inelastic.linearise(displacement, &inner.base).map_err(|why| format!("block {index}: {why}"))?;
+        system.count("block_factorisations", linear.factorisations);
+        state.blocks[index] = Some(YieldingBlock { linear: Rc::new(linear), base: inner.base.clone() });
+    }
+    Ok(())
+}
+
+/// Greatest force on a node that stresses leave, relative to the greatest contact force.
+pub fn block_error(system: &StepSystem, state: &State) -> f64 {
+    if state.blocks.is_empty() {
+        return 0.0;
+    }
+    let loads = system.loads.at(state.factor);
+    let force = state.force.iter().flatten().map(|r| r.abs()).fold(system.units().force, f64::max);
+    let mut worst: f64 = 0.0;
+    for (index, inner) in state.blocks.iter().enumerate() {
+        let (Some(inner), Some(inelastic)) = (inner, &system.problem.bodies[index].inelastic) else { continue };
+        let forces = system.geometry.body_forces(index, &state.force, &state.motion, &loads);
+        let left = inelastic.residual(&inner.linear, &forces) / force;
+        if left.is_nan() {
+            return left;
+        }
+        worst = worst.max(left);
+    }
+    worst
+}
+
+/// Plastic work of a step in the unit of energy.
+pub fn plastic_work(system: &StepSystem, start: &State, state: &State) -> f64 {
+    let both = start.blocks.iter().flatten().zip(state.blocks.iter().flatten());
+    let work: f64 = both.map(|(from, to)| to.linear.end.dissipated - from.base.dissipated).sum();
+    work / system.units().energy()
+}
+
+/// ∂(plastic work)/∂(forces on the points) of every block that yields.
+fn plastic_work_by_force(system: &StepSystem, state: &State) -> Vec<(usize, Vec<f64>)> {
+    let yielding = state.blocks.iter().enumerate().filter_map(|(index, inner)| {
+        let (inner, inelastic) = (inner.as_ref()?, system.problem.bodies[index].inelastic.as_ref()?);
+        (inner.linear.yielding > 0).then(|| (index, inelastic.dissipation_by_force(&inner.linear)))
+    });
+    yielding.collect()
+}
+
+/// Plastic work per unit of a rate \[J\].
+pub fn plastic_power(system: &StepSystem, state: &State, rate: &Tangent) -> f64 {
+    let loads = system.loads.at(state.factor);
+    let mut power = 0.0;
+    for (body, weight) in plastic_work_by_force(system, state) {
+        let place = (&state.force[..], &state.motion[..]);
+        let by_factor = by_forces(&system.geometry, body, &weight, place, &loads, |i, value| {
+            power += value * rate.force[i / 2][i % 2];
+        });
+        power += by_factor * rate.factor;
+    }
+    power
+}

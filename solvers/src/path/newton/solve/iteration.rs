@@ -1,0 +1,331 @@
+//! Newton's method on the contact modes of a step.
+
+use super::line_search::{advanced, of_tractions, searched};
+use super::linearised::residual_of;
+use super::nearby::{Accuracy, solve};
+use super::tangent::wanted_modes;
+use crate::contact::mode::ContactMode;
+use crate::contact::yield_polygon::YieldPolygon;
+use crate::optimise::line_search::LineSearch;
+use crate::path::newton::model::control::Control;
+use crate::path::newton::model::derivatives::Gradient;
+use crate::path::newton::model::equations::Equations;
+use crate::path::newton::model::state::State;
+use crate::path::newton::model::system::StepSystem;
+use crate::path::newton::quantities::control_row::{control_row, control_value};
+use crate::path::newton::quantities::inelastic::{block_error, update_blocks};
+use crate::path::newton::quantities::response::{traction_error, traction_row, update_tractions};
+use crate::settings::SETTINGS;
+use std::rc::Rc;
+
+/// Contact points that want to change above which, twice running where eight times fewer did before, an
+/// iteration is given up: it has left the neighbourhood of a solution, and change by change it does not
+/// come back.
+const ASTRAY: usize = 200;
+
+/// Points that still change, and iterations in which they do not become fewer, with which a step of finite
+/// displacements is given up: few points that cycle do so for ever.
+const FEW: usize = 4;
+
+const WITHOUT_GAIN: u32 = 24;
+/// Iterations of small displacements whose equations have no solution.
+const UNSOLVED: u32 = 10;
+
+/// Newton's method from a guess: how many times all modes may change at once without that their number falls is its
+/// `patience`. What is found, and after how many iterations.
+pub fn iterate(
+    system: &mut StepSystem,
+    start: &State,
+    guess: State,
+    control: &Control,
+    patience: u32,
+    mut search: Option<LineSearch>,
+) -> Result<(State, u64), String> {
+    if !system.laws.responses.is_empty() {
+        search = Some(of_tractions());
+    }
+    let (mut state, mut gradient) = first_state(system, start, guess, control)?;
+    system.report.residuals.clear();
+    let rounding = rounding(system);
+    let mut changes = ModeChanges::new(patience);
+    let (mut unsolved, mut last_norm, mut whole) = (0, f64::INFINITY, true);
+    let may_lag = system.finite() && system.solves_nearby() && search.is_none();
+    let mut linearised = LinearisedAt { place: may_lag.then(|| start.clone()), lags: false };
+    // A law that softens converges soon or not at all: shorter steps cost less than long iterations.
+    let most = match (system.laws.responses.is_empty(), system.finite() && search.is_none()) {
+        (false, _) => 25,
+        (true, true) => 60 + (state.gap.len() as u64).min(200),
+        (true, false) => 30,
+    };
+    for iteration in 0..most {
+        let mut residual = residual_of(system, start, &state, &gradient);
+        let last = residual.len() - 1;
+        residual[last] = control_value(system, start, &state, control);
+        let inner = block_error(system, &state);
+        let norm = relative_residual(system, &residual, &state).max(inner);
+        system.report.residuals.push(norm);
+        if !norm.is_finite() {
+            return Err("an iteration left the numbers".into());
+        }
+        // Rounding is what a whole step does not lower.
+        let stays = whole && norm > 0.3 * last_norm;
+        let settled = norm <= system.found() + rounding || (norm <= SETTINGS.admissible + 30.0 * rounding && stays);
+        let fine = !linearised.lags || norm <= SETTINGS.fine * (system.found() + rounding);
+        let converged = settled && fine && holds_at(system, &residual, &state, (inner, rounding, stays));
+        if iteration > 0 && !changes.changed && converged {
+            return Ok((state, iteration));
+        }
+        let equations =
+            linearised.equations(system, &state, !changes.changed && norm > SETTINGS.contraction * last_norm);
+        last_norm = norm;
+        let row = control_row(system, control);
+        let right: Vec<f64> = residual.iter().map(|x| -x).collect();
+        system.count("newton_iterations", 1);
+        let solution = solve(system, &state, &equations, (&row, &right), Accuracy::Rough);
+        // Modes without a solution may be on the way to ones that have one: with small
+        // displacements the shifted equations, a soft bedding, show which points close.
+        unsolved += u32::from(solution.as_ref().is_some_and(|(_, solved)| !solved));
+        let Some((step, _)) = solution.filter(|_| unsolved <= if system.finite() { 0 } else { UNSOLVED }) else {
+            return Err("the modes of the contact points leave no equilibrium".into());
+        };
+        let share = rotation_bound(system, &step);
+        (state, gradient, whole) = match &mut search {
+            Some(search) => searched(system, start, (&state, &gradient), control, (&step[..], share), search)?,
+            None => {
+                let (state, gradient) = advanced(system, start, &state, &step, share)?;
+                (state, gradient, !linearised.lags)
+            }
+        };
+        let (wanted, holds) = wanted_modes(system, start, &state);
+        changes.update(&state, wanted, holds);
+        if search.is_none() && changes.hopeless(system.finite()) {
+            return Err("the modes of contact points keep changing".into());
+        }
+        changes.take(&mut state);
+    }
+    Err("the modes of contact points keep changing".into())
+}
+
+/// Where the equations of an iteration are linearised: those of a place serve near it, as long as they take residuals down.
+pub struct LinearisedAt {
+    /// The place; `None` where the equations are always those of the state itself.
+    place: Option<State>,
+    /// Whether they are not those of the state itself.
+    lags: bool,
+}
+
+impl LinearisedAt {
+    /// For steps from a start.
+    pub fn of(system: &StepSystem, start: &State) -> Self {
+        let may_lag = system.finite() && system.solves_nearby();
+        LinearisedAt { place: may_lag.then(|| start.clone()), lags: false }
+    }
+
+    /// Whether the last equations were not those of the state itself.
+    pub fn lags(&self) -> bool {
+        self.lags
+    }
+
+    /// Whether a residual is small enough for the equations that it was reached with.
+    pub fn is_fine(&self, norm: f64, found: f64) -> bool {
+        !self.lags || norm <= SETTINGS.fine * found
+    }
+
+    /// Equations for a state; `slow` where those of the last iteration have not done enough.
+    pub fn equations(&mut self, system: &mut StepSystem, state: &State, slow: bool) -> Rc<Equations> {
+        let Some(place) = &mut self.place else { return system.equations(state) };
+        self.lags = !(slow && self.lags) && turned_between(place, state) <= SETTINGS.small;
+        if !self.lags {
+            place.clone_from(state);
+        }
+        system.equations(place)
+    }
+}
+
+/// Whether a state whose residual has settled holds: equilibrium, gaps, strengths and laws of tractions.
+pub fn holds_at(
+    system: &StepSystem,
+    residual: &[f64],
+    state: &State,
+    (inner, rounding, stays): (f64, f64, bool),
+) -> bool {
+    // Rounding of positions excuses gaps, not equilibrium.
+    let balanced = !system.finite()
+        || (inner <= SETTINGS.inequality() && unbalanced_share(system, residual, state) <= SETTINGS.inequality());
+    let held = !system.finite() || {
+        let (gap, force) = gap_error(system, residual, state);
+        gap <= SETTINGS.admissible + rounding / largest_unknown(system, state)
+            && (stays || force <= SETTINGS.admissible)
+            && is_admissible(system, state)
+    };
+    balanced && held && traction_error(system, state) <= SETTINGS.admissible
+}
+
+/// The guess as a state of the step, with what the loads, blocks and laws say there.
+pub fn first_state(
+    system: &mut StepSystem,
+    start: &State,
+    guess: State,
+    control: &Control,
+) -> Result<(State, Rc<Gradient>), String> {
+    let mut state = guess;
+    state.factor = if let Control::Factor(target) = control { *target } else { state.factor };
+    system.settle(&mut state.motion, state.factor);
+    update_blocks(system, &mut state)?;
+    let gradient = system.gradient(&state);
+    state.gap = gradient.gap.clone();
+    update_tractions(system, start, &mut state)?;
+    Ok((state, gradient))
+}
+
+/// Residual that is rounding. Small displacements round by their own size, which the residual is relative to; a law of
+/// tractions from gaps must hold to that.
+pub fn rounding(system: &StepSystem) -> f64 {
+    match (system.finite(), system.laws.responses.is_empty()) {
+        (true, _) => 400.0 * f64::EPSILON * system.units().length / system.units().displacement,
+        (false, true) => 0.0,
+        (false, false) => 400.0 * f64::EPSILON,
+    }
+}
+
+/// Greatest rotation of a body from one state to another.
+fn turned_between(start: &State, state: &State) -> f64 {
+    let turns = state.motion.iter().zip(&start.motion).map(|(q, before)| (q[2] - before[2]).abs());
+    turns.fold(0.0, f64::max)
+}
+
+/// Share of an iteration with finite displacements whose rotations stay where the linearisation means something.
+pub fn rotation_bound(system: &StepSystem, step: &[f64]) -> f64 {
+    if !system.finite() {
+        return 1.0;
+    }
+    let points = system.scaled.contacts;
+    let turn = (0..system.scaled.bodies)
+        .map(|b| (step[2 * points + 3 * b + 2] * system.units().displacement / system.units().length).abs())
+        .fold(0.0, f64::max);
+    (SETTINGS.largest_rotation / turn.max(1e-300)).min(1.0)
+}
+
+/// How the contact modes change from iteration to iteration: block principal pivoting with its fallback.
+struct ModeChanges {
+    patience: u32,
+    changed: bool,
+    /// Points that want to change, and what they and all others want.
+    differ: Vec<usize>,
+    wanted: Vec<ContactMode>,
+    /// Fewest that wanted to, and iterations since.
+    least: usize,
+    without_gain: u32,
+    /// Fewest with which all changed at once, and how often they may without becoming fewer.
+    fewest: usize,
+    budget: u32,
+    /// Iterations in a row with far more changes than before.
+    astray: u32,
+}
+
+impl ModeChanges {
+    fn new(patience: u32) -> Self {
+        let (differ, wanted) = (Vec::new(), Vec::new());
+        let (least, fewest) = (usize::MAX, usize::MAX);
+        let (without_gain, budget, astray) = (0, patience, 0);
+        ModeChanges { patience, changed: true, differ, wanted, least, without_gain, fewest, budget, astray }
+    }
+
+    /// Takes note of the modes that a state asks for, and of whether the laws hold in its own.
+    fn update(&mut self, state: &State, wanted: Vec<ContactMode>, holds: bool) {
+        self.differ = (0..wanted.len()).filter(|c| wanted[*c] != state.mode[*c]).collect();
+        self.wanted = wanted;
+        let count = self.differ.len();
+        self.changed = count > 0 || !holds;
+        self.astray = if count > ASTRAY && count / 8 > self.fewest { self.astray + 1 } else { 0 };
+        self.without_gain = if count < self.least { 0 } else { self.without_gain + 1 };
+        self.least = self.least.min(count);
+    }
+
+    /// Whether the iteration has left the neighbourhood of a solution, or (finite displacements) few points cycle.
+    fn hopeless(&self, finite: bool) -> bool {
+        let cycles = finite && self.changed && self.least <= FEW && self.without_gain >= WITHOUT_GAIN;
+        self.astray > 1 || cycles
+    }
+
+    /// Changes all modes, or one of them.
+    fn take(&mut self, state: &mut State) {
+        let count = self.differ.len();
+        if count < self.fewest && (self.patience > 0 || count <= 1) {
+            (self.fewest, self.budget) = (count, self.patience);
+            state.mode = std::mem::take(&mut self.wanted);
+        } else if self.budget > 0 {
+            self.budget -= 1;
+            state.mode = std::mem::take(&mut self.wanted);
+        } else if let Some(&c) = self.differ.last() {
+            state.mode[c] = self.wanted[c];
+        }
+    }
+}
+
+/// Greatest relative residual: balance and yielding against forces, gaps against motions.
+pub fn relative_residual(system: &StepSystem, residual: &[f64], state: &State) -> f64 {
+    let u = system.units();
+    let points = state.gap.len();
+    let force = state.force.iter().flatten().map(|r| (r / u.force).abs()).fold(1.0, f64::max);
+    let whole = largest_unknown(system, state);
+    let by_row = |(i, x): (usize, &f64)| {
+        let of_forces = if i < 2 * points { !is_gap_row(system, state, i) } else { i + 1 < residual.len() };
+        x.abs() / if of_forces { force } else { whole }
+    };
+    residual.iter().enumerate().map(by_row).fold(0.0, |worst, x| if x.is_nan() { x } else { worst.max(x) })
+}
+
+/// Whether a contact point's row is an equation of gaps, not of forces.
+fn is_gap_row(system: &StepSystem, state: &State, row: usize) -> bool {
+    let (point, k) = (row / 2, row % 2);
+    if system.laws.responses.is(point) {
+        return traction_row(system, state, point).0[k] <= 0.5;
+    }
+    match state.mode[point] {
+        ContactMode::Stick => true,
+        ContactMode::Facet(_) => k == 1,
+        ContactMode::Corner(..) | ContactMode::Open => false,
+    }
+}
+
+/// Greatest residual of the gaps of facets, relative to the greatest unknown (rounding of positions, which excuses as
+/// much in units of a displacement, is no share of what has moved much further), and the force that the joint would make
+/// of it, relative to the greatest one. Laws of tractions have an error of their own.
+pub fn gap_error(system: &StepSystem, residual: &[f64], state: &State) -> (f64, f64) {
+    let u = system.units();
+    let largest = state.force.iter().flatten().map(|r| r.abs()).fold(1e-6 * u.force, f64::max);
+    let (mut greatest, mut force) = (0.0_f64, 0.0_f64);
+    let of_facets = |row: &usize| !system.laws.responses.is(row / 2) && is_gap_row(system, state, *row);
+    for row in (0..2 * state.gap.len()).filter(of_facets) {
+        let [a, b] = system.stiffness(row / 2);
+        greatest = greatest.max(residual[row].abs());
+        force = force.max(residual[row].abs() * u.displacement * a.max(b) / largest);
+    }
+    (greatest / largest_unknown(system, state), force)
+}
+
+/// Whether all contact forces keep to their strengths within twice what their modes are allowed: rounding of positions
+/// excuses gaps, not those.
+fn is_admissible(system: &StepSystem, state: &State) -> bool {
+    let largest = state.force.iter().flatten().map(|r| r.abs()).fold(system.units().force, f64::max);
+    let keeps = |(c, r): (usize, &[f64; 2])| {
+        let excess = |law: &YieldPolygon| law.excess(*r, system.problem.contacts[c].area);
+        system.law(c).is_none_or(|law| excess(law) <= 2.0 * SETTINGS.mode * largest)
+    };
+    state.force.iter().enumerate().all(keeps)
+}
+
+/// Greatest residual of equilibrium, relative to the greatest force.
+pub fn unbalanced_share(system: &StepSystem, residual: &[f64], state: &State) -> f64 {
+    let force = state.force.iter().flatten().map(|r| (r / system.units().force).abs()).fold(0.0, f64::max);
+    let rows = &residual[2 * state.gap.len()..residual.len() - 1];
+    rows.iter().map(|x| x.abs()).fold(0.0, f64::max) / force.max(1e-6)
+}
+
+pub fn largest_unknown(system: &StepSystem, state: &State) -> f64 {
+    let u = system.units();
+    let force = state.force.iter().flatten().map(|r| (r / u.force).abs()).fold(1.0, f64::max);
+    let motion = state.motion.iter().map(|q| q[0].abs().max(q[1].abs()).max(q[2].abs() * u.length));
+    force.max(motion.map(|m| m / u.displacement).fold(0.0, f64::max))
+}

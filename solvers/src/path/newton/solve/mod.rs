@@ -1,0 +1,10 @@
+//! Newton's method for a state, its rates with their modes, and what the rates prove.
+
+pub mod iteration;
+pub mod limit_point_test;
+pub mod line_search;
+pub mod linearised;
+pub mod nearby;
+pub mod second_order;
+pub mod step;
+pub mod tangent;

@@ -1,0 +1,144 @@
+//! Second-order work of a converged state: the flexibility of its bodies with the contact modes held, column by
+//! column from the factorised equations.
+
+use super::linearised::{factorised, kept};
+use super::tangent::tangent_at;
+use crate::contact::facet::slack;
+use crate::contact::mode::ContactMode;
+use crate::linear::bordered::BorderedSystem;
+use crate::linear::inner;
+use crate::path::newton::model::control::Control;
+use crate::path::newton::model::factors::ModeEquations;
+use crate::path::newton::model::state::State;
+use crate::path::newton::model::system::StepSystem;
+use crate::path::newton::quantities::measure::increment_along;
+use crate::path::stability::{SecondOrderWork, over_weak_points, work_by_responses};
+use crate::settings::SETTINGS;
+use nalgebra::DMatrix;
+
+/// Second-order work of a state with its modes held, loads and settlements fixed; `None` where its equations have no
+/// factorisation.
+pub fn second_order_work(system: &mut StepSystem, state: &State) -> Option<SecondOrderWork> {
+    let held = held_factor(system, state)?;
+    let (first, motions) = (2 * system.scaled.contacts, 3 * system.scaled.bodies);
+    if motions == 0 {
+        return None;
+    }
+    system.count("second_order_works", 1);
+    work_by_responses(motions, |wrenches| images(&held, wrenches, first, system.size()))
+}
+
+/// The equations with the factor held.
+fn held_factor(system: &mut StepSystem, state: &State) -> Option<BorderedSystem<ModeEquations>> {
+    let equations = system.equations(state);
+    let mut row = vec![0.0; system.size()];
+    row[system.size() - 1] = 1.0;
+    let held = match kept(system, state, &equations, |held| held.borders(&row)) {
+        Some(kept) => kept.held.clone(),
+        None => factorised(system, state, &equations, &row)?.0,
+    };
+    BorderedSystem::new(held, &row)
+}
+
+/// Motions that solve the equations for some right-hand sides.
+fn solved(held: &BorderedSystem<ModeEquations>, rights: &[Vec<f64>], first: usize) -> Option<Vec<Vec<f64>>> {
+    let mut found = held.equations().motions(first, rights)?;
+    if let Some((control, w, along)) = held.border() {
+        for z in &mut found {
+            let t = -inner(&control[first..], z) / along;
+            z.iter_mut().zip(&w[first..]).for_each(|(z, w)| *z += t * w);
+        }
+    }
+    found.iter_mut().for_each(|z| z.truncate(z.len() - 1));
+    Some(found)
+}
+
+/// S times the columns of a matrix. Balance is −∂V/∂q: what it says of K is −K.
+fn images(
+    held: &BorderedSystem<ModeEquations>,
+    basis: &DMatrix<f64>,
+    first: usize,
+    size: usize,
+) -> Option<DMatrix<f64>> {
+    let right = |column: usize| {
+        let mut right = vec![0.0; size];
+        (0..basis.nrows()).for_each(|j| right[first + j] = -basis[(j, column)]);
+        right
+    };
+    let rights: Vec<Vec<f64>> = (0..basis.ncols()).map(right).collect();
+    let columns = solved(held, &rights, first)?;
+    Some(DMatrix::from_fn(basis.nrows(), basis.ncols(), |i, j| columns[j][i]))
+}
+
+/// Stability of a state: whether second-order work is positive with its loads and settlements held, and with the load
+/// point held. `None` where that is not decided.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StateStability {
+    pub under_load: Option<bool>,
+    pub under_control: Option<bool>,
+    /// Whether second-order work is only sufficient: some point slides without associated flow.
+    pub sufficient_only: bool,
+}
+
+/// Stability of a state at the end of a stage, in which a load grows or a support `settles`. At rest points that slide,
+/// or are about to, are weakly active: they may move on or stick. Second-order work must be positive on the cone of
+/// these rates: positive with all of them free suffices; negative with all of them held is instability.
+pub fn stability(system: &mut StepSystem, state: &State, settles: bool) -> StateStability {
+    let free = with_weak_points(system, state, |released, _| released);
+    let held = with_weak_points(system, state, |_, held| held);
+    let found = second_order_work(system, &free);
+    let sufficient_only = found.as_ref().is_some_and(|work| !work.symmetric);
+    let stuck = if free.mode == held.mode { found.clone() } else { second_order_work(system, &held) };
+    let positive = |work: &Option<SecondOrderWork>| work.as_ref().map(|work| work.negative == 0);
+    let under_load = over_weak_points(positive(&found), positive(&stuck));
+    if settles || under_load == Some(true) {
+        return StateStability { under_load, under_control: under_load, sufficient_only };
+    }
+    let mut controlled = |state: &State, work: &Option<SecondOrderWork>| {
+        let rate = tangent_at(system, state, &Control::Factor(state.factor))?;
+        let yields = increment_along(system, state, &rate).displacement;
+        work.as_ref().map(|work| work.stable_under_control(yields))
+    };
+    let under_control = over_weak_points(controlled(&free, &found), controlled(&held, &stuck));
+    StateStability { under_load, under_control, sufficient_only }
+}
+
+/// The second-order work of a state that is unstable under its loads, also with the points that slide held. `None` if it is
+/// stable, or its second-order work is not known.
+pub fn instability(system: &mut StepSystem, state: &State) -> Option<SecondOrderWork> {
+    let work = second_order_work(system, state)?;
+    if work.turned == 0 || work.nearest <= SETTINGS.active {
+        return None;
+    }
+    let held = with_weak_points(system, state, |_, held| held);
+    let at_rest = second_order_work(system, &held)?;
+    (at_rest.turned > 0).then_some(work)
+}
+
+/// The state with its weakly active points in modes of our choice among released and held: points that slide, and
+/// stuck ones without slack.
+fn with_weak_points(
+    system: &StepSystem,
+    state: &State,
+    choose: impl Fn(ContactMode, ContactMode) -> ContactMode,
+) -> State {
+    let largest = state.force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
+    let mut chosen = state.clone();
+    for (c, mode) in chosen.mode.iter_mut().enumerate() {
+        let Some(law) = system.law(c) else { continue };
+        let (force, area) = (state.force[c], system.problem.contacts[c].area);
+        let tight = |i: &usize| slack(&law.facets[*i], force, area) <= SETTINGS.admissible * largest;
+        let released = match *mode {
+            ContactMode::Stick if force.iter().all(|r| r.abs() <= SETTINGS.admissible * largest) => {
+                Some(ContactMode::Open)
+            }
+            ContactMode::Stick => (0..law.facets.len()).find(tight).map(|facet| ContactMode::Facet(facet as u8)),
+            own if law.opens(own) => None,
+            own => Some(own),
+        };
+        if let Some(released) = released {
+            *mode = choose(released, ContactMode::Stick);
+        }
+    }
+    chosen
+}

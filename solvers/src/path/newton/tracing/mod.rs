@@ -1,0 +1,9 @@
+//! The path as it is traced: states taken over, limit points, snaps to stable equilibria, energy of steps.
+
+pub mod commit;
+pub mod peak;
+pub mod relaxation;
+pub mod stable_branch;
+pub mod step_energy;
+pub mod tracer;
+pub mod witness;

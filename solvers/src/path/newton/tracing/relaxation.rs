@@ -1,0 +1,139 @@
+//! Damped descent from an unstable equilibrium with its loads and settlements held (finite displacements, laws of
+//! facets): viscous wrenches on the bodies,
+//!
+//! ```text
+//! Gqᵀ r + w + λ p = κ B q̇,   step by step (q − q₀) κ B,   B = 1 in the units of the motions
+//! ```
+//!
+//! Each step is an equilibrium with the stiffness κ B more, unique where κ is greater than the least eigenvalue of K is
+//! negative; friction keeps its history from step to step. The potential falls in every step by what the wrenches and
+//! friction dissipate, so the descent ends in the equilibrium to which the state would fall slowly, never in one beyond
+//! a rise of its energy; it is one when it holds without damping and has positive second-order work. The work of the
+//! viscous wrenches is the energy that a real fall sets free: what the potential has fallen by, less what friction took.
+
+use crate::path::newton::model::control::Control;
+use crate::path::newton::model::loads::Damping;
+use crate::path::newton::model::state::State;
+use crate::path::newton::model::system::StepSystem;
+use crate::path::newton::quantities::measure::increment_between;
+use crate::path::newton::solve::iteration::iterate;
+use crate::path::newton::solve::second_order::second_order_work;
+use crate::path::stability::SecondOrderWork;
+use crate::settings::SETTINGS;
+
+/// Steps of a descent.
+const MOST_STEPS: usize = 400;
+/// Times in a row that the damping may be made greater.
+const MOST_FAILURES: u32 = 12;
+
+/// Where a descent ended.
+pub struct Relaxation {
+    /// The last state of the descent with its history, and the equilibrium next to it.
+    pub before: State,
+    pub next: State,
+    /// How far it lies along the critical mode, in units.
+    pub side: f64,
+    /// What friction has up to `before` \[J\].
+    pub dissipated: f64,
+}
+
+/// The descents from a state along its critical mode, one in each sense, as far as they end in stable equilibria.
+pub fn relaxations(system: &mut StepSystem, state: &State, work: &SecondOrderWork) -> Vec<Relaxation> {
+    if !system.piecewise_linear() || !system.finite() {
+        return Vec::new();
+    }
+    let found = [1.0, -1.0].into_iter().filter_map(|sense| descent(system, state, work, sense)).collect();
+    system.loads.damping = None;
+    found
+}
+
+/// A descent in one sense of the critical mode.
+fn descent(system: &mut StepSystem, from: &State, work: &SecondOrderWork, sense: f64) -> Option<Relaxation> {
+    let mode = &work.critical_mode();
+    let (u, control) = (system.units(), Control::Factor(from.factor));
+    let size = mode.iter().fold(0.0, |a: f64, z| a.max(z.abs()));
+    let mut anchor = from.motion.clone();
+    for (body, q) in anchor.iter_mut().enumerate() {
+        let Some(free) = system.scaled.free[body] else { continue };
+        (0..3).for_each(|k| q[k] += sense * SETTINGS.visible * u.motion()[k] * mode[3 * free + k] / size);
+    }
+    let mut rate = (2.0 * work.curvature.abs()).max(SETTINGS.same_rate());
+    let (mut state, mut dissipated, mut failures) = (from.clone(), 0.0, 0);
+    let mut last_moved = f64::INFINITY;
+    for _ in 0..MOST_STEPS {
+        system.loads.damping = Some(Damping { rate, from: anchor.clone() });
+        let found = iterate(system, &state, state.clone(), &control, 8, None);
+        system.count("relaxation_steps", 1);
+        let Ok((mut next, iterations)) = found else {
+            failures += 1;
+            rate *= 4.0;
+            if failures > MOST_FAILURES {
+                return None;
+            }
+            continue;
+        };
+        failures = 0;
+        let moved = distance(system, &state, &next);
+        dissipated += increment_between(system, &state, &next).dissipation * u.energy();
+        let start = state.clone();
+        system.keep(&start, &mut next);
+        (state, anchor) = (next.clone(), next.motion);
+        if fallen(system, from, &state) {
+            return None;
+        }
+        if moved < last_moved {
+            system.loads.damping = None;
+            let next = settled(system, &state, &control, moved, rate);
+            if let Some(next) = next {
+                let side = along(system, from, &next, mode);
+                return Some(Relaxation { before: state, next, dissipated, side });
+            }
+        }
+        last_moved = moved;
+        system.loads.damping = None;
+        rate = match second_order_work(system, &state) {
+            // Each step is unique, and doubles what grows.
+            Some(work) if work.turned > 0 => 2.0 * work.curvature.abs().max(SETTINGS.same_rate()),
+            _ if iterations <= 10 => (0.5 * rate).max(SETTINGS.same_rate()),
+            _ => rate,
+        };
+    }
+    None
+}
+
+/// The stable equilibrium next to a state of a descent whose last step has `moved` so far with a damping of `rate`.
+fn settled(system: &mut StepSystem, state: &State, control: &Control, moved: f64, rate: f64) -> Option<State> {
+    let (next, _) = iterate(system, state, state.clone(), control, 8, None).ok()?;
+    let work = second_order_work(system, &next).filter(|work| work.negative == 0 || work.turned == 0)?;
+    // By the damped step's own equation: what is left to go is about κ / k of it.
+    let left = moved * (1.0 + rate / work.curvature.abs().max(1e-12));
+    (distance(system, state, &next) <= 4.0 * left).then_some(next)
+}
+
+/// Euclidean distance of the motions of two states in their units.
+fn distance(system: &StepSystem, a: &State, b: &State) -> f64 {
+    let units = system.units().motion();
+    let free = (0..a.motion.len()).filter(|body| system.scaled.free[*body].is_some());
+    let squares = free.flat_map(|body| (0..3).map(move |k| (body, k)));
+    squares.map(|(body, k)| ((a.motion[body][k] - b.motion[body][k]) / units[k]).powi(2)).sum::<f64>().sqrt()
+}
+
+/// How far a state lies from another along a mode, in units.
+fn along(system: &StepSystem, from: &State, state: &State, mode: &[f64]) -> f64 {
+    let units = system.units().motion();
+    let of_body = |body: usize| {
+        let free = system.scaled.free[body]?;
+        let moved = |k: usize| (state.motion[body][k] - from.motion[body][k]) / units[k];
+        Some((0..3).map(|k| moved(k) * mode[3 * free + k]).sum::<f64>())
+    };
+    (0..from.motion.len()).filter_map(of_body).sum()
+}
+
+/// Whether a body has moved so far that the structure has fallen.
+fn fallen(system: &StepSystem, from: &State, state: &State) -> bool {
+    let length = system.units().length;
+    let pairs = from.motion.iter().zip(&state.motion);
+    pairs
+        .map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]).max(length * (a[2] - b[2]).abs()))
+        .any(|d| d > SETTINGS.fallen * length)
+}

@@ -1,0 +1,31 @@
+//! Whether a step is short enough for its energy: work is integrated by the trapezoidal rule, what is stored is a
+//! function of the state.
+
+use super::tracer::{Tracer, foreseen};
+use crate::path::newton::model::state::State;
+use crate::path::newton::quantities::recorded::recorded;
+use crate::settings::SETTINGS;
+
+/// How well a step keeps the energy of its stage.
+pub struct StepEnergy {
+    /// By how much the next step may grow (below 1: must shrink).
+    pub growth: f64,
+    /// Whether the step may stand.
+    pub holds: bool,
+}
+
+/// Of a step that converged.
+pub fn step_energy(tracer: &mut Tracer, next: &State) -> StepEnergy {
+    let gradient = tracer.system.gradient(next);
+    let (energy, _) = foreseen(tracer, next, &gradient);
+    let after = recorded(&energy, &tracer.system, tracer.in_force.load_step, next, &gradient);
+    let (problem, finite, before) = (tracer.system.problem, tracer.system.finite(), &tracer.record.state);
+    let (balance, left) = tracer.record.balance.after(problem, finite, before, &after);
+    let scale = balance.scale(after.stored).max(SETTINGS.admissible * tracer.system.units().energy());
+    let growth = (SETTINGS.fine * scale / left.abs().max(1e-300)).sqrt();
+    // Bonds that soften are followed more closely step by step.
+    let most = if tracer.system.laws.responses.is_empty() { SETTINGS.energy_of_stage } else { SETTINGS.fine };
+    let moved = problem.gross_work(before, &after, finite) + (after.dissipated - before.dissipated).abs();
+    let in_budget = left.abs() <= most * scale && balance.left().abs() <= SETTINGS.energy_of_stage * scale;
+    StepEnergy { growth, holds: in_budget || left.abs() <= (most * moved).max(SETTINGS.admissible * scale) }
+}

@@ -1,0 +1,77 @@
+//! Witnesses for the certificate: proofs at a state that no rate raises the load, or that none continues the path.
+
+use crate::path::dual_vector::{self, MOST_FACETS, Response};
+use crate::path::newton::model::state::{State, Tangent};
+use crate::path::newton::model::system::StepSystem;
+use crate::path::newton::solve::limit_point_test::{active_set, rate_problem, responses_of, without_factor};
+use crate::path::system::System;
+use crate::rate::problem::RateProblem;
+use voussoir_core::path::{FarkasVector, ModeTree, PathRate, PathState, RateClaim, Witness};
+
+/// Proofs that no rate raises the load at a state that an observer has `seen`: by the rate along which the load stands still, which
+/// is a dual vector if flow is associated, and by a search over the modes. If laws have a history, the rate just beyond the state.
+pub fn none_rises(
+    system: &mut StepSystem,
+    (state, seen): (&State, &PathState),
+    rate: &Tangent,
+    direction: f64,
+) -> Vec<Witness> {
+    if has_history(system) {
+        return vec![beyond(seen, rate)];
+    }
+    let trees = std::iter::once(by_rate(rate)).chain(by_search(system, state, direction));
+    trees.map(|tree| Witness { state: seen.clone(), claim: RateClaim::NoneRises(tree) }).collect()
+}
+
+/// True if laws of tractions from gaps, or blocks that yield, make the path depend on its history.
+pub fn has_history(system: &StepSystem) -> bool {
+    !system.laws.responses.is_empty() || system.problem.yields()
+}
+
+/// The rate just beyond a limit point: if laws have a history the proof is about its loading set.
+pub fn beyond(seen: &PathState, rate: &Tangent) -> Witness {
+    let Tangent { factor, force, gap, motion } = rate.clone();
+    Witness { state: seen.clone(), claim: RateClaim::Rate(PathRate { factor, force, gap, motion }) }
+}
+
+/// The negative rate as multipliers.
+fn by_rate(rate: &Tangent) -> ModeTree {
+    ModeTree::Leaf(FarkasVector {
+        equilibrium: rate.motion.iter().map(|own| own.map(|v| -v)).collect(),
+        gap: rate.force.iter().map(|own| own.map(|r| -r)).collect(),
+        work: 0.0,
+    })
+}
+
+fn by_search(system: &mut StepSystem, state: &State, direction: f64) -> Option<ModeTree> {
+    search(system, state, direction, |problem, (contacts, _), programs, response| {
+        dual_vector::none_rises(problem, contacts, programs, response)
+    })
+}
+
+/// The proof that no rate continues the path from a state that an observer has `seen`.
+pub fn none_continues(system: &mut StepSystem, (state, seen): (&State, &PathState), direction: f64) -> Option<Witness> {
+    let trees = search(system, state, direction, dual_vector::none_continues)?;
+    Some(Witness { state: seen.clone(), claim: RateClaim::NoneContinues(trees) })
+}
+
+/// A proof at a state by a search over the modes of the active points, which are given with λ for a unit of the load.
+fn search<T>(
+    system: &mut StepSystem,
+    state: &State,
+    direction: f64,
+    prove: impl FnOnce((&RateProblem, &System), (&[usize], f64), &mut u64, Response) -> Option<T>,
+) -> Option<T> {
+    let active = active_set(system, state, &[]);
+    if active.facets.iter().map(|(facets, _)| facets.len()).sum::<usize>() > MOST_FACETS {
+        return None;
+    }
+    system.count("factorisations", 1);
+    let equations = system.equations(state);
+    let responses = responses_of(system, state, &active, &equations, direction)?;
+    let problem = rate_problem(system, &active, &responses);
+    let mut programs = 0;
+    let response = |gaps: &[[f64; 2]], factor: f64| Some(without_factor(&responses, gaps, factor));
+    let unit = direction * system.units().factor;
+    prove((&problem, &system.scaled), (&active.contacts, unit), &mut programs, &response)
+}

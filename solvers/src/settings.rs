@@ -1,0 +1,208 @@
+//! The numbers that paths, rate problems and contact laws share: tolerances, and what steers the length of steps.
+//!
+//! Tolerances derive from three: what is rounding, what is admissible and what is active. Each is relative to the size of what it
+//! judges, in the units of the problem, so that neither the size of a scene nor its units matter. Limit analysis has its own
+//! (`limit/settings.rs`).
+
+/// Numbers of paths, rate problems and contact laws.
+#[derive(Debug, Clone, Copy)]
+pub struct Settings {
+    /// Residual of a solution that is rounding: some hundred times the precision of a number.
+    pub rounding: f64,
+    /// Residual or difference with which a solution, a state or a law still holds.
+    pub admissible: f64,
+    /// Slack up to which a facet takes part in an event, and rate up to which nothing moves.
+    pub active: f64,
+    /// Residual up to which a solution needs no refinement: ten times the precision of a number.
+    pub refined: f64,
+    /// Tolerance of a mode relative to the greatest force. A certificate allows 1e-8.
+    pub mode: f64,
+    /// Share that is small but no rounding: strength of a pivot, rotation of a step, least motion before an event.
+    pub small: f64,
+    /// Share below which two effects are told apart with refinement only, such as a mechanism and a soft structure; energy that a
+    /// step may leave over.
+    pub fine: f64,
+    /// Change of the factor in a step of blocks that flow, relative to its motion. In an elastic step it is about 1.
+    pub flat: f64,
+    /// Energy of a stage, relative to it, that its steps may leave over: half of what a certificate allows.
+    pub energy_of_stage: f64,
+    /// Motion, as a share of the size of the scene, that can be seen: over it a mechanism is followed.
+    pub visible: f64,
+    /// Motion, as a share of the size of the scene, with which a structure has fallen.
+    pub fallen: f64,
+    /// Movement in a step with finite displacements if the strategy sets no bound, as a share of the size of the scene.
+    pub largest_finite_step: f64,
+    /// Load, relative to its unit, whose state has the modes with which a path begins.
+    pub first_load: f64,
+    /// Distance of a state from its predictor, relative to the step, at which the next step is as long.
+    pub wanted_error: f64,
+    /// The same above which a step is repeated.
+    pub most_error: f64,
+    /// Length of a step, relative to the wanted one, from which on its error tells how long the next one may be.
+    pub telling: f64,
+    /// Length of a step, relative to the way to the first event: the event is then in it.
+    pub beyond: f64,
+    /// Share of the greatest limit point to which the load falls by default.
+    pub half: f64,
+    /// Share of a residual that an iteration with factors of a near state may leave.
+    pub contraction: f64,
+    /// Share of a residual above which an iteration has not lowered it.
+    pub stays: f64,
+    /// Greatest rotation of an iteration with finite displacements \[rad\].
+    pub largest_rotation: f64,
+    /// Value of a monitor, relative to its tolerance, up to which it takes part in an event.
+    pub together: f64,
+    /// Residual of rates of a chain, relative to one that needs no refinement, above which the next correction is examined too.
+    pub calm: f64,
+    /// Fall of rates of a chain by a change of modes from which on they are summed up anew: rounding would stay in them.
+    pub cancels: f64,
+    /// Stiffness of the spring of a weak joint of a chain, relative to the joint with all points stuck.
+    pub spring: f64,
+    /// Share of the forces of closed points on a moving support below which forces are not compared with themselves.
+    pub cancelled: f64,
+}
+
+/// The numbers in use.
+pub const SETTINGS: Settings = Settings {
+    rounding: 1e-13,
+    admissible: 1e-9,
+    active: 1e-8,
+    refined: 2e-15,
+    mode: 3e-9,
+    small: 1e-3,
+    fine: 1e-4,
+    flat: 1e-5,
+    energy_of_stage: 5e-4,
+    visible: 1e-2,
+    fallen: 0.2,
+    largest_finite_step: 0.002,
+    first_load: 0.05,
+    wanted_error: 0.02,
+    most_error: 0.1,
+    telling: 0.1,
+    beyond: 1.02,
+    half: 0.5,
+    contraction: 0.1,
+    stays: 0.3,
+    largest_rotation: 0.1,
+    together: 100.0,
+    calm: 64.0,
+    cancels: 16.0,
+    spring: 0.1,
+    cancelled: 0.1,
+}
+.validated();
+
+impl Settings {
+    /// The same settings if they are consistent.
+    ///
+    /// # Panics
+    /// If tolerances are not in their order, or a share is not between 0 and 1: when the crate is compiled.
+    const fn validated(self) -> Settings {
+        assert!(0.0 < self.refined && self.refined < self.rounding, "refined solutions are better than rounding");
+        assert!(self.rounding < self.admissible && self.admissible < self.active, "rounding < admissible < active");
+        assert!(self.admissible < self.mode && self.mode < self.active, "modes are decided within what is active");
+        assert!(
+            self.active < self.flat && self.flat < self.fine && self.fine < self.small && self.small < self.visible
+        );
+        assert!(self.visible < self.fallen && self.fallen < 1.0, "a structure that has fallen has visibly moved");
+        assert!(
+            self.fine < self.energy_of_stage && self.energy_of_stage < self.small,
+            "a stage leaves more than a step"
+        );
+        assert!(0.0 < self.largest_finite_step && self.largest_finite_step < self.visible, "steps are not visible");
+        assert!(self.wanted_error < self.most_error && self.most_error < 1.0, "a wanted step is not repeated");
+        assert!(1.0 < self.beyond && self.beyond < 1.0 + self.most_error, "the event is in the step");
+        assert!(0.0 < self.first_load && self.first_load < 1.0 && 0.0 < self.half && self.half < 1.0);
+        assert!(self.contraction < self.stays && self.stays < 1.0 && self.telling <= 1.0, "shares of a residual");
+        assert!(self.largest_rotation < 1.0 && self.spring < 1.0 && self.cancelled < 1.0 && self.cancelled > 0.0);
+        assert!(self.together >= 1.0 && self.calm > 1.0 && self.cancels > 1.0, "factors above 1");
+        self
+    }
+
+    /// The precision of a residual.
+    pub const fn ulps(&self) -> f64 {
+        0.01 * self.rounding
+    }
+
+    /// Share of what it began with at which an update has died away.
+    pub const fn negligible(&self) -> f64 {
+        0.1 * self.rounding
+    }
+
+    /// Residual of gaps beside the rates of forces: the error of the forces.
+    pub const fn error_of_forces(&self) -> f64 {
+        2.0 * self.rounding
+    }
+
+    /// Residual of a direction above which it is solved anew.
+    pub const fn residual(&self) -> f64 {
+        10.0 * self.rounding
+    }
+
+    /// What is added to a factorised matrix and taken out again by refinement; pivots below it are none.
+    pub const fn shift(&self) -> f64 {
+        100.0 * self.rounding
+    }
+
+    /// Tolerance of inequalities and of equilibrium: a tenth of what certificates allow.
+    pub const fn inequality(&self) -> f64 {
+        0.1 * self.admissible
+    }
+
+    /// Difference up to which two rates are the same.
+    pub const fn same_rate(&self) -> f64 {
+        10.0 * self.active
+    }
+
+    /// Difference above which two loads, motions or works are distinct.
+    pub const fn distinct(&self) -> f64 {
+        100.0 * self.active
+    }
+
+    /// Share of a step beyond which its corner is its end.
+    pub const fn nearly(&self) -> f64 {
+        1.0 - self.admissible
+    }
+
+    /// Rates above this have no bound.
+    pub const fn unbounded(&self) -> f64 {
+        1.0 / self.inequality()
+    }
+
+    /// Flexibility above which a motion has no stiffness.
+    pub const fn soft(&self) -> f64 {
+        1.0 / self.active
+    }
+
+    /// Greatest entry of an inverse, relative to 1: more loses too many digits.
+    pub const fn largest_inverse(&self) -> f64 {
+        1.0 / self.distinct()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::SETTINGS;
+
+    /// Derived tolerances stay in the order in which they are used: what one part accepts no later part refuses.
+    #[test]
+    fn derived_tolerances_are_in_order() {
+        let ascending = [
+            SETTINGS.ulps(),
+            SETTINGS.negligible(),
+            SETTINGS.rounding,
+            SETTINGS.error_of_forces(),
+            SETTINGS.residual(),
+            SETTINGS.shift(),
+            SETTINGS.inequality(),
+            SETTINGS.admissible,
+            SETTINGS.mode,
+            SETTINGS.active,
+            SETTINGS.same_rate(),
+            SETTINGS.distinct(),
+        ];
+        assert!(ascending.is_sorted_by(|a, b| a < b), "{ascending:?}");
+        assert!(SETTINGS.ulps() > f64::EPSILON);
+    }
+}

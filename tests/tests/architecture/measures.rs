@@ -1,0 +1,126 @@
+//! Measures of the solvers that must not get worse: lines, import chains, large mutable structs, numbers, counters.
+
+use super::graph::Graph;
+use super::source::{Source, is, workspace};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Lines of the solvers without tests, at most.
+const LINES: usize = 26_500;
+/// Files, with each sub-folder as one, that import each other one after the other, at most.
+const CHAIN: usize = 8;
+/// Fields from which on a struct is large.
+const LARGE: usize = 9;
+/// Places that take a large struct of the paths as `&mut`.
+const MUTABLE: usize = 50;
+/// Constants that are numbers, at most, and fields of a struct of settings.
+const NUMBERS: usize = 190;
+const TOLERANCES: usize = 40;
+
+fn solvers() -> Graph {
+    Graph::of("solvers")
+}
+
+fn of_paths(files: &BTreeMap<Vec<String>, Source>) -> impl Iterator<Item = (&Vec<String>, &Source)> {
+    files.iter().filter(|(module, _)| module.first().is_some_and(|part| part == "path"))
+}
+
+/// The solvers stay small: lines without tests of all files.
+#[test]
+fn the_solvers_stay_small() {
+    let mut lines = 0;
+    super::source::each_source(&workspace().join("solvers/src"), &mut |path, text| {
+        let test =
+            path.iter().any(|part| part == "tests") || path.ends_with("tests.rs") || path.ends_with("two_blocks.rs");
+        if !test {
+            lines += text.split("#[cfg(test)]\nmod tests {").next().map_or(0, |own| own.lines().count());
+        }
+    });
+    assert!(lines <= LINES, "{lines} lines");
+}
+
+/// In each folder of the solvers at most eight files import each other one after the other. A sub-folder counts as one.
+#[test]
+fn import_chains_are_short() {
+    let edges = solvers().edges();
+    let folders: BTreeSet<Vec<String>> =
+        edges.keys().flat_map(|module| (0..module.len()).map(|n| module[..n].to_vec())).collect();
+    for folder in folders {
+        let part = |module: &Vec<String>| {
+            module.starts_with(&folder).then(|| module.get(folder.len()).cloned().unwrap_or_default())
+        };
+        let mut own: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+        for (from, targets) in &edges {
+            let Some(from) = part(from) else { continue };
+            let others = targets.iter().filter_map(part).filter(|to| *to != from && !to.is_empty());
+            own.entry(from.clone()).or_default().extend(others);
+        }
+        let mut known = BTreeMap::new();
+        let longest = own.keys().map(|from| length(&own, from, &mut known)).max().unwrap_or(0);
+        assert!(longest <= CHAIN, "{}: a chain of {longest}", folder.join("/"));
+    }
+}
+
+/// Number of parts in the longest chain of imports from a part.
+fn length(edges: &BTreeMap<String, BTreeSet<String>>, from: &String, known: &mut BTreeMap<String, usize>) -> usize {
+    if let Some(found) = known.get(from) {
+        return *found;
+    }
+    // A circle counts once.
+    known.insert(from.clone(), 0);
+    let beyond = edges.get(from).into_iter().flatten().map(|to| length(edges, to, known)).max().unwrap_or(0);
+    known.insert(from.clone(), beyond + 1);
+    beyond + 1
+}
+
+/// Functions of the paths take what they need: few take a struct of many fields as `&mut`.
+#[test]
+fn few_functions_take_a_large_struct_to_change_it() {
+    let files = solvers().files;
+    let large: BTreeSet<String> = of_paths(&files)
+        .flat_map(|(_, source)| source.structs())
+        .filter(|(_, fields)| *fields >= LARGE)
+        .map(|(name, _)| name)
+        .collect();
+    let mut places = Vec::new();
+    for (module, source) in of_paths(&files) {
+        let t = &source.tokens;
+        for i in (0..t.len()).filter(|&i| is(t, i, "mut") && i > 0 && is(t, i - 1, "&")) {
+            if t.get(i + 1).is_some_and(|name| large.contains(&name.text)) {
+                places.push(format!("{}: {}", module.join("/"), t[i].line));
+            }
+        }
+    }
+    assert!(places.len() <= MUTABLE, "{} places: {large:?}", places.len());
+}
+
+/// Tolerances live in structs of settings with at most forty fields each, and few other constants are numbers.
+#[test]
+fn numbers_live_in_settings() {
+    let files = solvers().files;
+    let kinds = ["f64", "usize", "u8", "u16", "u32", "u64", "i32", "i64"];
+    let mut numbers = 0;
+    for source in files.values() {
+        let t = &source.tokens;
+        let constant = |i: usize| is(t, i, "const") && is(t, i + 2, ":");
+        let number = |i: usize| kinds.iter().any(|kind| is(t, i, kind) || is(t, i, "[") && is(t, i + 1, kind));
+        numbers += (0..t.len()).filter(|&i| constant(i) && number(i + 3)).count();
+    }
+    assert!(numbers <= NUMBERS, "{numbers} constants");
+    for (module, source) in files.iter().filter(|(module, _)| module.last().is_some_and(|part| part == "settings")) {
+        for (name, fields) in source.structs() {
+            assert!(fields <= TOLERANCES, "{}::{name}: {fields} fields", module.join("::"));
+        }
+    }
+}
+
+/// What is counted for a report steers no algorithm: no solver reads a counter.
+#[test]
+fn no_solver_reads_its_counters() {
+    for (module, source) in solvers().files {
+        let t = &source.tokens;
+        for i in (0..t.len()).filter(|&i| is(t, i, "counters")) {
+            let read = is(t, i + 1, "[") || is(t, i + 1, ".") && (is(t, i + 2, "get") || is(t, i + 2, "contains_key"));
+            assert!(!read, "{}: {}", module.join("/"), t[i].line);
+        }
+    }
+}
