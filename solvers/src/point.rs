@@ -5,6 +5,7 @@
 //! halved. Stresses beyond what the law can carry end in [`Stop`], never in a number. A controlled stress
 //! that falls unloads the point; the falling branch of a law that softens is followed by controlled strains.
 
+use crate::settings::SETTINGS;
 use std::fmt;
 use std::sync::Arc;
 use voussoir_core::law::{InterfaceResponse, PlanarUpdate, StressUpdate, UpdateContext, UpdateFailure};
@@ -14,8 +15,6 @@ pub const COMPONENTS: usize = 6;
 const ITERATIONS: usize = 50;
 /// Halvings of a step before it is given up.
 const HALVINGS: u32 = 14;
-/// Tolerance of controlled stresses, relative to the greatest stress at the point.
-const TOLERANCE: f64 = 1e-11;
 
 /// The law at the point.
 #[derive(Debug, Clone)]
@@ -322,7 +321,7 @@ impl DrivenPoint {
             let largest = found.stress.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
             let noise = self.stiffness * strain.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
             best = best.min(error);
-            if error <= TOLERANCE * largest + 8.0 * f64::EPSILON * noise {
+            if error <= SETTINGS.shift() * largest + 8.0 * f64::EPSILON * noise {
                 return Ok(found);
             }
             let Some(delta) = solve_free(&found.tangent, &wrong, &free) else {

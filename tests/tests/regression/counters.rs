@@ -49,7 +49,8 @@ fn traced(voussoirs: usize, solver: &'static str) -> CaseResult {
     result
 }
 
-/// On elastic voussoirs the whole system is asked at the beginning and at the end only.
+/// On elastic voussoirs the whole system is asked at the beginning and at the end only; the chain is factorised anew once in a
+/// hundred events at most.
 #[test]
 fn an_event_of_elastic_voussoirs_costs_little() {
     for voussoirs in [13, 40] {
@@ -58,7 +59,10 @@ fn an_event_of_elastic_voussoirs_costs_little() {
         let counters = answered(&ring.study()).counters;
         let directions = counters["rate_problems"];
         assert!(counters["rate_problems_by_redundants"] + 5 >= directions, "{voussoirs}: {counters:?}");
-        assert!(counters["factorisations"] <= 8 && 3 * counters["solves"] <= directions, "{voussoirs}: {counters:?}");
+        assert!(
+            counters["factorisations"] <= 8 + directions / 100 && 3 * counters["solves"] <= directions,
+            "{voussoirs}: {counters:?}"
+        );
         assert!(5 * counters["rate_trials"] <= 6 * directions + 50, "{voussoirs}: {counters:?}");
     }
 }
@@ -70,6 +74,9 @@ fn an_event_of_rigid_voussoirs_costs_little() {
         let counters = traced(voussoirs, "event_path").counters;
         let events = counters["rate_problems"];
         assert!(counters["rate_problems_by_redundants"] + 5 >= events, "{voussoirs}: {counters:?}");
-        assert!(counters["factorisations"] <= 8 && 3 * counters["solves"] <= events, "{voussoirs}: {counters:?}");
+        assert!(
+            counters["factorisations"] <= 8 + events / 100 && 3 * counters["solves"] <= events,
+            "{voussoirs}: {counters:?}"
+        );
     }
 }

@@ -12,7 +12,7 @@ use voussoir::solvers::path::newton::NewtonPath;
 use voussoir_tests::by_hand::{self, body, contact, forces, ground, load_step};
 use voussoir_tests::known::REFERENCE_ARCH;
 use voussoir_tests::seen::Record;
-use voussoir_tests::{answered, assert_close, first_case};
+use voussoir_tests::{answered, assert_close, changed, first_case};
 
 fn settings(stop_displacement: Option<f64>, continuation: Option<Arc<dyn Continuation>>) -> PathSettings {
     PathSettings {
@@ -335,6 +335,22 @@ curve = true
 
 /// Rigid-block limit load of the reference bridge \[kN\].
 const RIGID: f64 = REFERENCE_ARCH;
+
+/// `tolerance` is what is asked of states: a loose one saves iterations and keeps the peak within it, a tight one changes nothing
+/// that the default gives.
+#[test]
+fn the_tolerance_of_a_study_is_that_of_its_states() {
+    let of = |tolerance: &str| {
+        let kinematics = "kinematics = \"finite\"";
+        let text = changed(&Bridge::default().study(), kinematics, &format!("{kinematics}\ntolerance = {tolerance}"));
+        let result = answered(&text);
+        (result.load_factor.expect("a peak"), result.counters["newton_iterations"])
+    };
+    let [loose, default, tight] = ["1e-6", "1e-9", "1e-12"].map(of);
+    assert!(loose.1 < default.1 && default.1 <= tight.1, "{loose:?} {default:?} {tight:?}");
+    assert_close(loose.0, default.0, 1e-6);
+    assert_close(tight.0, default.0, 1e-9);
+}
 
 /// Neither the step size, nor the strategy, nor the unit of length, nor which way round the bridge
 /// is looked at changes the peak.

@@ -3,7 +3,7 @@
 
 use super::continued::{Continued, Next};
 use crate::contact::mode::ContactMode;
-use crate::path::event::piece::factorisation::FactorisedModes;
+use crate::path::event::piece::factorisation::{FactorisedModes, REFINEMENTS};
 use crate::path::event::piece::point::Point;
 use crate::path::event::piece::rates::{Rates, direction_of, leaving, motion_alone, residual};
 use crate::path::event::piece::schur::SchurComplement;
@@ -16,14 +16,12 @@ use crate::rate::problem::Rate;
 use crate::settings::SETTINGS;
 use voussoir_core::path::{Branching, PathProblem};
 
-/// Steps of refinement of a direction.
-const REFINEMENTS: usize = 3;
 /// Points with a mode of their own beside the factorised one before factorising anew.
 const UPDATES: usize = 40;
 /// Points whose responses are found for one rate problem: for more of them it is factorised anew.
 const AT_ONCE: usize = 8;
-/// Points that are solved for next to the arrival, at most.
-const MANY: usize = 24;
+/// Points of the active set up to which they are solved for next to the arrival; more are solved for all at once.
+pub const MANY: usize = 24;
 /// Points of the active set up to which its rate problem is solved by itself where flow is not associated: its matrix is
 /// dense, and pivoting takes as many steps of its size squared as it has points.
 const DENSE: usize = 400;

@@ -6,15 +6,12 @@ mod strengthened;
 mod whole_system;
 
 pub use self::continued::{Continued, Next};
-use self::few::{Neighbourhood, by_active_set, by_neighbours};
+use self::few::{MANY, Neighbourhood, by_active_set, by_neighbours};
 use self::strengthened::by_strength;
 use self::whole_system::on_whole_system;
 use crate::path::event::piece::rates::Rates;
 use crate::path::event::trace::Trace;
 use crate::path::system::Load;
-
-/// Points of the active set above which all of them are solved for at once, if the rate is not next to the arrival.
-const MANY: usize = 24;
 
 /// The direction from the present state: of a chain by its joints, else by the only rate next to the arrival if there is one,
 /// else by the answer to the rate problem of the whole active set.

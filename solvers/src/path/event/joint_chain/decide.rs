@@ -3,6 +3,7 @@
 use super::chain::JointChain;
 use crate::contact::mode::ContactMode;
 use crate::linear::largest;
+use crate::path::event::piece::factorisation::REFINEMENTS;
 use crate::path::event::piece::point::Point;
 use crate::path::event::piece::rates::{Rates, leaving};
 use crate::path::system::{Load, System};
@@ -10,8 +11,6 @@ use crate::settings::SETTINGS;
 
 /// Rounds of the active set, and those in which all points change at once.
 const ROUNDS: [usize; 2] = [40, 12];
-/// Steps of refinement.
-const REFINEMENTS: usize = 3;
 /// Corrections after which rates are examined again: each errs by rounding of what it changes. Resultants, on which the
 /// load at collapse rests, are examined each time.
 const UNCHECKED: usize = 8;

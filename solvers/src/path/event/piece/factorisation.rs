@@ -18,8 +18,8 @@ use crate::settings::SETTINGS;
 use nalgebra::DMatrix;
 use voussoir_core::linear::Entries;
 
-/// Steps of refinement of the response to a load.
-const REFINEMENTS: usize = 3;
+/// Steps of refinement of a solution, at most.
+pub const REFINEMENTS: usize = 3;
 
 /// The equations in given modes, factorised.
 pub struct FactorisedModes {

@@ -4,12 +4,10 @@
 //! whole, the path turns sharply, and a state beyond the corner is not near any predictor. Then the step ends at the
 //! corner, which the law alone locates along the tangent.
 
+use super::monitors::BISECTIONS;
 use crate::path::newton::model::state::{State, Tangent, moved};
 use crate::path::newton::model::system::StepSystem;
 use crate::path::newton::quantities::inelastic::update_blocks;
-
-/// Bisections of the length.
-const BISECTIONS: usize = 48;
 
 /// The length along a rate, up to `most`, at which the first point of a block begins or ceases to yield. `None` if none does.
 pub(super) fn corner(system: &mut StepSystem, state: &State, rate: &Tangent, most: f64) -> Option<f64> {

@@ -23,7 +23,7 @@ use voussoir_core::law::{FacetMode, UpdateBranch};
 /// Doublings of a length at which the branch of a law is looked for.
 const DOUBLINGS: usize = 40;
 /// Bisections between two of them.
-const BISECTIONS: usize = 50;
+pub(super) const BISECTIONS: usize = 50;
 
 /// What a monitor reads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -31,9 +31,6 @@ use crate::settings::SETTINGS;
 use std::cell::RefCell;
 use std::rc::Rc;
 
-/// Backward error of every row that is rounding.
-const ROUNDING: f64 = 4.0 * f64::EPSILON;
-
 /// Residual of the modes' equations in units.
 pub fn residual_of(system: &StepSystem, start: &State, state: &State, gradient: &Gradient) -> Vec<f64> {
     let u = system.units();
@@ -223,7 +220,7 @@ fn refined(bordered: &BorderedSystem<ModeEquations>, right: &[f64]) -> Option<(V
         if now < before {
             best.copy_from_slice(&x);
         }
-        if !now.is_finite() || now > 0.5 * before || now <= 1e-16 * aim || error <= ROUNDING {
+        if !now.is_finite() || now > 0.5 * before || now <= 1e-16 * aim || error <= 4.0 * f64::EPSILON {
             before = before.min(now);
             break;
         }
