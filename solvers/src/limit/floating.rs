@@ -1,12 +1,10 @@
 //! Groups of blocks that no chain of joints holds to the ground: a rigid motion of theirs costs nothing, so that loads with
 //! a resultant on them are not carried.
 
+use crate::limit::settings::SETTINGS;
 use crate::linear::inner;
 use voussoir_core::limit::{LimitProblem, Velocity};
 use voussoir_core::model::{Wrenches, root};
-
-/// Share of the loads of such a group below which their resultant is rounding.
-const BALANCED: f64 = 1e-12;
 
 /// A rigid motion of a floating group on which the fixed loads do work and the varying ones, whatever their factor,
 /// none. The two sums are those of every group that floats; moments count over the scene's length.
@@ -30,9 +28,9 @@ pub fn loose_motion(problem: &LimitProblem, fixed: &Wrenches, varying: &Wrenches
     };
     floats.iter().filter(|&&group| roots[group] == group).find_map(|&of| {
         let ((w, most), (p, live)) = (sum(fixed, of), sum(varying, of));
-        let along = if inner(&p, &p).sqrt() > BALANCED * live { inner(&w, &p) / inner(&p, &p) } else { 0.0 };
+        let along = if inner(&p, &p).sqrt() > SETTINGS.balanced * live { inner(&w, &p) / inner(&p, &p) } else { 0.0 };
         let left: [f64; 3] = std::array::from_fn(|i| w[i] - along * p[i]);
-        (inner(&left, &left).sqrt() > BALANCED * most).then(|| {
+        (inner(&left, &left).sqrt() > SETTINGS.balanced * most).then(|| {
             let velocity = [left[0], left[1], left[2] / problem.length];
             (0..ground).map(|group| if roots[group] == of { velocity } else { [0.0; 3] }).collect()
         })

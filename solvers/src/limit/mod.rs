@@ -17,6 +17,7 @@ mod recovery;
 mod scale;
 pub mod sensitivity;
 pub mod sequential;
+mod settings;
 mod settlement;
 mod systems;
 

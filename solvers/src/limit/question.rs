@@ -3,6 +3,7 @@
 use super::engine::{Engine, Equilibrium, Greatest};
 use super::floating::loose_motion;
 use super::scale::combined;
+use crate::limit::settings::SETTINGS;
 use voussoir_core::limit::{Counters, JointForce, LimitAnswer, LimitProblem, LimitQuestion, Status};
 use voussoir_core::model::Wrenches;
 
@@ -109,7 +110,7 @@ fn carried(
             // Rounding of a zero factor is not a factor.
             let dead = problem.magnitude(base);
             let unit = if dead > 0.0 { dead / problem.magnitude(&problem.varying) } else { 1.0 };
-            let factor = if factor.abs() < 1e-15 * unit { 0.0 } else { factor };
+            let factor = if factor.abs() < SETTINGS.zero * unit { 0.0 } else { factor };
             answer.status = Status::Collapse;
             answer.factor = Some(start + factor);
             answer.field_factor = start + factor;

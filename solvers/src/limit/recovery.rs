@@ -3,18 +3,16 @@
 use super::equilibrium::Row;
 use super::scale::with_unit_power;
 use super::systems::Systems;
+use crate::limit::settings::SETTINGS;
 use voussoir_core::limit::{JointForce, LimitProblem, Velocity};
 use voussoir_core::linear::{Entries, SparseLdlt};
-
-/// Regularisation of the least-norm steps, which are repeated until they no longer gain.
-const DELTA: f64 = 1e-8;
 
 /// The solution of J z = h nearest to `start`, and its greatest residual.
 fn nearest(rows: &[Row], right: &[f64], start: Vec<f64>) -> Option<(Vec<f64>, f64)> {
     let (n, m) = (start.len(), rows.len());
     let mut entries: Entries = (0..n).map(|j| (j, j, 1.0)).collect();
     for (i, row) in rows.iter().enumerate() {
-        entries.push((n + i, n + i, -DELTA));
+        entries.push((n + i, n + i, -SETTINGS.shift));
         for &(j, v) in row {
             entries.push((n + i, j, v));
             entries.push((j, n + i, v));
@@ -30,7 +28,7 @@ fn nearest(rows: &[Row], right: &[f64], start: Vec<f64>) -> Option<(Vec<f64>, f6
         if best.as_ref().is_none_or(|b| worst < b.1) {
             best = Some((z.clone(), worst));
         }
-        if worst < 1e-16 {
+        if worst < SETTINGS.exhausted {
             break;
         }
         let mut load = vec![0.0; n];

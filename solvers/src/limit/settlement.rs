@@ -13,28 +13,19 @@
 //! is the answer.
 
 use super::systems::{LARGEST, Pair, Systems};
+use crate::limit::settings::SETTINGS;
 use crate::optimise::dense_simplex::{Dictionary, Equations, Feasibility};
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::law::FlowRule;
 use voussoir_core::limit::{LimitProblem, SettlementAnswer, Velocity};
 use voussoir_core::model::Wrenches;
 
-/// Slack, relative to the greatest force, up to which a row may yield.
-const TIGHT: f64 = 1e-9;
-/// Multipliers that differ by more than this share of the greatest are two.
-const APART: f64 = 1e-7;
 /// Pivots of a linear program.
 const PIVOTS: u64 = 20_000;
 /// Linear programs of a sequence.
 const PROGRAMS: usize = 60;
 /// The first, each of which begins from the forces of the one before; from there on half of the way.
 const FULL: usize = 24;
-/// Change of forces, relative to the greatest, at which a sequence is at its end.
-const EXACT: f64 = 1e-12;
-/// The same from which its end is solved for.
-const CLOSE: f64 = 1e-4;
-/// What least squares may leave, relative to their right-hand side.
-const RESIDUAL: f64 = 1e-9;
 
 /// Answers for any limit solver: with this flow, or the laws' own where no motion goes with associated flow.
 pub fn settle(problem: &LimitProblem, loads: &Wrenches, openings: &[[f64; 3]], flow: FlowRule) -> SettlementAnswer {
@@ -144,10 +135,10 @@ fn own_flow(systems: &Systems, driven: &[f64]) -> Result<Vec<f64>, String> {
         let size = force.iter().fold(f64::MIN_POSITIVE, |most: f64, r| most.max(r.abs()));
         let moved = |pair: &Pair| (relief(pair, &force) - relief(pair, &reference)).abs();
         change = systems.pairs.iter().map(moved).fold(0.0, f64::max) / size;
-        if change <= EXACT {
+        if change <= SETTINGS.balanced {
             return Ok(force);
         }
-        if change <= CLOSE
+        if change <= SETTINGS.close_forces
             && let Some(force) = onto_yield(systems, &program, &force)
         {
             return Ok(force);
@@ -177,7 +168,7 @@ fn onto_yield(systems: &Systems, program: &Systems, force: &[f64]) -> Option<Vec
     let moved: Vec<f64> = force.iter().zip(&correction).map(|(r, by)| r + by).collect();
     let size = moved.iter().fold(f64::MIN_POSITIVE, |most: f64, r| most.max(r.abs()));
     let excess = |pair: &Pair| pair.normal.iter().map(|&(j, v)| v * moved[j]).sum::<f64>() - pair.bound;
-    systems.pairs.iter().all(|pair| excess(pair) <= EXACT * size).then_some(moved)
+    systems.pairs.iter().all(|pair| excess(pair) <= SETTINGS.balanced * size).then_some(moved)
 }
 
 /// The field on which the supports do most work against the blocks, in units of force; `None` where that has no bound.
@@ -276,12 +267,12 @@ fn least_squares(matrix: DMatrix<f64>, right: &DVector<f64>, what: &str) -> Resu
         .clone()
         .try_svd(true, true, f64::EPSILON, 10_000)
         .ok_or_else(|| format!("no singular values of the {what}"))?;
-    let least = 1e-11 * svd.singular_values.max();
+    let least = SETTINGS.admissible * svd.singular_values.max();
     let mut x = svd.solve(&tall, least).map_err(|why| format!("{what}: {why}"))?;
     let rest = &tall - &high * &x;
     x += svd.solve(&rest, least).map_err(|why| format!("{what}: {why}"))?;
     let left = (right - matrix * &x).amax();
-    if left > RESIDUAL * right.amax().max(1e-300) {
+    if left > SETTINGS.active * right.amax().max(f64::MIN_POSITIVE) {
         return Err(format!("the {what} of the settlement leave {left:.1e} of their equations"));
     }
     Ok(x.iter().copied().collect())
@@ -294,7 +285,7 @@ fn tight(systems: &Systems, force: &[f64]) -> Vec<usize> {
         let pair = &systems.pairs[i];
         pair.bound - pair.normal.iter().map(|&(j, v)| v * force[j]).sum::<f64>()
     };
-    (0..systems.pairs.len()).filter(|i| slack(*i) <= TIGHT * size).collect()
+    (0..systems.pairs.len()).filter(|i| slack(*i) <= SETTINGS.active * size).collect()
 }
 
 /// γ of the tight pairs, in the relative interior of all that fit, and whether they are the only ones.
@@ -321,7 +312,7 @@ fn multipliers(systems: &Systems, driven: &[f64], tight: &[usize]) -> Result<(Ve
             Some((_, true)) => {
                 let other = point(&program);
                 let size = other.iter().fold(0.0, |a: f64, v| a.max(*v));
-                let same = |v: &Vec<f64>| v.iter().zip(&other).all(|(a, b)| (a - b).abs() <= APART * size);
+                let same = |v: &Vec<f64>| v.iter().zip(&other).all(|(a, b)| (a - b).abs() <= SETTINGS.apart * size);
                 if !found.iter().any(same) {
                     found.push(other);
                 }

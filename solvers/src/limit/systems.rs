@@ -6,6 +6,7 @@
 
 use super::equilibrium::ForceVariables;
 use super::scale::{force_scale, force_unit};
+use crate::limit::settings::SETTINGS;
 use crate::optimise::dense_simplex::{Dictionary, Equations};
 use voussoir_core::law::FacetMode;
 use voussoir_core::limit::LimitProblem;
@@ -205,5 +206,5 @@ impl Systems {
 /// The pairs whose multiplier is more than rounding.
 pub fn greatest_shares(gamma: &[f64]) -> Vec<usize> {
     let greatest = gamma.iter().fold(0.0f64, |m, g| m.max(*g));
-    (0..gamma.len()).filter(|&i| gamma[i] > 1e-8 * greatest).collect()
+    (0..gamma.len()).filter(|&i| gamma[i] > SETTINGS.moves * greatest).collect()
 }

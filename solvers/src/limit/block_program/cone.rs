@@ -1,13 +1,9 @@
 //! The rows that bound the forces of one joint, and the inverse root of their weighted normal matrix.
 
+use crate::limit::settings::SETTINGS;
+
 /// Rows of a joint at the most.
 pub const ROWS: usize = 4;
-
-/// Weight of a force that no row bounds, as of shear where a joint cannot slide.
-const UNBOUNDED: f64 = 1e-9;
-
-/// Least size of what a row adds to the others, relative to itself, for it to count as independent of them.
-const INDEPENDENT: f64 = 1e-6;
 
 /// Rows with all but one of them as a basis.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,7 +71,7 @@ impl Cone {
     /// R of (Aᵀ W A)⁻¹ = R Rᵀ by rows, and A R by columns. Weights may differ by any power of ten: the row that weighs least is left
     /// over from a basis, so that no difference is taken of great numbers, in A R neither.
     pub fn root(&self, weights: &[f64; ROWS]) -> ([[f64; 3]; 3], [[f64; ROWS]; 3]) {
-        let weight = |row: usize| if row < self.normals.len() { weights[row] } else { UNBOUNDED };
+        let weight = |row: usize| if row < self.normals.len() { weights[row] } else { SETTINGS.unbounded };
         let least = |split: &Split| split.over.map_or(0.0, weight);
         let mut split = &self.splits[0];
         for other in &self.splits[1..] {
@@ -88,7 +84,11 @@ impl Cone {
         let size = least(split).sqrt();
         let u: [f64; 3] = std::array::from_fn(|i| size * inverse[i] * split.shares[i]);
         let squared = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
-        let beta = if squared > 1e-8 { (1.0 - 1.0 / (1.0 + squared).sqrt()) / squared } else { 0.5 - 0.375 * squared };
+        let beta = if squared > SETTINGS.moves {
+            (1.0 - 1.0 / (1.0 + squared).sqrt()) / squared
+        } else {
+            0.5 - 0.375 * squared
+        };
         let mut root = [[0.0; 3]; 3];
         for (line, of) in root.iter_mut().zip(&split.inverse).take(self.forces) {
             let scaled: [f64; 3] = std::array::from_fn(|i| of[i] * inverse[i]);
@@ -124,7 +124,7 @@ fn orthonormal(rows: &[[f64; 3]], other: Option<&[f64; 3]>) -> (Vec<[f64; 3]>, b
             }
         }
         let left = dot(&rest, &rest).sqrt();
-        added = left > INDEPENDENT * size;
+        added = left > SETTINGS.independent * size;
         if added {
             basis.push(rest.map(|v| v / left));
         }
@@ -221,6 +221,10 @@ mod tests {
     fn forces_without_rows_have_soft_springs() {
         let cone = Cone::new(3, friction(0.65)[..2].to_vec()).unwrap();
         let (root, _) = cone.root(&[1.0, 4.0, 0.0, 0.0]);
-        assert!((root[2][2] - UNBOUNDED.powf(-0.5)).abs() < 1.0 && root[0][0].abs() == 1.0 && root[1][1].abs() == 0.5);
+        assert!(
+            (root[2][2] - SETTINGS.unbounded.powf(-0.5)).abs() < 1.0
+                && root[0][0].abs() == 1.0
+                && root[1][1].abs() == 0.5
+        );
     }
 }

@@ -9,15 +9,10 @@ use super::residuals::Residuals;
 use super::state::{State, Step};
 use super::stiffness::{Root, Stiffness};
 use super::wanted::Wanted;
+use crate::limit::settings::SETTINGS;
 use crate::linear::inner;
 use voussoir_core::linear::vectors::Simd;
 use voussoir_core::with_vectors;
-
-/// Added to each pivot, relative to it: far less than what the directions need.
-const RELATIVE: f64 = 1e-14;
-/// Least weight of a row. Where it is more than the row's own, forces change by more than the factors know, and the flow
-/// misses that share of their change.
-const SOFTEST: f64 = 1e-16;
 
 /// What a joint answers to motions with at a state.
 #[derive(Debug, Clone, Default)]
@@ -55,7 +50,7 @@ impl<'a> Directions<'a> {
         let (program, responses) = (self.program, self.responses.as_mut_slice());
         with_vectors!('a, respond(program: &'a Program, state: &'a State, responses: &'a mut [Response]) -> ());
         let roots = self.responses.iter().map(|response| &response.root);
-        self.stiffness.factorise(self.program, roots, 0.0, RELATIVE).then_some(())
+        self.stiffness.factorise(self.program, roots, 0.0, SETTINGS.pivot).then_some(())
     }
 
     /// The direction in which all residuals and `wanted` vanish, with θ where it moves.
@@ -126,7 +121,7 @@ fn respond<S: Simd>(_: S, program: &Program, state: &State, responses: &mut [Res
     for (response, (member, (s, z))) in responses.iter_mut().zip(joints) {
         response.slacks = s.map(|s| 1.0 / s);
         response.multipliers = z.map(|z| if z > 0.0 { 1.0 / z } else { 0.0 });
-        let weights = std::array::from_fn(|row| (z[row] * response.slacks[row]).max(SOFTEST));
+        let weights = std::array::from_fn(|row| (z[row] * response.slacks[row]).max(SETTINGS.exhausted));
         (response.root, response.rows) = program.cones[member.cone].root(&weights);
     }
 }

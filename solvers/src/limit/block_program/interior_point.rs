@@ -10,20 +10,13 @@ use super::residuals::{Residuals, greatest};
 use super::solution::Solution;
 use super::state::{State, Step};
 use super::wanted::Wanted;
+use crate::limit::settings::SETTINGS;
 use voussoir_core::limit::JointForce;
 
 /// Iterations at the most.
 const MOST: u64 = 250;
 /// Iterations until a fixed load should be carried.
 const MOST_HELD: u64 = 25;
-/// Gap from which a polish is tried where every row is far nearer to its bound than to no multiplier, or the reverse.
-const CLOSE: f64 = 1e-5;
-/// Ratio of a multiplier to its slack, or the reverse, that is clear.
-const CLEAR: f64 = 1e2;
-/// Residuals above which there is nothing to polish.
-const OFF: f64 = 1e-4;
-/// Error of an answer that is rounding, and the greatest that counts where nothing less is reached.
-const SETTLED: [f64; 2] = [2e-13, 1e-11];
 /// Share of the way to the nearest bound.
 const SHORT: f64 = 0.995;
 /// Correctors of one direction at the most, the step that needs none, and the least gain of one.
@@ -34,14 +27,8 @@ const GAIN: f64 = 0.005;
 const BEYOND: [f64; 2] = [1.5, 0.1];
 /// Share of the gap of a polish at which the next is tried.
 const SOONEST: f64 = 1e-2;
-/// Gap below which nothing is to be gained.
-const ROUNDING: f64 = 5e-14;
 /// Iterations in which neither the gap nor what equilibrium misses was halved, after which nothing is hoped for.
 const IDLE: u32 = 12;
-/// Factor in its unit below which it is as good as zero.
-const LEAST: f64 = 1e-6;
-/// Factor in its unit beyond which there may be no bound.
-const FAR: f64 = 1e7;
 
 /// What a program came to, with the work done.
 pub struct Solved {
@@ -111,7 +98,7 @@ impl Method<'_> {
         let mean = self.state.gap() / self.products();
         for _ in 0..MOST_HELD {
             self.residuals.update(self.program, &self.state);
-            if self.residuals.greatest()[0] < 1e-12 && self.inside() {
+            if self.residuals.greatest()[0] < SETTINGS.balanced && self.inside() {
                 return Some(());
             }
             let Method { directions, state, residuals, steps: [step, _], wanted: [wanted, _], .. } = self;
@@ -142,7 +129,9 @@ impl Method<'_> {
             self.residuals.update(self.program, &self.state);
             let [statics, kinematics] = self.residuals.greatest();
             let gap = self.state.gap() / (1.0 + self.state.theta.abs());
-            if !(gap.is_finite() && statics.is_finite() && kinematics.is_finite()) || self.state.theta.abs() > FAR {
+            if !(gap.is_finite() && statics.is_finite() && kinematics.is_finite())
+                || self.state.theta.abs() > SETTINGS.greatest_factor
+            {
                 break;
             }
             let missing = [gap, statics];
@@ -152,25 +141,29 @@ impl Method<'_> {
             let error = self.error(statics);
             // Below the gap that is asked for, rounding of the motion is all that is left.
             let last = nearest.as_ref().map_or(f64::INFINITY, |nearest| nearest.0);
-            let done = error < SETTLED[0] || (gap < ROUNDING && error < SETTLED[1] && error > 0.5 * last);
-            if error < SETTLED[1].min(last) {
+            let done = error < SETTINGS.settled
+                || (gap < SETTINGS.exhausted_gap && error < SETTINGS.admissible && error > 0.5 * last);
+            if error < SETTINGS.admissible.min(last) {
                 nearest = Some((error, self.state.clone()));
             }
-            if statics.max(kinematics) < OFF && gap < CLOSE.min(SOONEST * polished) && self.clear() {
+            if statics.max(kinematics) < SETTINGS.unpolished
+                && gap < SETTINGS.close_gap.min(SOONEST * polished)
+                && self.clear()
+            {
                 polished = gap;
                 self.polished(&mut best);
             }
-            let settled = best.as_ref().is_some_and(|best| best.0 < SETTLED[0]);
+            let settled = best.as_ref().is_some_and(|best| best.0 < SETTINGS.settled);
             if settled || done || idle > IDLE || self.improve().is_none() {
                 break;
             }
         }
         if let Some((error, state)) = nearest
-            && best.as_ref().is_none_or(|best| best.0 > SETTLED[0] && error < best.0)
+            && best.as_ref().is_none_or(|best| best.0 > SETTINGS.settled && error < best.0)
         {
             best = Some((error, unpolished(self.program, &state, &mut self.directions.stiffness)?));
         }
-        best.filter(|best| best.0 < SETTLED[1]).map(|best| best.1)
+        best.filter(|best| best.0 < SETTINGS.admissible).map(|best| best.1)
     }
 
     /// Polishes the present state, for what is better than the best so far.
@@ -187,9 +180,9 @@ impl Method<'_> {
     fn error(&self, statics: f64) -> f64 {
         let moved = greatest(self.residuals.flow.as_flattened());
         let largest = greatest(self.state.multipliers.as_flattened()).max(f64::MIN_POSITIVE);
-        let gap = self.state.gap() / self.state.theta.abs().max(LEAST);
+        let gap = self.state.gap() / self.state.theta.abs().max(SETTINGS.least_factor);
         // Without a motion on which the load does work nothing is proved.
-        if self.residuals.power.abs() > OFF {
+        if self.residuals.power.abs() > SETTINGS.unpolished {
             return f64::INFINITY;
         }
         // NaN counts as greatest.
@@ -199,7 +192,7 @@ impl Method<'_> {
     /// Whether it is clear of every row if it carries.
     fn clear(&self) -> bool {
         let rows = self.state.slacks.iter().flatten().zip(self.state.multipliers.iter().flatten());
-        rows.filter(|(_, z)| **z > 0.0).all(|(s, z)| *z > CLEAR * s || *s > CLEAR * z)
+        rows.filter(|(_, z)| **z > 0.0).all(|(s, z)| *z > SETTINGS.clear * s || *s > SETTINGS.clear * z)
     }
 
     /// One predictor, with correctors.
@@ -210,7 +203,7 @@ impl Method<'_> {
         wanted.all(state);
         directions.towards(state, residuals, wanted, true, step);
         let gap = state.gap();
-        let share = (state.gap_after(step) / gap).powi(3).clamp(1e-8, 1.0);
+        let share = (state.gap_after(step) / gap).powi(3).clamp(SETTINGS.moves, 1.0);
         let mean = share * gap / products;
         wanted.but(state, mean);
         wanted.and_second_order(step);

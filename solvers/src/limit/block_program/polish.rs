@@ -11,20 +11,15 @@ use super::residuals::imbalance;
 use super::solution::Solution;
 use super::state::State;
 use super::stiffness::{Root, Stiffness};
+use crate::limit::settings::SETTINGS;
 use crate::linear::inner;
 
-/// Shift of the stiffness.
-const DELTA: f64 = 1e-8;
 /// Sets of carrying rows tried.
 const SETS: usize = 6;
 /// Of these, those after which all wrong rows change at once; after the others the worst alone does.
 const TOGETHER: usize = 3;
 /// Corrections of one set.
 const CORRECTIONS: usize = 12;
-/// Violations below this are rounding.
-const ROUNDING: f64 = 1e-13;
-/// Multipliers below this share of the greatest do not count as motion.
-const NONE: f64 = 1e-10;
 
 /// What the carrying rows of one joint leave free, and how their values and multipliers follow.
 struct Frame {
@@ -135,7 +130,7 @@ impl Polish<'_> {
         self.frames = joints.map(|(member, carrying)| Frame::new(&self.program.cones[member.cone], carrying)).collect();
         let mut v = self.program.varying.clone();
         let roots = self.frames.iter().map(|frame| &frame.free);
-        stiffness.factorise(self.program, roots, DELTA, 0.0).then(|| stiffness.solve(&mut v))?;
+        stiffness.factorise(self.program, roots, SETTINGS.shift, 0.0).then(|| stiffness.solve(&mut v))?;
         Some(v)
     }
 
@@ -159,7 +154,7 @@ impl Polish<'_> {
             }
             let residual = imbalance(self.program, &self.state.x, self.state.theta);
             let error = residual.iter().fold(0.0f64, |m, r| m.max(r.abs()));
-            if error < 1e-16 || (error > 0.5 * best && error < 1e-13) || error > 1e3 * best {
+            if error < SETTINGS.exhausted || (error > 0.5 * best && error < SETTINGS.rounding) || error > 1e3 * best {
                 break;
             }
             best = best.min(error);
@@ -227,7 +222,10 @@ impl Polish<'_> {
                 error = along.iter().fold(error, |m, v| m.max(v.abs()));
                 program.press(member, &along, &mut resisted);
             }
-            if error < 1e-17 || (error > 0.5 * best && error < 1e-13) || error > 1e3 * best {
+            if error < 0.1 * SETTINGS.exhausted
+                || (error > 0.5 * best && error < SETTINGS.rounding)
+                || error > 1e3 * best
+            {
                 break;
             }
             best = best.min(error);
@@ -267,7 +265,7 @@ impl Polish<'_> {
     /// The greatest error, after which rows that should not carry leave and those that are violated enter, or the worst of
     /// them alone; whether any did.
     fn judge(&mut self, single: bool) -> (f64, bool) {
-        let mut worst = (ROUNDING, 0, 0);
+        let mut worst = (SETTINGS.rounding, 0, 0);
         let program = self.program;
         let scale = self.greatest_multiplier();
         let (mut error, mut changed) = (0.0f64, false);
@@ -287,14 +285,14 @@ impl Polish<'_> {
                     if wrong > worst.0 {
                         worst = (wrong, index, row);
                     }
-                } else if wrong > ROUNDING {
+                } else if wrong > SETTINGS.rounding {
                     *carries = !*carries;
                     changed = true;
                 }
             }
             error = flow.iter().fold(error, |m, v| m.max(v.abs() / scale));
         }
-        if worst.0 > ROUNDING {
+        if worst.0 > SETTINGS.rounding {
             let carries = &mut self.carrying[worst.1][worst.2];
             *carries = !*carries;
             changed = true;
@@ -304,7 +302,7 @@ impl Polish<'_> {
         if let Some(cap) = program.cap {
             let wrong = if self.capped { -self.state.cap[1] } else { self.state.theta - cap };
             error = error.max(wrong);
-            if wrong > ROUNDING {
+            if wrong > SETTINGS.rounding {
                 self.capped = !self.capped;
                 changed = true;
             }
@@ -315,7 +313,7 @@ impl Polish<'_> {
     }
 
     fn greatest_multiplier(&self) -> f64 {
-        self.state.multipliers.iter().flatten().fold(1e-300f64, |m, z| m.max(z.abs())).max(1.0)
+        self.state.multipliers.iter().flatten().fold(f64::MIN_POSITIVE, |m, z| m.max(z.abs())).max(1.0)
     }
 
     /// Whether no other motion is possible where the same rows yield: inverse iteration for a second motion that no
@@ -325,11 +323,11 @@ impl Polish<'_> {
         let joints = self.program.members.iter().zip(&self.state.multipliers);
         let roots: Vec<Root> = joints
             .map(|(member, z)| {
-                let yields = std::array::from_fn(|row| z[row] > NONE * scale);
+                let yields = std::array::from_fn(|row| z[row] > SETTINGS.negligible * scale);
                 Frame::new(&self.program.cones[member.cone], &yields).free
             })
             .collect();
-        stiffness.factorise(self.program, roots.iter(), DELTA, 0.0).then_some(())?;
+        stiffness.factorise(self.program, roots.iter(), SETTINGS.shift, 0.0).then_some(())?;
         let q = &self.state.q;
         let squared = inner(q, q);
         let without = |w: &mut Vec<f64>| {
@@ -349,6 +347,6 @@ impl Polish<'_> {
             softest = 1.0 / without(&mut w);
         }
         // With a second motion the least stiffness is the shift alone.
-        Some(softest > DELTA * (1.0 + 1e-3))
+        Some(softest > SETTINGS.shift * (1.0 + 1e-3))
     }
 }

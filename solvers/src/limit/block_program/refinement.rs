@@ -13,13 +13,11 @@ use super::directions::{Directions, cap_stiffness};
 use super::residuals::{Residuals, greatest};
 use super::state::{State, Step};
 use super::wanted::Wanted;
+use crate::limit::settings::SETTINGS;
 use crate::linear::inner;
 
 /// Corrections of a direction at the most, and the share of the gap that its equilibrium may miss.
 const MOST: usize = 12;
-const MISSED: f64 = 1e-4;
-/// What is missed is rounding below this, in units of force.
-const ROUNDING: f64 = 1e-16;
 /// Corrections in a row that do not halve what is missed, after which no other is tried.
 const IDLE: usize = 2;
 
@@ -37,7 +35,7 @@ impl Directions<'_> {
     /// that only the last one's rounding is magnified.
     pub fn refined(&mut self, state: &State, residuals: &Residuals, wanted: &Wanted, moves: bool, step: &mut Step) {
         let program = self.program;
-        let aim = (MISSED * state.gap()).max(ROUNDING);
+        let aim = (SETTINGS.missed * state.gap()).max(SETTINGS.exhausted);
         let stiff = cap_stiffness(program, state);
         let mut before: Option<Correction> = None;
         let (mut least, mut idle) = (f64::INFINITY, 0);

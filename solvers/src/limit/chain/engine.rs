@@ -5,6 +5,7 @@ use super::optimum::centre;
 use super::simplex::{Outcome, Program, Solved};
 use crate::limit::engine::{Engine, Equilibrium, Greatest};
 use crate::limit::scale::{force_scale, force_unit, with_unit_power};
+use crate::limit::settings::SETTINGS;
 use voussoir_core::limit::{Counters, JointForce, LimitProblem};
 use voussoir_core::model::Wrenches;
 
@@ -34,7 +35,9 @@ impl<'a> ChainEngine<'a> {
         let program = Program::new(self.problem, &forms, force);
         let program = if any { program.with_any_margin() } else { program.with_margin() };
         match self.run(&program) {
-            Outcome::Optimal(solved) if solved.value >= -1e-12 => Equilibrium::Field(program.forces(&solved.point)),
+            Outcome::Optimal(solved) if solved.value >= -SETTINGS.balanced => {
+                Equilibrium::Field(program.forces(&solved.point))
+            }
             Outcome::Optimal(solved) => {
                 let (columns, _) = centre(&program, &solved.point, solved.columns);
                 Equilibrium::Motion(program.motion(self.problem, &self.trees, &columns))

@@ -1,6 +1,7 @@
 //! Mechanisms in the relative interior of the optimal ones, where the optimum is degenerate.
 
 use super::simplex::{Column, Program};
+use crate::limit::settings::SETTINGS;
 use nalgebra::{DMatrix, DVector};
 
 /// The analytic centre of all optimal multipliers {y ≥ 0 : Σ y_i a_i = c} over the rows active at
@@ -24,7 +25,7 @@ pub fn centre(program: &Program, point: &[f64], found: Vec<(Column, f64)>) -> (V
         return (found, false);
     };
     let scale = interior.amax();
-    let support: Vec<usize> = (0..columns.len()).filter(|&i| interior[i] > 1e-9 * scale).collect();
+    let support: Vec<usize> = (0..columns.len()).filter(|&i| interior[i] > SETTINGS.active * scale).collect();
     let reduced = matrix.select_columns(&support);
     if rank(&reduced) == support.len() {
         return (found, true);
@@ -51,13 +52,10 @@ fn rank(matrix: &DMatrix<f64>) -> usize {
             column /= norm;
         }
     }
-    if clearly_independent(&scaled) { matrix.ncols() } else { scaled.svd(false, false).rank(DEPENDENT) }
+    if clearly_independent(&scaled) { matrix.ncols() } else { scaled.svd(false, false).rank(SETTINGS.active) }
 }
 
-/// Singular value of columns of length one below which they depend on each other.
-const DEPENDENT: f64 = 1e-9;
-
-/// Whether columns of length one have no singular value below a thousand times [`DEPENDENT`], by their volume: the product of k singular
+/// Returns true if columns of length one have no singular value below a thousand times `active`, by their volume: the product of k singular
 /// values, each at most √k. False does not say that they have.
 fn clearly_independent(columns: &DMatrix<f64>) -> bool {
     let k = columns.ncols();
@@ -66,7 +64,7 @@ fn clearly_independent(columns: &DMatrix<f64>) -> bool {
     for j in 0..k {
         let norm = rest.column(j).norm();
         volume *= norm;
-        if volume.is_nan() || volume <= 1e3 * DEPENDENT * (k as f64).powf((k - 1) as f64 / 2.0) {
+        if volume.is_nan() || volume <= 1e3 * SETTINGS.active * (k as f64).powf((k - 1) as f64 / 2.0) {
             return false;
         }
         let (before, mut after) = rest.columns_range_pair_mut(j..j + 1, j + 1..);
@@ -86,7 +84,7 @@ fn interior_point(matrix: &DMatrix<f64>, start: &DVector<f64>) -> Option<DVector
     let mut sum = start.clone();
     let mut count = 1.0;
     for target in 0..k {
-        if sum[target] > 1e-9 * sum.amax() {
+        if sum[target] > SETTINGS.active * sum.amax() {
             continue;
         }
         sum += carry(matrix, start, target)?;
@@ -115,17 +113,17 @@ fn carry(matrix: &DMatrix<f64>, start: &DVector<f64>, target: usize) -> Option<D
         let b = matrix.select_columns(&basis);
         let pseudo = b.clone().svd(true, true);
         let entering = (0..k).filter(|i| !basis.contains(i)).find_map(|i| {
-            let change = pseudo.solve(&matrix.column(i).into_owned(), 1e-12).ok()?;
+            let change = pseudo.solve(&matrix.column(i).into_owned(), SETTINGS.balanced).ok()?;
             let gain =
                 f64::from(i == target) - basis.iter().position(|&j| j == target).map_or(0.0, |place| change[place]);
-            (gain > 1e-10).then_some((i, change))
+            (gain > SETTINGS.negligible).then_some((i, change))
         });
         let Some((entering, change)) = entering else {
             return Some(y);
         };
         let ratio = |place: usize| y[basis[place]].max(0.0) / change[place];
         let place = (0..basis.len())
-            .filter(|&place| change[place] > 1e-10)
+            .filter(|&place| change[place] > SETTINGS.negligible)
             .min_by(|&a, &b| ratio(a).total_cmp(&ratio(b)).then(basis[a].cmp(&basis[b])))?;
         let step = ratio(place);
         for (p, &j) in basis.iter().enumerate() {
@@ -147,14 +145,14 @@ fn analytic_centre(matrix: &DMatrix<f64>, start: DVector<f64>) -> DVector<f64> {
         let squared = DMatrix::from_diagonal(&y.map(|v| v * v));
         let normal = matrix * &squared * matrix.transpose();
         let residual = &target - matrix * &y;
-        let Ok(nu) = normal.svd(true, true).solve(&(matrix * &y - residual), 1e-13) else {
+        let Ok(nu) = normal.svd(true, true).solve(&(matrix * &y - residual), SETTINGS.rounding) else {
             break;
         };
         let step = &y - &squared * matrix.transpose() * nu;
         let largest = (0..y.len()).map(|i| -step[i] / y[i]).fold(0.0, f64::max);
         let length = if largest > 0.9 { 0.9 / largest } else { 1.0 };
         y += &step * length;
-        if (0..y.len()).all(|i| step[i].abs() <= 1e-14 * y[i]) {
+        if (0..y.len()).all(|i| step[i].abs() <= SETTINGS.pivot * y[i]) {
             break;
         }
     }

@@ -3,19 +3,16 @@
 
 use super::layout::{Forms, Trees, add_weighted};
 use super::small_lu::SmallLu;
+use crate::limit::settings::SETTINGS;
 use crate::linear::inner;
 use nalgebra::{DMatrix, DVector, Vector2, Vector3};
 use std::cmp::Ordering;
 use voussoir_core::law::{ForceRow, StressBlock};
 use voussoir_core::limit::{JointForce, LimitProblem, Velocity};
 
-/// Violation of a linear row that counts, in units of the force scale.
-const ROW_TOLERANCE: f64 = 1e-13;
 /// Violations of stress blocks at which Newton's method is tried, in turn; after the last one the
 /// tangents themselves are the answer.
-const BLOCK_TOLERANCES: [f64; 4] = [1e-8, 1e-10, 1e-12, 1e-13];
-/// Slack below which a row counts as active.
-const ACTIVE_TOLERANCE: f64 = 1e-11;
+const BLOCK_TOLERANCES: [f64; 4] = [SETTINGS.shift, SETTINGS.negligible, SETTINGS.balanced, SETTINGS.rounding];
 const MAX_PIVOTS: u64 = 5000;
 
 /// Which elementary mechanism a column is.
@@ -284,7 +281,7 @@ impl<'a> Program<'a> {
     fn entering(&self, point: &[f64], constant: f64, block_tolerance: f64, basis: &[Column]) -> Option<(Column, f64)> {
         let mut worst: Option<(Column, f64)> = None;
         let size = point.iter().fold(1.0f64, |m, x| m.max(x.abs()));
-        let least = ROW_TOLERANCE * size;
+        let least = SETTINGS.rounding * size;
         self.scan((point, constant), |violation| violation, least, &mut |column, violation| {
             let tangent = constant != 0.0 && matches!(column, Column::Tangent { .. });
             if !basis.contains(&column) && (!tangent || violation > block_tolerance * size) {
@@ -299,7 +296,7 @@ impl<'a> Program<'a> {
     pub fn active(&self, point: &[f64]) -> Vec<Column> {
         let size = point.iter().fold(1.0f64, |m, x| m.max(x.abs()));
         let mut active = Vec::new();
-        let least = -ACTIVE_TOLERANCE * size;
+        let least = -SETTINGS.admissible * size;
         self.scan((point, 1.0), |violation| violation, least, &mut |column, _| {
             active.push(column);
             least
@@ -331,8 +328,8 @@ impl<'a> Program<'a> {
         let identity: Vec<f64> = (0..m * m).map(|k| f64::from(u8::from(k % (m + 1) == 0))).collect();
         let mut basis = Basis { columns, matrix: identity.clone(), origin: identity, lu: SmallLu::new(m) };
         if !self.cap.is_finite() {
-            match self.iterate(&mut basis, true, ROW_TOLERANCE, &mut work) {
-                Ending::Optimal { point, .. } if point[m - 1] > 1e-9 => {
+            match self.iterate(&mut basis, true, SETTINGS.rounding, &mut work) {
+                Ending::Optimal { point, .. } if point[m - 1] > SETTINGS.active => {
                     return (Outcome::Unbounded(point.iter().map(|x| x / point[m - 1]).collect()), work);
                 }
                 Ending::Optimal { .. } => {}
@@ -428,7 +425,7 @@ impl<'a> Program<'a> {
             row.fill(0.0);
             row[place] = 1.0;
             basis.lu.solve_transposed(&mut row);
-            let mut best: (f64, Option<Column>) = (1e-9, None);
+            let mut best: (f64, Option<Column>) = (SETTINGS.active, None);
             // In the recession cone the violation at a point is its product with the column.
             self.scan((&row, 0.0), f64::abs, best.0, &mut |column, product| {
                 if !basis.columns.contains(&column) {
@@ -463,7 +460,7 @@ impl<'a> Program<'a> {
         if merged.iter().any(|(column, _)| matches!(column, Column::Tangent { .. })) {
             // Rows that stand at zero may be active by chance; with too few the system is singular.
             let mut failed = String::new();
-            let found = [1e-10, f64::NEG_INFINITY].iter().find_map(|&least| {
+            let found = [SETTINGS.negligible, f64::NEG_INFINITY].iter().find_map(|&least| {
                 let mut trial: Vec<_> = merged.iter().copied().filter(|(_, weight)| *weight > least).collect();
                 let mut moved = point.clone();
                 match self.newton(&mut moved, &mut trial, work) {
@@ -480,8 +477,8 @@ impl<'a> Program<'a> {
                 None => return Outcome::Failed(failed),
             }
         }
-        let capped = merged.iter().any(|&(column, weight)| column == Column::Cap && weight > 1e-9);
-        merged.retain(|&(column, weight)| column != Column::Cap && weight > 1e-14);
+        let capped = merged.iter().any(|&(column, weight)| column == Column::Cap && weight > SETTINGS.active);
+        merged.retain(|&(column, weight)| column != Column::Cap && weight > SETTINGS.pivot);
         Outcome::Optimal(Solved { value: point[self.variables - 1], point, columns: merged, capped })
     }
 
@@ -515,7 +512,7 @@ impl<'a> Program<'a> {
                 residual[m + place] = a.iter().zip(point.iter()).map(|(a, x)| a * x).sum::<f64>() - beta;
             }
             let size = point.iter().fold(1.0f64, |s, x| s.max(x.abs()));
-            if residual.amax() <= 4e-15 * size {
+            if residual.amax() <= 4.0 * SETTINGS.zero * size {
                 break;
             }
             let Some(step) = kkt.lu().solve(&residual) else {
@@ -523,7 +520,7 @@ impl<'a> Program<'a> {
             };
             (0..m).for_each(|i| point[i] -= step[i]);
             columns.iter_mut().enumerate().for_each(|(i, (_, weight))| *weight -= step[m + i]);
-            if step.rows(0, m).amax() <= 1e-15 * size {
+            if step.rows(0, m).amax() <= SETTINGS.zero * size {
                 break;
             }
         }
@@ -538,7 +535,7 @@ impl<'a> Program<'a> {
             },
         );
         let least = columns.iter().map(|(_, weight)| *weight).fold(f64::INFINITY, f64::min);
-        if worst > 1e-11 || least < -1e-11 || !worst.is_finite() {
+        if worst > SETTINGS.admissible || least < -SETTINGS.admissible || !worst.is_finite() {
             return Err(format!(
                 "Newton's method on the stress blocks left a violation of {worst:.1e} and a multiplier of {least:.1e}"
             ));
@@ -632,7 +629,7 @@ fn tangents(
 fn leaving(weights: &[f64], change: &[f64], lu: &mut SmallLu, origin: &[f64]) -> Option<usize> {
     let m = change.len();
     let largest = change.iter().fold(0.0f64, |m, x| m.max(x.abs()));
-    let close = |x: f64, y: f64| (x - y).abs() <= 1e-13 * (1.0 + x.abs().max(y.abs()));
+    let close = |x: f64, y: f64| (x - y).abs() <= SETTINGS.rounding * (1.0 + x.abs().max(y.abs()));
     // Columns of the rule so far: most pivots need none.
     let mut reference: Vec<f64> = Vec::new();
     let mut order = |a: usize, b: usize| {
@@ -652,5 +649,5 @@ fn leaving(weights: &[f64], change: &[f64], lu: &mut SmallLu, origin: &[f64]) ->
         }
         Ordering::Equal
     };
-    (0..m).filter(|&k| change[k] > 1e-11 * largest.max(1e-300)).min_by(|&a, &b| order(a, b))
+    (0..m).filter(|&k| change[k] > SETTINGS.admissible * largest.max(f64::MIN_POSITIVE)).min_by(|&a, &b| order(a, b))
 }

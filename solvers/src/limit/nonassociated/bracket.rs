@@ -6,15 +6,16 @@
 
 use super::conflict_search::{Ending, Search};
 use super::curve::Curve;
+use crate::limit::settings::SETTINGS;
 use crate::limit::systems::Systems;
 use crate::optimise::dense_simplex::{Dictionary, Feasibility};
 use voussoir_core::limit::BracketWork;
 
 /// A range ends this far below a known state, relative to it; where rounding finds that state again, up
 /// to [`WIDEST`].
-pub const GAP: f64 = 1e-8;
+pub const GAP: f64 = SETTINGS.below_state;
 /// A bracket no wider than this is closed.
-pub const WIDEST: f64 = 1e-6;
+pub const WIDEST: f64 = SETTINGS.closed;
 /// Ends of the ranges as shares of what is open; they close at about equal cost.
 const SHARES: [f64; 8] = [0.3, 0.6, 0.77, 0.85, 0.92, 0.96, 0.985, 1.0];
 
@@ -85,7 +86,7 @@ pub fn dissipations(systems: &Systems, statics: &mut Dictionary) -> (Vec<[f64; 2
                         _ => f64::INFINITY,
                     };
                     // Rounding must not make the bounds too narrow.
-                    let slack = -sign * 1e-9 * (1.0 + extreme.abs());
+                    let slack = -sign * SETTINGS.active * (1.0 + extreme.abs());
                     let power = pair.bound + extreme + slack - pair.relief * base;
                     bounds[i][side] = if side == 0 { power.max(0.0) } else { power };
                 }

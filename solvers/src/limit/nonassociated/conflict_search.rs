@@ -7,10 +7,8 @@
 //! refuses, the moving pair that took part in most recent refusals is made to yield, at first the
 //! one with the greatest product s_i γ_i of the two present points.
 
+use crate::limit::settings::SETTINGS;
 use crate::optimise::dense_simplex::{Dictionary, Feasibility};
-
-/// γ_i of this share of the greatest γ moves.
-const MOVES: f64 = 1e-9;
 
 /// A pair and whether it yields, as 2 i + (1 if at rest).
 type Literal = usize;
@@ -362,9 +360,9 @@ impl Search {
             }
             let gamma: Vec<f64> = (0..self.pairs).map(|i| self.kinematics.value(i).max(0.0)).collect();
             let greatest = gamma.iter().fold(0.0f64, |m, g| m.max(*g));
-            let moving: Vec<usize> = (0..self.pairs).filter(|&i| gamma[i] > MOVES * greatest).collect();
+            let moving: Vec<usize> = (0..self.pairs).filter(|&i| gamma[i] > SETTINGS.active * greatest).collect();
             let product = |i: usize| self.statics.value(i).max(0.0) * gamma[i] / greatest;
-            let key = |i: usize| self.activity[i] / self.bump + 1e-9 * product(i);
+            let key = |i: usize| self.activity[i] / self.bump + SETTINGS.active * product(i);
             let chosen =
                 moving.iter().copied().filter(|&i| self.value[i].is_none()).max_by(|&a, &b| key(a).total_cmp(&key(b)));
             match chosen {

@@ -4,10 +4,8 @@
 //! state. Alternating linear programs lower it from many starts; at a state, the least factor with
 //! its mechanism is a linear program in the field, and other mechanisms at that field lead further.
 
+use crate::limit::settings::SETTINGS;
 use crate::optimise::dense_simplex::{Dictionary, Feasibility};
-
-/// Products below this share of their scale are zero.
-const ZERO: f64 = 1e-9;
 
 /// A pair of systems between which the search alternates.
 pub struct Descent<'a> {
@@ -40,7 +38,7 @@ impl Descent<'_> {
     fn read(system: &Dictionary, pairs: usize) -> Vec<f64> {
         let values: Vec<f64> = (0..pairs).map(|i| system.value(i).max(0.0)).collect();
         let greatest = values.iter().fold(0.0f64, |m, v| m.max(*v));
-        values.into_iter().map(|v| if v > ZERO * greatest { v } else { 0.0 }).collect()
+        values.into_iter().map(|v| if v > SETTINGS.active * greatest { v } else { 0.0 }).collect()
     }
 
     /// Lets every pair move and yield again.
@@ -65,11 +63,11 @@ impl Descent<'_> {
             let (value, _) = self.kinematics.minimise(&Self::weights(&slack), 400)?;
             gamma = Self::read(self.kinematics, self.pairs);
             let scale = gamma.iter().fold(0.0f64, |m, g| m.max(*g)) * slack.iter().fold(0.0f64, |m, s| m.max(*s));
-            if value <= ZERO * scale.max(1e-3) {
+            if value <= SETTINGS.active * scale.max(1e-3) {
                 let moving: Vec<usize> = (0..self.pairs).filter(|&i| gamma[i] > 0.0).collect();
                 return self.least_with(&moving).map(|theta| State { theta, moving });
             }
-            if value > last * (1.0 - 1e-6) {
+            if value > last * (1.0 - SETTINGS.closed) {
                 return None;
             }
             last = value;
@@ -104,7 +102,7 @@ impl Descent<'_> {
                 let gamma = Self::read(self.kinematics, self.pairs);
                 let moving: Vec<usize> = (0..self.pairs).filter(|&i| gamma[i] > 0.0).collect();
                 if let Some(theta) = self.least_with(&moving)
-                    && theta < state.theta - 1e-9 * state.theta.abs()
+                    && theta < state.theta - SETTINGS.active * state.theta.abs()
                 {
                     state = State { theta, moving };
                     continue 'again;

@@ -10,6 +10,7 @@
 //! above the cut: that what slides must carry is known only from there. Leaving out products leaves
 //! out rows, so the bound stays valid.
 
+use crate::limit::settings::SETTINGS;
 use crate::limit::systems::Systems;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SupportedConeT};
@@ -20,14 +21,10 @@ use voussoir_core::linear::{Entries, SparseLdlt};
 /// Linear form: (index, coefficient).
 type Form = Vec<(usize, f64)>;
 
-/// Residual of the multipliers that is rounding, relative to the greatest of them.
-const ROUNDING: f64 = 1e-13;
-/// Taken off the bound, in units of the loads, per residual: products of this size in sum.
-const MARGIN: f64 = 1e4;
 /// Multipliers below this share of the greatest are zero; tried in turn.
 const SUPPORTS: [f64; 5] = [1e-6, 1e-5, 1e-4, 1e-7, 1e-3];
 /// Regularisations of the interior-point method, tried in turn.
-const REGULARISATIONS: [f64; 2] = [1e-7, 1e-6];
+const REGULARISATIONS: [f64; 2] = [SETTINGS.apart, SETTINGS.great_shift];
 /// The bound of θ in the program lies so far above the known state.
 const MARGIN_ABOVE: f64 = 0.05;
 /// The largest neighbourhood tried first.
@@ -470,7 +467,7 @@ impl Program {
         let sizes: Vec<f64> = support.iter().map(|&k| if k < e { scale } else { z[k] }.sqrt()).collect();
         let mut entries: Entries = (0..support.len()).map(|k| (k, k, 1.0)).collect();
         let first = support.len();
-        entries.extend((0..n).map(|j| (first + j, first + j, -1e-9)));
+        entries.extend((0..n).map(|j| (first + j, first + j, -SETTINGS.active)));
         for (k, (&row, size)) in support.iter().zip(&sizes).enumerate() {
             let (form, _, sign) = self.signed(row);
             for &(j, v) in form {
@@ -482,13 +479,13 @@ impl Program {
         for _ in 0..8 {
             let r = self.residual(&z);
             let worst = r.iter().fold(0.0f64, |m, r| m.max(r.abs()));
-            if worst <= ROUNDING * scale {
+            if worst <= SETTINGS.rounding * scale {
                 let proved: f64 = -support.iter().map(|&k| self.signed(k).1 * z[k]).sum::<f64>();
                 let positive = z[e..].iter().all(|z| *z >= 0.0);
                 let kinds = self.kinds.iter().copied().zip(z[e..].iter().copied());
                 let idle = self.idle.iter().map(|&(k, i)| (Kind::Product(i, i), -z[k]));
                 let multipliers = kinds.chain(idle).filter(|(_, z)| *z != 0.0).collect();
-                let theta = proved - MARGIN * worst;
+                let theta = proved - SETTINGS.product_margin * worst;
                 let step = Step { raw: proved, range: [0.0, self.most], multipliers };
                 return positive.then(|| Bound { theta, steps: vec![step] });
             }

@@ -8,6 +8,7 @@ use super::splitting::split_bound;
 use crate::limit::associated::{associated, associated_bound, settled_by_association};
 use crate::limit::scale::combined;
 use crate::limit::sequential::{FlowState, Sequence, sequence};
+use crate::limit::settings::SETTINGS;
 use crate::limit::settlement::settle;
 use crate::limit::systems::{LARGEST, Systems, greatest_shares};
 use crate::optimise::dense_simplex::Feasibility;
@@ -28,8 +29,6 @@ const PRODUCT_ROWS: usize = 12_000;
 const CHECKED_ROWS: usize = 5_000;
 /// Starts of the local search.
 const STARTS: usize = 24;
-/// A state counts when its field and multipliers are right to this.
-const ADMISSIBLE: f64 = 1e-10;
 
 /// The least load with the laws' own flow.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -172,17 +171,17 @@ impl Least<'_> {
         let (z, _) = fields.into_iter().filter_map(|yielding| self.systems.field(&yielding, start.clone())).find(
             |(z, violation)| {
                 let idle = moving.iter().map(|&i| self.systems.slack(i, z).abs()).fold(0.0, f64::max);
-                violation.max(idle) <= ADMISSIBLE && z[self.systems.forces] >= -ADMISSIBLE
+                violation.max(idle) <= SETTINGS.negligible && z[self.systems.forces] >= -SETTINGS.negligible
             },
         )?;
         let moves: Vec<(usize, f64)> = moving.iter().map(|&i| (i, gamma[i])).collect();
         let (motion, wrong) = self.systems.motion(self.problem, &moves)?;
-        if wrong > ADMISSIBLE {
+        if wrong > SETTINGS.negligible {
             return None;
         }
         let theta = z[self.systems.forces];
         // Rounding of a zero factor is not a factor.
-        let theta = if theta.abs() < 1e-15 { 0.0 } else { theta };
+        let theta = if theta.abs() < SETTINGS.zero { 0.0 } else { theta };
         let field = self.systems.joint_forces(&z);
         Some((theta, FlowState { factor: theta * self.systems.unit, field, motion }))
     }
@@ -213,7 +212,7 @@ impl Least<'_> {
                 let swept = (statics.work() + kinematics.work()) as f64 / 1e9;
                 self.work.curve.found(BracketWork::Local, swept, state.theta);
                 if present.is_finite() && state.theta < present {
-                    let next = state.theta * (1.0 - 1e-7);
+                    let next = state.theta * (1.0 - SETTINGS.apart);
                     statics.shift(self.systems.upper_slack(), next - present);
                     kinematics.shift(self.systems.upper_slack(), next - present);
                     present = next;

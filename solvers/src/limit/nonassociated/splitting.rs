@@ -12,6 +12,7 @@
 
 use super::curve::Curve;
 use super::products::{Bound, Kind, Step};
+use crate::limit::settings::SETTINGS;
 use crate::limit::systems::Systems;
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::limit::BracketWork;
@@ -25,14 +26,11 @@ const TRIAL: f64 = 0.08;
 const FEWEST: usize = 1000;
 /// Multipliers are looked at so often, and corrected where none would be lower than this; next time, than a tenth of it.
 const CHECKED: usize = 200;
-const NEARLY: f64 = 1e-6;
 /// Conjugate residuals of one correction.
 const RESIDUALS: usize = 500;
 /// Supports on which multipliers are corrected in one trial, and corrections on each.
 const SUPPORTS: usize = 10;
 const CORRECTIONS: usize = 4;
-/// What a correction leaves, as a share of what there was.
-const LEFT: f64 = 1e-7;
 /// A bound lower by this share of the range is the least that is tried.
 const LEAST: f64 = 0.02;
 /// Multipliers below this many times the greatest residual, and below this, change in proportion to themselves.
@@ -47,14 +45,6 @@ const ADAPTED: usize = 100;
 const FIRST_SHARE: f64 = 0.85;
 /// Bounds closer than this share of t are not told apart.
 const CLOSE: f64 = 1e-3;
-/// Largest residual of multipliers, relative to the greatest.
-const EXACT: f64 = 1e-14;
-/// What rounding may cost is left out where the next range begins.
-const LEFT_OUT: f64 = 1e-6;
-/// Columns shorter than this share of the longest are none.
-const RANK: f64 = 1e-10;
-/// t lies so far above the known state.
-const ABOVE: f64 = 1e-5;
 /// Rounds in which the rows are scaled.
 const SCALINGS: usize = 8;
 
@@ -62,7 +52,7 @@ const SCALINGS: usize = 8;
 fn null_space(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     let decomposed = matrix.transpose().col_piv_qr();
     let diagonal = decomposed.r().diagonal();
-    let rank = diagonal.iter().filter(|d| d.abs() > RANK * diagonal[0].abs()).count();
+    let rank = diagonal.iter().filter(|d| d.abs() > SETTINGS.negligible * diagonal[0].abs()).count();
     let columns = matrix.ncols();
     let mut basis = DMatrix::identity(columns, columns);
     decomposed.q_tr_mul(&mut basis);
@@ -73,7 +63,7 @@ fn null_space(matrix: &DMatrix<f64>) -> DMatrix<f64> {
 fn orthonormal(columns: DMatrix<f64>) -> DMatrix<f64> {
     let decomposed = columns.col_piv_qr();
     let r = decomposed.r().diagonal();
-    let rank = r.iter().filter(|d| d.abs() > RANK * r[0].abs()).count();
+    let rank = r.iter().filter(|d| d.abs() > SETTINGS.negligible * r[0].abs()).count();
     decomposed.q().columns(0, rank).into_owned()
 }
 
@@ -252,7 +242,7 @@ impl Products {
     /// Exact multipliers of a bound, from some that are nearly right and come nearer.
     fn prove(&mut self, bound: f64, near: &mut DMatrix<f64>, iterations: usize) -> Option<DMatrix<f64>> {
         let target = &self.objective - &self.power * (bound / self.unit);
-        let mut nearly = NEARLY;
+        let mut nearly = SETTINGS.nearly;
         for iteration in 1..=iterations {
             let own = self.admissible(near);
             let reflected = &own * 2.0 - &*near;
@@ -280,14 +270,14 @@ impl Products {
         let mut worst = f64::INFINITY;
         for _ in 0..SUPPORTS {
             let first = self.inner(&(target - &own)).amax();
-            let free = (FREE[0] * first).clamp(EXACT, FREE[1]);
+            let free = (FREE[0] * first).clamp(SETTINGS.exact, FREE[1]);
             let mut freedom = own.map(|v| (v / free).clamp(0.0, 1.0));
             (0..self.pairs).for_each(|i| freedom[(i, i)] = 1.0);
             let mut last = f64::INFINITY;
             for _ in 0..CORRECTIONS {
                 let left = self.inner(&(target - &own));
                 let size = left.amax();
-                if size <= EXACT * own.amax() && self.least(&own) >= 0.0 {
+                if size <= SETTINGS.exact * own.amax() && self.least(&own) >= 0.0 {
                     return Some(own * self.unit);
                 }
                 if self.least(&own) < 0.0 || size > 0.5 * last {
@@ -312,7 +302,7 @@ impl Products {
             let outer = all.outer(y).component_mul(freedom);
             all.inner(&outer)
         };
-        let enough = LEFT * left.norm();
+        let enough = SETTINGS.left * left.norm();
         let mut before = left.norm();
         let mut y = DMatrix::zeros(left.nrows(), left.ncols());
         let mut residual = left;
@@ -396,21 +386,21 @@ impl Products {
 
 /// The greatest lower bound of θ, for states with θ ≤ `most`, that so many multiplications prove; with the work it took.
 pub fn split_bound(systems: &Systems, most: f64, limit: u64, curve: &mut Curve) -> (Option<Bound>, u64) {
-    let most = most * (1.0 + ABOVE);
+    let most = most * (1.0 + SETTINGS.above_state);
     let (mut steps, mut proved, mut work) = (Vec::new(), 0.0, 0u64);
     while !systems.pairs.is_empty() && proved < most * (1.0 - CLOSE) {
         let mut products = Products::new(systems, [proved, most]);
         let own = (RANGE * limit.saturating_sub(work) as f64) as u64;
         // No motion of the flow rule has p·q̇ = 1, or there is too little work left to try.
-        let hopeless = products.power.norm() < RANK || own < (FEWEST as u64) * products.work;
+        let hopeless = products.power.norm() < SETTINGS.negligible || own < (FEWEST as u64) * products.work;
         let mut raised = |own: u64, theta: f64| {
-            curve.proved(BracketWork::Splitting, (work + own) as f64 / 1e9, theta * (1.0 - LEFT_OUT));
+            curve.proved(BracketWork::Splitting, (work + own) as f64 / 1e9, theta * (1.0 - SETTINGS.closed));
         };
         let found = if hopeless { None } else { products.greatest(own, &mut raised) };
         work += products.work;
         curve.proved(BracketWork::Splitting, work as f64 / 1e9, 0.0);
         let Some(step) = found else { break };
-        proved = step.raw * (1.0 - LEFT_OUT);
+        proved = step.raw * (1.0 - SETTINGS.closed);
         steps.push(step);
     }
     let bound = (!steps.is_empty()).then_some(Bound { theta: proved, steps });

@@ -1,11 +1,9 @@
 //! The rate of change of a problem's data with a parameter, by differences of the data.
 
+use crate::limit::settings::SETTINGS;
 use voussoir_core::limit::{LimitJoint, LimitProblem};
 use voussoir_core::model::Wrenches;
 use voussoir_core::model::geometry::Vec2;
-
-/// A second difference of data beyond this, relative to the greatest datum of its kind, is a jump.
-const JUMP: f64 = 1e-6;
 
 /// Derivatives of the data of a problem with respect to a parameter θ, on one side of its value; wrenches are about
 /// the pole of the problem itself.
@@ -57,8 +55,9 @@ fn same_topology(a: &LimitProblem, b: &LimitProblem) -> bool {
 
 /// Whether the data of two problems are equal to rounding.
 pub fn same_data(a: &LimitProblem, b: &LimitProblem) -> bool {
-    let close =
-        |((x, kind), (y, _)): (&(f64, usize), &(f64, usize)), scale: &[f64; 4]| (x - y).abs() <= 1e-12 * scale[*kind];
+    let close = |((x, kind), (y, _)): (&(f64, usize), &(f64, usize)), scale: &[f64; 4]| {
+        (x - y).abs() <= SETTINGS.balanced * scale[*kind]
+    };
     let (of_a, of_b) = (data(a, a.pole), data(b, a.pole));
     let scale = scales(&of_a);
     same_topology(a, b) && of_a.iter().zip(&of_b).all(|pair| close(pair, &scale))
@@ -82,7 +81,7 @@ impl DataRate {
         let scale = scales(&here);
         let mut rates = Vec::with_capacity(here.len());
         for (((x, kind), (y, _)), (z, _)) in here.iter().zip(&near).zip(&far) {
-            if (x - 2.0 * y + z).abs() > JUMP * scale[*kind] {
+            if (x - 2.0 * y + z).abs() > SETTINGS.jump * scale[*kind] {
                 return Err("the data jump at the value: a load comes to stand on another block, or the like".into());
             }
             rates.push((4.0 * y - 3.0 * x - z) / (2.0 * step));

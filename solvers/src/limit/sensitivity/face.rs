@@ -3,15 +3,10 @@
 use super::data::DataRate;
 use super::program::{Direction, Program};
 use super::row::{FaceRow, Source};
+use crate::limit::settings::SETTINGS;
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::limit::{JointForce, LimitProblem, Velocity};
 
-/// Singular values below this share of the greatest are zero.
-const RANK: f64 = 1e-10;
-/// A row is tight where its slack is below this share of the greatest force.
-const TIGHT: f64 = 1e-8;
-/// Jumps of the mechanism below this share of the greatest are zero.
-const MOVES: f64 = 1e-8;
 /// Scenes of more forces take too long.
 const GREATEST: usize = 900;
 
@@ -40,7 +35,8 @@ fn null_space(matrix: &DMatrix<f64>) -> Result<(DMatrix<f64>, DMatrix<f64>, usiz
     let svd = padded.try_svd(true, true, f64::EPSILON, 10_000).ok_or("singular values were not found")?;
     let (Some(u), Some(v)) = (svd.u, svd.v_t) else { return Err("singular values were not found".into()) };
     let greatest = svd.singular_values.max().max(f64::MIN_POSITIVE);
-    let (null, full): (Vec<usize>, Vec<usize>) = (0..columns).partition(|&i| svd.singular_values[i] <= RANK * greatest);
+    let (null, full): (Vec<usize>, Vec<usize>) =
+        (0..columns).partition(|&i| svd.singular_values[i] <= SETTINGS.negligible * greatest);
     let basis = DMatrix::from_fn(columns, null.len(), |i, j| v[(null[j], i)]);
     let mut inverse = DMatrix::zeros(columns, rows);
     for &k in &full {
@@ -151,7 +147,7 @@ impl<'a> OptimalFace<'a> {
         let mut pinned = vec![false; problem.joints.len()];
         for (joint, jump) in jumps.iter().enumerate() {
             let first = self.offsets[joint];
-            let jump = jump.map(|x| if x.abs() <= MOVES * greatest { 0.0 } else { x });
+            let jump = jump.map(|x| if x.abs() <= SETTINGS.moves * greatest { 0.0 } else { x });
             if jump == [0.0; 3] {
                 continue;
             }
@@ -169,12 +165,12 @@ impl<'a> OptimalFace<'a> {
         }
         let (spread, _, _) = null_space(&fixed)?;
         let curved = |joint: usize| problem.joints[joint].strength.block.is_some() && !pinned[joint];
-        let moved = |joint: usize| spread.rows(self.offsets[joint], 2).amax() > 1e-8;
+        let moved = |joint: usize| spread.rows(self.offsets[joint], 2).amax() > SETTINGS.moves;
         if spread.ncols() > 0 && (0..problem.joints.len()).any(|joint| curved(joint) && moved(joint)) {
             return Err("the field is not unique in joints that may crush".into());
         }
         let load = self.stacked(|group, i| problem.varying[group][i]) / self.load;
-        let tight: Vec<usize> = (0..self.rows.len()).filter(|&row| self.rows[row].slack <= TIGHT).collect();
+        let tight: Vec<usize> = (0..self.rows.len()).filter(|&row| self.rows[row].slack <= SETTINGS.moves).collect();
         let program = Program { spread, steps, response: -(&inverse * load), inverse, tight };
         program.stable(&self.rows)?;
         Ok(program)

@@ -1,11 +1,9 @@
 //! The linear program of a one-sided derivative, and whether the face is stable enough for it.
 
 use super::row::FaceRow;
+use crate::limit::settings::SETTINGS;
 use crate::optimise::dense_simplex::{Dictionary, Equations, Feasibility};
 use nalgebra::{DMatrix, DVector};
-
-/// Rates below this share of the data are none.
-const NOTHING: f64 = 1e-13;
 
 /// What does not depend on the parameter: s is the difference of a field of the face from r̂, δr a step.
 #[derive(Debug, Default)]
@@ -95,8 +93,8 @@ impl Program {
         let least = grows
             .dictionary()
             .and_then(|mut own| (own.feasible() == Feasibility::Point).then(|| own.minimise(&weights, most)).flatten());
-        let bounded = matches!(least, Some((value, true)) if value > -1e-7);
-        if matrix.rank(1e-9) < spread || !bounded {
+        let bounded = matches!(least, Some((value, true)) if value > -SETTINGS.apart);
+        if matrix.rank(SETTINGS.active) < spread || !bounded {
             return Err("fields that carry the limit load are not bounded".into());
         }
         Ok(())
@@ -108,7 +106,7 @@ impl Program {
         let along_face = &direction.matrix * &self.spread;
         let size = direction.rows.iter().map(|(rate, a)| rate.abs().max(a.amax())).fold(0.0, f64::max);
         let size = size.max(direction.residual.amax()).max(direction.matrix.amax());
-        if size <= NOTHING {
+        if size <= SETTINGS.rounding {
             return Ok(0.0);
         }
         // δr = −E⁺(E′ r̂ + …) − E⁺ E′ s − E⁺ p δλ + steps u

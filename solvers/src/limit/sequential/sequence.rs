@@ -3,6 +3,7 @@
 use super::vertices::{ADMISSIBLE, Vertices};
 use crate::limit::conic;
 use crate::limit::engine::{Engine, Greatest};
+use crate::limit::settings::SETTINGS;
 use crate::limit::systems::{LARGEST, Systems, greatest_shares};
 use crate::optimise::dense_simplex::Feasibility;
 use voussoir_core::limit::{Counters, JointForce, LimitProblem, Velocity};
@@ -10,10 +11,7 @@ use voussoir_core::model::Wrenches;
 
 /// Greatest violation of a yield row, relative to the loads, at which the sequence has converged;
 /// the field is then moved onto the yield surface.
-pub const TOLERANCE: f64 = 1e-6;
-/// The same for the first programs: a sequence that converges is followed to its limit, which does not depend on where it
-/// was left.
-const CLOSE: f64 = 1e-10;
+pub const TOLERANCE: f64 = SETTINGS.closed;
 /// The first programs.
 const CLOSELY: usize = 36;
 /// Greatest number of programs.
@@ -85,7 +83,7 @@ pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], co
             Greatest::Failed(why) => return Sequence::Open(format!("linear program {}: {why}", step + 1)),
             _ => return Sequence::Open(format!("linear program {} has no bound", step + 1)),
         };
-        let asked = if step < CLOSELY { CLOSE } else { TOLERANCE };
+        let asked = if step < CLOSELY { SETTINGS.negligible } else { TOLERANCE };
         let steady = (factor - last).abs() <= asked * factor.abs().max(TOLERANCE * systems.unit);
         last = factor;
         let z = systems.force_variables(&field);

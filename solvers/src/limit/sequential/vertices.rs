@@ -4,16 +4,13 @@
 //! stays one that no multiplier contradicts, and a few pivots of the dual simplex method lead to the next vertex.
 
 use crate::limit::engine::Greatest;
+use crate::limit::settings::SETTINGS;
 use crate::limit::systems::{LARGEST, Systems, greatest_shares};
 use crate::optimise::dense_simplex::{Dictionary, Feasibility};
 use voussoir_core::limit::{Counters, JointForce, LimitJoint, LimitProblem};
 
 /// A field moved onto the yield surface is admissible to this.
-pub const ADMISSIBLE: f64 = 1e-12;
-/// A mechanism flows to this.
-const FLOWS: f64 = 1e-11;
-/// Multiplier from which a row costs something.
-const COSTLY: f64 = 1e-9;
+pub const ADMISSIBLE: f64 = SETTINGS.balanced;
 /// Pivots of one program at the most.
 const PIVOTS: u64 = 20_000;
 
@@ -79,7 +76,7 @@ impl Vertices {
         let zero: Vec<usize> = (0..systems.pairs.len()).filter(|&i| statics.at_zero(i)).collect();
         let (z, violation) = systems.field(&zero, vec![0.0; systems.forces + 1])?;
         let (motion, wrong) = systems.motion(problem, &moving)?;
-        (violation <= ADMISSIBLE && wrong <= FLOWS).then(|| Greatest::Collapse {
+        (violation <= ADMISSIBLE && wrong <= SETTINGS.admissible).then(|| Greatest::Collapse {
             factor: z[systems.forces] * systems.unit,
             field: systems.joint_forces(&z),
             motion,
@@ -91,7 +88,7 @@ impl Vertices {
 /// From a vertex with the greatest factor to the one where normal forces give the least cohesion to the next program: where
 /// fields are many, which vertex the pivots meet depends on how joints are numbered, and this one does not.
 fn least_cohesion(statics: &mut Dictionary, gamma: &[f64], weights: &[(usize, f64)]) {
-    let costly: Vec<usize> = (0..gamma.len()).filter(|&i| gamma[i] > COSTLY).collect();
+    let costly: Vec<usize> = (0..gamma.len()).filter(|&i| gamma[i] > SETTINGS.active).collect();
     costly.iter().for_each(|&i| statics.fix(i, true));
     statics.minimise(weights, PIVOTS);
     costly.iter().for_each(|&i| statics.fix(i, false));
