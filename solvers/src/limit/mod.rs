@@ -15,10 +15,14 @@ pub mod nonassociated;
 mod question;
 mod recovery;
 mod scale;
+#[cfg(test)]
+mod scenes;
 pub mod sensitivity;
 pub mod sequential;
 mod settings;
 mod settlement;
 mod systems;
+#[cfg(test)]
+mod tests;
 
 pub use self::engine::{Engine, Equilibrium, Greatest};

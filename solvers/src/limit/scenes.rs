@@ -1,0 +1,92 @@
+//! Scenes with closed forms, for tests.
+
+use voussoir_core::law::{FacetMode, ForceRow, JointStrength, StressBlock};
+use voussoir_core::limit::{LimitJoint, LimitProblem};
+use voussoir_core::model::geometry::{Vec2, turned};
+
+/// What joints of a scene can carry.
+#[derive(Debug, Clone, Copy)]
+pub struct Dry {
+    /// Friction; stuck joints without it.
+    pub friction: Option<f64>,
+    /// Whether sliding opens joints, as associated flow has it.
+    pub associated: bool,
+    /// Force that crushes a joint \[N\].
+    pub crushing: Option<f64>,
+}
+
+/// Joints that neither slide nor crush.
+pub const STUCK: Dry = Dry { friction: None, associated: true, crushing: None };
+
+impl Dry {
+    fn strength(self) -> JointStrength {
+        let mut rows = Vec::new();
+        if self.crushing.is_none() {
+            rows.extend(
+                [[-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]
+                    .map(|normal| ForceRow::associated(FacetMode::Opening, normal, 0.0)),
+            );
+        }
+        for (mu, sense) in self.friction.into_iter().flat_map(|mu| [(mu, 1.0), (mu, -1.0)]) {
+            let mut row = ForceRow::associated(FacetMode::Sliding, [-mu, -mu, sense], 0.0);
+            if !self.associated {
+                row.flow = [0.0, 0.0, sense];
+            }
+            rows.push(row);
+        }
+        JointStrength { rows, block: self.crushing.map(|total| StressBlock { tension: 0.0, total }) }
+    }
+
+    /// A joint whose tangent leads from end to end.
+    fn joint(self, index: usize, (minus, plus): (Option<usize>, Option<usize>), ends: [[f64; 2]; 2]) -> LimitJoint {
+        let ends = ends.map(|[x, y]| Vec2::new(x, y));
+        let tangent = (ends[1] - ends[0]).normalize();
+        LimitJoint {
+            joint: index,
+            fill: None,
+            minus,
+            plus,
+            ends,
+            normal: -turned(tangent),
+            tangent,
+            strength: self.strength(),
+        }
+    }
+}
+
+/// A block of so much width and height on the ground, of weight 1 N, pushed by λ N at half its height: λ = b/h (1 − W/F)
+/// if it rocks, μ if it slides.
+pub fn block(width: f64, height: f64, dry: Dry) -> LimitProblem {
+    LimitProblem {
+        group_of: vec![Some(0)],
+        groups: 1,
+        joints: vec![dry.joint(0, (None, Some(0)), [[width / 2.0, 0.0], [-width / 2.0, 0.0]])],
+        fixed: vec![[0.0, -1.0, 0.0]],
+        varying: vec![[1.0, 0.0, -height / 2.0]],
+        pole: Vec2::zeros(),
+        length: width.hypot(height),
+        non_associated: !dry.associated,
+    }
+}
+
+/// Two half lintels without weight, with a vertical load of λ N between them: the thrust is free and each of the three joints
+/// carries F h/8 at most, so that λ = F h/L.
+pub fn lintel(span: f64, height: f64, crushing: f64) -> LimitProblem {
+    let dry = Dry { crushing: Some(crushing), ..STUCK };
+    let at = |x: f64| [[x, 0.0], [x, height]];
+    let half = span / 2.0;
+    LimitProblem {
+        group_of: vec![Some(0), Some(1)],
+        groups: 2,
+        joints: vec![
+            dry.joint(0, (None, Some(0)), at(-half)),
+            dry.joint(1, (Some(0), Some(1)), at(0.0)),
+            dry.joint(2, (Some(1), None), at(half)),
+        ],
+        fixed: vec![[0.0; 3]; 2],
+        varying: vec![[0.0, -0.5, 0.0]; 2],
+        pole: Vec2::zeros(),
+        length: span,
+        non_associated: false,
+    }
+}
