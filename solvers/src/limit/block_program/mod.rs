@@ -16,6 +16,8 @@ mod residuals;
 mod solution;
 mod state;
 mod stiffness;
+#[cfg(test)]
+mod tests;
 mod wanted;
 
 pub use self::interior_point::{Solved, solve, stands};
