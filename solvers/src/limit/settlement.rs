@@ -12,7 +12,7 @@
 //! (rigid blocks under settlements by least energy). Where the fields have no bound no motion exists: the ray that shows it
 //! is the answer.
 
-use super::systems::{LARGEST, Pair, Systems};
+use super::systems::{LARGEST, PIVOTS, Pair, Systems};
 use crate::limit::settings::SETTINGS;
 use crate::optimise::dense_simplex::{Dictionary, Equations, Feasibility};
 use nalgebra::{DMatrix, DVector};
@@ -20,8 +20,6 @@ use voussoir_core::law::FlowRule;
 use voussoir_core::limit::{LimitProblem, SettlementAnswer, Velocity};
 use voussoir_core::model::Wrenches;
 
-/// Pivots of a linear program.
-const PIVOTS: u64 = 20_000;
 /// Linear programs of a sequence.
 const PROGRAMS: usize = 60;
 /// The first, each of which begins from the forces of the one before; from there on half of the way.

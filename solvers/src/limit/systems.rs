@@ -14,6 +14,8 @@ use voussoir_core::model::Wrenches;
 
 /// Entries of the equations beyond which dense dictionaries are not built.
 pub const LARGEST: usize = 1_500_000;
+/// Pivots of a dense linear program, at most.
+pub const PIVOTS: u64 = 20_000;
 
 /// One row of one joint.
 #[derive(Debug, Clone)]

@@ -5,7 +5,7 @@ use super::source::{Source, is, workspace};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Lines of the solvers without tests, at most.
-const LINES: usize = 26_500;
+const LINES: usize = 26_600;
 /// Files, with each sub-folder as one, that import each other one after the other, at most.
 const CHAIN: usize = 8;
 /// Fields from which on a struct is large.
@@ -13,7 +13,7 @@ const LARGE: usize = 9;
 /// Places that take a large struct of the paths as `&mut`.
 const MUTABLE: usize = 50;
 /// Constants that are numbers, at most, and fields of a struct of settings.
-const NUMBERS: usize = 122;
+const NUMBERS: usize = 120;
 const TOLERANCES: usize = 40;
 
 fn solvers() -> Graph {

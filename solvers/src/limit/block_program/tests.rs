@@ -1,12 +1,10 @@
 use super::residuals::greatest;
 use super::{Loads, Program, solve, stands};
-use crate::limit::scale::force_scale;
 use crate::limit::scenes::{Dry, STUCK, block};
 use voussoir_core::limit::LimitProblem;
 
 fn loads(problem: &LimitProblem) -> Loads<'_> {
-    let force = force_scale(problem, &problem.fixed, &problem.varying);
-    Loads { fixed: Some(&problem.fixed), varying: &problem.varying, cap: f64::INFINITY, strengths: true, force }
+    Loads { fixed: Some(&problem.fixed), varying: &problem.varying, cap: f64::INFINITY, strengths: true }
 }
 
 /// Two equal blocks beside each other, each under the loads of one.

@@ -1,6 +1,7 @@
 //! The first, approximate solution: Clarabel.
 
 use super::system::System;
+use crate::limit::settings::SETTINGS;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 
@@ -27,15 +28,11 @@ pub enum Word {
     Other(String, u64),
 }
 
-/// Strength in units of the loads from which on a block u² ≤ F w is as good as its plane 0 ≤ w at the start of a
-/// polish; as a cone its entries would differ by more than the solver's scaling mends.
-const FLAT: f64 = 1e6;
-
 /// Solves a system; blocks far beyond the loads by their planes first, by their cones where planes leave θ free.
 pub fn solve(system: &System) -> Word {
-    match solve_with(system, FLAT) {
+    match solve_with(system, SETTINGS.flat) {
         Word::Pair(pair, iterations) => Word::Pair(pair, iterations),
-        other if system.blocks.iter().all(|block| block.strength.total < FLAT) => other,
+        other if system.blocks.iter().all(|block| block.strength.total < SETTINGS.flat) => other,
         _ => solve_with(system, f64::INFINITY),
     }
 }

@@ -11,15 +11,10 @@
 use super::interior_point::Pair;
 use super::system::System;
 use crate::limit::equilibrium::Row;
+use crate::limit::settings::SETTINGS;
 use crate::linear::inner;
 use voussoir_core::linear::{Entries, SparseLdlt};
 
-/// Regularisation; the second is tried where the first leaves no pivot.
-const DELTAS: [f64; 2] = [1e-8, 1e-6];
-/// Error at which the active rows are settled.
-const SETTLED: f64 = 1e-13;
-/// Error from which rows are exchanged one by one.
-const UNSETTLED: f64 = 1e-11;
 /// Factor in its unit below which a gap is not compared with it.
 const LEAST: f64 = 1e-3;
 /// Shares that residuals keep from step to step from which, and up to which, steps are summed up.
@@ -70,13 +65,14 @@ fn multiplier(pair: &Pair, item: Item) -> f64 {
 
 /// Polishes a pair. `None` where every factorisation fails.
 pub fn polish(system: &System, approximate: &Pair) -> Option<Polished> {
-    DELTAS.iter().find_map(|&delta| polish_with(system, approximate, delta))
+    // A greater shift is tried if the lesser one leaves no pivot.
+    [SETTINGS.shift, SETTINGS.great_shift].iter().find_map(|&delta| polish_with(system, approximate, delta))
 }
 
 /// The interior point itself, moved the least way onto equilibrium: what is left where the polish
 /// does not settle. Its slacks are its own, its motion is the solver's; the certificate decides.
 pub fn balanced(system: &System, approximate: &Pair) -> Option<Pair> {
-    let (n, delta) = (system.variables, DELTAS[0]);
+    let (n, delta) = (system.variables, SETTINGS.shift);
     let factorised = SparseLdlt::new(n + system.equations.len(), n, &saddle(system, &[], delta))?;
     let mut pair = approximate.clone();
     for _ in 0..4 {
@@ -107,11 +103,11 @@ fn polish_with(system: &System, approximate: &Pair, delta: f64) -> Option<Polish
         let mut changed = false;
         for (item, active) in items.iter().zip(&mut active) {
             let (y, c) = (multiplier(&pair, *item), value(system, *item, &pair.x));
-            if *active && y < -SETTLED * scale {
+            if *active && y < -SETTINGS.rounding * scale {
                 error = error.max(-y / scale);
                 *active = false;
                 changed = true;
-            } else if !*active && c > SETTLED {
+            } else if !*active && c > SETTINGS.rounding {
                 error = error.max(c);
                 *active = true;
                 changed = true;
@@ -121,12 +117,12 @@ fn polish_with(system: &System, approximate: &Pair, delta: f64) -> Option<Polish
             let unique = !has_kernel(system, &chosen, &pair, scale, delta).unwrap_or(true);
             best = Some((Polished { pair, error, unique, factorisations, iterations }, chosen));
         }
-        if !changed || best.as_ref().is_some_and(|(b, _)| b.error < SETTLED) {
+        if !changed || best.as_ref().is_some_and(|(b, _)| b.error < SETTINGS.rounding) {
             break;
         }
     }
     let (mut best, chosen) = best?;
-    if best.error > UNSETTLED
+    if best.error > SETTINGS.admissible
         && let Some(exchanged) = exchanged(system, &best.pair, (&items, &chosen), delta)
     {
         factorisations += exchanged.factorisations;
@@ -169,14 +165,14 @@ fn exchanged(system: &System, start: &Pair, (items, active): (&[Item], &[Item]),
         let scale = greatest_multiplier(&pair);
         let least = chosen.iter().copied().min_by(|a, b| multiplier(&pair, *a).total_cmp(&multiplier(&pair, *b)))?;
         let negative = (-multiplier(&pair, least) / scale).max(0.0);
-        if negative > SETTLED {
+        if negative > SETTINGS.rounding {
             chosen.retain(|item| *item != least);
             continue;
         }
         let outside = items.iter().zip(&within).filter(|(_, within)| !**within).map(|(item, _)| *item);
         let violated = outside.max_by(|a, b| value(system, *a, &pair.x).total_cmp(&value(system, *b, &pair.x)))?;
         let violation = value(system, violated, &pair.x).max(0.0);
-        if violation <= SETTLED {
+        if violation <= SETTINGS.rounding {
             let error = work.2.max(negative).max(violation);
             let unique = !has_kernel(system, &chosen, &pair, scale, delta).unwrap_or(true);
             return Some(Polished { pair, error, unique, factorisations, iterations });

@@ -10,6 +10,7 @@ use crate::limit::engine::{Engine, Equilibrium, Greatest};
 use crate::limit::equilibrium::field_error;
 use crate::limit::question::answer_by;
 use crate::limit::scale::{combined, force_scale, force_unit, with_unit_power};
+use crate::limit::settings::SETTINGS;
 use crate::limit::settlement::settle;
 use serde::{Deserialize, Serialize};
 use voussoir_core::law::FlowRule;
@@ -19,24 +20,8 @@ use voussoir_core::limit::{
 use voussoir_core::model::Wrenches;
 use voussoir_core::plugin::{Capability, Card, PluginKind};
 
-/// Error of the polished optimality system, in scaled units, up to which an answer counts.
-const POLISHED: f64 = 1e-9;
-
-/// Error from which another unit of force may give a better answer.
-const EXACT: f64 = 1e-11;
-
-/// Error of a field by blocks, as a share of the loads, up to which it is taken.
-const FIELD: f64 = 1e-11;
-
-/// The same of one that shows only that loads are carried: half of what certificates allow.
-const CARRIED: f64 = 5e-11;
-
 /// Units of force that are tried besides, where the polish does not settle, on scenes of so many bodies at the most.
 const MOST_IN_UNITS: usize = 500;
-const UNITS: [f64; 2] = [0.1, 10.0];
-
-/// Strength in units of the loads from which a program that was not solved is tried in the unit of the strength.
-const STRONG: f64 = 1e2;
 
 /// Limit analysis of any scene.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
@@ -115,7 +100,7 @@ struct Tried {
 impl Tried {
     /// Whether another unit may give more.
     fn may_gain(&self) -> bool {
-        self.best.as_ref().map_or(self.unsettled.is_some(), |best| best.0 > EXACT)
+        self.best.as_ref().map_or(self.unsettled.is_some(), |best| best.0 > SETTINGS.admissible)
     }
 }
 
@@ -144,7 +129,7 @@ impl ConicEngine<'_> {
                 };
                 self.count("factorisations", polished.factorisations);
                 self.count("newton_iterations", polished.iterations);
-                if polished.error > POLISHED {
+                if polished.error > SETTINGS.active {
                     return match balanced(system, &pair) {
                         Some(pair) => Optimum::Unsettled(pair),
                         None => Optimum::Failed("equilibrium could not be restored".into()),
@@ -181,12 +166,12 @@ impl ConicEngine<'_> {
     /// Whether the field of a program by blocks is one of the scene: in its own units errors may look smaller than they are.
     fn holds(&self, fixed: &Wrenches, varying: &Wrenches, solution: &Solution) -> bool {
         let loads = combined(fixed, varying, solution.factor);
-        field_error(self.problem, &loads, &solution.forces) <= FIELD
+        field_error(self.problem, &loads, &solution.forces) <= SETTINGS.admissible
     }
 
     /// Whether a field carries loads, but for rounding.
     fn carries(&self, loads: &Wrenches, field: &[JointForce]) -> bool {
-        field_error(self.problem, loads, field) <= CARRIED
+        field_error(self.problem, loads, field) <= SETTINGS.carried
     }
 
     /// The greatest share θ ≤ 1 of `loads` by the blocks of the program; `None` where its field does not carry them.
@@ -263,7 +248,7 @@ impl ConicEngine<'_> {
         let right = match &greatest {
             Greatest::Failed(_) => false,
             Greatest::Collapse { factor, field, .. } => {
-                field_error(self.problem, &combined(fixed, varying, *factor), field) <= FIELD
+                field_error(self.problem, &combined(fixed, varying, *factor), field) <= SETTINGS.admissible
             }
             Greatest::Capped(_) | Greatest::Unbounded(_) => true,
         };
@@ -274,7 +259,7 @@ impl ConicEngine<'_> {
     fn by_tangents(&mut self, question: (&Wrenches, &Wrenches, f64), tried: &Tried) -> Option<Greatest> {
         let start = tried.best.as_ref().map(|best| &best.1).or(tried.unsettled.as_ref());
         let (Greatest::Collapse { field, .. } | Greatest::Capped(field)) = start? else { return None };
-        let solved = by_tangents(self.problem, question, field, FIELD);
+        let solved = by_tangents(self.problem, question, field, SETTINGS.admissible);
         solved.iter().for_each(|solved| self.counted(solved));
         Some(greatest_of(solved.into_iter().last()?.solution?, question.1))
     }
@@ -346,11 +331,11 @@ impl Engine for ConicEngine<'_> {
         // Where strengths alone hold the load, as in flat arches of strong stone, it is as great as they are: in the unit of
         // the loads that stand it would be too great for the interior point.
         let weakest = weakest(self.problem);
-        if tried.best.is_none() && weakest.is_finite() && weakest > force * STRONG {
+        if tried.best.is_none() && weakest.is_finite() && weakest > force * SETTINGS.strong {
             self.attempt(question, weakest, &mut tried);
         }
         // Another unit leads the interior point another way: to a point from which the polish may settle.
-        for scale in UNITS.into_iter().filter(|_| self.problem.groups <= MOST_IN_UNITS) {
+        for scale in [0.1, 10.0].into_iter().filter(|_| self.problem.groups <= MOST_IN_UNITS) {
             if tried.may_gain() {
                 self.attempt(question, force * scale, &mut tried);
             }

@@ -8,15 +8,13 @@
 use crate::limit::block_program::{Loads, Program, Solved, solve};
 use crate::limit::equilibrium::{excess, field_error};
 use crate::limit::scale::combined;
+use crate::limit::settings::SETTINGS;
 use voussoir_core::law::{FacetMode, ForceRow, StressBlock};
 use voussoir_core::limit::{JointForce, LimitProblem};
 use voussoir_core::model::Wrenches;
 
 /// Programs at the most.
 const MOST: usize = 12;
-/// Growth of what is violated beyond the least, after which nothing is hoped for: where the greatest factor lies amid a stress
-/// block and not where bounds cross, tangents end beyond it on one side and then on the other.
-const APART: f64 = 10.0;
 
 /// The tangent of a stress block at one end where N̄ is pressed: 2 ū (N + F_t) − ū² ≤ F (2 N_i + F_t), ū = N̄ + F_t, over F.
 fn tangent(block: StressBlock, end: usize, pressed: f64) -> ForceRow {
@@ -70,7 +68,7 @@ pub fn by_tangents(
             }
         }
         solved.solution = (error <= most).then_some(solution);
-        let done = solved.solution.is_some() || error > APART * least;
+        let done = solved.solution.is_some() || error > SETTINGS.diverged * least;
         least = least.min(error);
         all.push(solved);
         if done {

@@ -11,11 +11,6 @@ use crate::limit::systems::Systems;
 use crate::optimise::dense_simplex::{Dictionary, Feasibility};
 use voussoir_core::limit::BracketWork;
 
-/// A range ends this far below a known state, relative to it; where rounding finds that state again, up
-/// to [`WIDEST`].
-pub const GAP: f64 = SETTINGS.below_state;
-/// A bracket no wider than this is closed.
-pub const WIDEST: f64 = SETTINGS.closed;
 /// Ends of the ranges as shares of what is open; they close at about equal cost.
 const SHARES: [f64; 8] = [0.3, 0.6, 0.77, 0.85, 0.92, 0.96, 0.985, 1.0];
 

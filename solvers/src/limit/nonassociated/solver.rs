@@ -1,6 +1,6 @@
 //! The solver `limit_least`: local search for the least state, then a proof that nothing lies below.
 
-use super::bracket::{GAP, Proof, WIDEST, Work, at_once, dissipations, in_parts, state_at};
+use super::bracket::{Proof, Work, at_once, dissipations, in_parts, state_at};
 use super::curve::Curve;
 use super::descent::{Descent, State};
 use super::products::{Bound, lower_bound};
@@ -262,7 +262,7 @@ impl LimitSolver for LimitNonassociated {
             }
         }
         // Where something lower is not excluded, the sequence may know it.
-        if best.as_ref().is_none_or(|b| lower.theta < b.0 * (1.0 - WIDEST)) {
+        if best.as_ref().is_none_or(|b| lower.theta < b.0 * (1.0 - SETTINGS.closed)) {
             let from = answer.field.clone().unwrap_or_default();
             match sequence(problem, &base, &from, &mut answer.counters) {
                 Sequence::Converged(state) if best.as_ref().is_none_or(|b| state.factor < b.1.factor) => {
@@ -325,7 +325,7 @@ impl Least<'_> {
     /// Keeps a state where it is less than the best one.
     fn take(&self, moving: Option<Vec<usize>>, best: &mut Option<(f64, FlowState)>) -> bool {
         let Some(found) = moving.and_then(|moving| self.state(&moving)) else { return false };
-        let better = best.as_ref().is_none_or(|b| found.0 < b.0 - GAP / 2.0 * b.0.abs());
+        let better = best.as_ref().is_none_or(|b| found.0 < b.0 - SETTINGS.below_state / 2.0 * b.0.abs());
         if better {
             *best = Some(found);
         }
@@ -335,7 +335,7 @@ impl Least<'_> {
     /// Raises the lower bound as far as the limits allow, taking lesser states on the way.
     fn prove(&mut self, limits: &LimitNonassociated, most: f64, best: &mut Option<(f64, FlowState)>) -> Lower {
         let entries = (limits.search_limit * 1e9).min(1e18) as u64;
-        let (mut lower, mut gap) = (Lower { theta: 0.0, products: None, searched: 0.0 }, GAP);
+        let (mut lower, mut gap) = (Lower { theta: 0.0, products: None, searched: 0.0 }, SETTINGS.below_state);
         let mut whole = true;
         loop {
             let known = best.as_ref().map_or(most, |b| b.0);
@@ -343,7 +343,7 @@ impl Least<'_> {
                 return lower;
             }
             let top = known * (1.0 - gap);
-            if lower.theta >= known * (1.0 - WIDEST) {
+            if lower.theta >= known * (1.0 - SETTINGS.closed) {
                 return lower;
             }
             let left = entries.saturating_sub(self.work.entries);
@@ -368,7 +368,7 @@ impl Least<'_> {
                 Proof::Open(_) => {
                     whole = false;
                     lower.product(self.products(known, limits.product_rows, false));
-                    if lower.theta < known * (1.0 - WIDEST) && limits.product_limit > 0.0 {
+                    if lower.theta < known * (1.0 - SETTINGS.closed) && limits.product_limit > 0.0 {
                         let multiplications = (limits.product_limit * 1e9).min(1e18) as u64;
                         let curve = &mut self.work.curve;
                         let (bound, work) = split_bound(&self.systems, known, multiplications, curve);
@@ -384,7 +384,7 @@ impl Least<'_> {
                         continue;
                     }
                     // The known state itself, to rounding: the proof ends further below it.
-                    if gap < WIDEST {
+                    if gap < SETTINGS.closed {
                         gap *= 10.0;
                     } else if whole {
                         whole = false;
@@ -426,7 +426,7 @@ impl Lower {
     /// both close the bracket: it can be checked.
     fn product(&mut self, bound: Option<Bound>) {
         let Some(bound) = bound else { return };
-        if bound.theta >= self.searched * (1.0 - WIDEST / 2.0) {
+        if bound.theta >= self.searched * (1.0 - SETTINGS.closed / 2.0) {
             self.theta = bound.theta;
             self.searched = 0.0;
         }
@@ -463,7 +463,7 @@ fn finish(
                 answer.notes.push(format!(
                     "the least load factor of the laws' own flow is at most {factor:.9} (found); no lower end is proved: {why}"
                 ));
-            } else if lower * unit < state.factor * (1.0 - 2.0 * WIDEST) {
+            } else if lower * unit < state.factor * (1.0 - 2.0 * SETTINGS.closed) {
                 answer.notes.push(format!(
                     "the least load factor of the laws' own flow lies between {proved:.9} (proved) and {factor:.9} (found): {why}"
                 ));

@@ -1,6 +1,6 @@
 //! The sequence of linear programs with fictitious cohesion that ends at a state of the laws' own flow.
 
-use super::vertices::{ADMISSIBLE, Vertices};
+use super::vertices::Vertices;
 use crate::limit::conic;
 use crate::limit::engine::{Engine, Greatest};
 use crate::limit::settings::SETTINGS;
@@ -9,9 +9,6 @@ use crate::optimise::dense_simplex::Feasibility;
 use voussoir_core::limit::{Counters, JointForce, LimitProblem, Velocity};
 use voussoir_core::model::Wrenches;
 
-/// Greatest violation of a yield row, relative to the loads, at which the sequence has converged;
-/// the field is then moved onto the yield surface.
-pub const TOLERANCE: f64 = SETTINGS.closed;
 /// The first programs.
 const CLOSELY: usize = 36;
 /// Greatest number of programs.
@@ -83,8 +80,8 @@ pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], co
             Greatest::Failed(why) => return Sequence::Open(format!("linear program {}: {why}", step + 1)),
             _ => return Sequence::Open(format!("linear program {} has no bound", step + 1)),
         };
-        let asked = if step < CLOSELY { SETTINGS.negligible } else { TOLERANCE };
-        let steady = (factor - last).abs() <= asked * factor.abs().max(TOLERANCE * systems.unit);
+        let asked = if step < CLOSELY { SETTINGS.negligible } else { SETTINGS.closed };
+        let steady = (factor - last).abs() <= asked * factor.abs().max(SETTINGS.closed * systems.unit);
         last = factor;
         let z = systems.force_variables(&field);
         let worst = (0..systems.pairs.len()).map(|i| -systems.slack(i, &z)).fold(0.0, f64::max);
@@ -148,17 +145,18 @@ impl Course {
         let last = &self.factors[self.factors.len().saturating_sub(TOLD)..];
         let low = last.iter().copied().fold(f64::INFINITY, f64::min);
         let high = last.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let reason = if high - low > TOLERANCE * high.abs() {
+        let reason = if high - low > SETTINGS.closed * high.abs() {
             format!("their factors wander between {low:.9} and {high:.9} above the start")
         } else {
             format!("their factor stays at {high:.9} above the start, but fields and mechanisms there do not fit")
         };
         format!(
             "the sequence of {PROGRAMS} linear programs did not converge: in the last {} {reason}; the last field violates \
-             yield by {:.1e} of the loads, and joints move that are {:.1e} short of it (both at most {TOLERANCE:e} at a state)",
+             yield by {:.1e} of the loads, and joints move that are {:.1e} short of it (both at most {:e} at a state)",
             last.len(),
             self.violation,
-            self.idle
+            self.idle,
+            SETTINGS.closed
         )
     }
 }
@@ -180,13 +178,14 @@ fn field_at(
         return None;
     }
     let (_, true) = statics.minimise(&[(systems.theta(), -1.0)], 20_000)? else { return None };
-    if statics.value(systems.theta()) < theta - TOLERANCE * theta.abs() {
+    if statics.value(systems.theta()) < theta - SETTINGS.closed * theta.abs() {
         return None;
     }
     let slacks: Vec<f64> = (0..systems.pairs.len()).map(|i| statics.value(i).max(0.0)).collect();
     let (z, violation) = systems.field_with(&slacks)?;
     let idle = moving.iter().map(|&i| systems.slack(i, &z).abs()).fold(0.0, f64::max);
-    let near = violation.max(idle) <= ADMISSIBLE && (z[systems.forces] - theta).abs() <= 2.0 * TOLERANCE * theta.abs();
+    let near = violation.max(idle) <= SETTINGS.balanced
+        && (z[systems.forces] - theta).abs() <= 2.0 * SETTINGS.closed * theta.abs();
     near.then(|| (systems.joint_forces(&z), z[systems.forces] * systems.unit))
 }
 
@@ -220,7 +219,7 @@ fn field_yielding(
     let mut z = systems.force_variables(&field);
     z.push(factor / systems.unit);
     let (z, violation) = systems.field(moving, z)?;
-    (violation <= ADMISSIBLE).then(|| (systems.joint_forces(&z), z[systems.forces] * systems.unit))
+    (violation <= SETTINGS.balanced).then(|| (systems.joint_forces(&z), z[systems.forces] * systems.unit))
 }
 
 /// A converged field moved onto the yield surface where the mechanism moves, with the mechanism.
@@ -232,13 +231,13 @@ fn settled(
 ) -> Option<FlowState> {
     z.push(factor / systems.unit);
     let near: Vec<usize> = (0..systems.pairs.len())
-        .filter(|&i| systems.slack(i, &z).abs() <= 10.0 * TOLERANCE || moving.contains(&i))
+        .filter(|&i| systems.slack(i, &z).abs() <= 10.0 * SETTINGS.closed || moving.contains(&i))
         .collect();
     let some: Vec<usize> =
         (0..systems.pairs.len()).filter(|&i| systems.slack(i, &z) <= 0.0 || moving.contains(&i)).collect();
     let (z, _) = [near, some, moving.to_vec()]
         .into_iter()
         .filter_map(|yielding| systems.field(&yielding, z.clone()))
-        .find(|(_, violation)| *violation <= ADMISSIBLE)?;
+        .find(|(_, violation)| *violation <= SETTINGS.balanced)?;
     Some(FlowState { factor: z[systems.forces] * systems.unit, field: systems.joint_forces(&z), motion })
 }

@@ -5,14 +5,9 @@
 
 use crate::limit::engine::Greatest;
 use crate::limit::settings::SETTINGS;
-use crate::limit::systems::{LARGEST, Systems, greatest_shares};
+use crate::limit::systems::{LARGEST, PIVOTS, Systems, greatest_shares};
 use crate::optimise::dense_simplex::{Dictionary, Feasibility};
 use voussoir_core::limit::{Counters, JointForce, LimitJoint, LimitProblem};
-
-/// A field moved onto the yield surface is admissible to this.
-pub const ADMISSIBLE: f64 = SETTINGS.balanced;
-/// Pivots of one program at the most.
-const PIVOTS: u64 = 20_000;
 
 /// Programs with associated rows that differ in their bounds.
 pub struct Vertices {
@@ -76,7 +71,7 @@ impl Vertices {
         let zero: Vec<usize> = (0..systems.pairs.len()).filter(|&i| statics.at_zero(i)).collect();
         let (z, violation) = systems.field(&zero, vec![0.0; systems.forces + 1])?;
         let (motion, wrong) = systems.motion(problem, &moving)?;
-        (violation <= ADMISSIBLE && wrong <= SETTINGS.admissible).then(|| Greatest::Collapse {
+        (violation <= SETTINGS.balanced && wrong <= SETTINGS.admissible).then(|| Greatest::Collapse {
             factor: z[systems.forces] * systems.unit,
             field: systems.joint_forces(&z),
             motion,
