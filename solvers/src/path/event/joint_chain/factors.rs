@@ -58,7 +58,7 @@ impl Factor {
     /// Not factorised yet.
     pub fn new(joint: Joint) -> Self {
         let n = joint.size();
-        Factor { joint: joint, rows: Vec::new(), weak: false, inverse: DMatrix::zeros(n, n) }
+        Factor { joint, rows: Vec::new(), weak: false, inverse: DMatrix::zeros(n, n) }
     }
 
     fn forces(&self) -> usize {
