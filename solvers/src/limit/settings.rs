@@ -211,7 +211,7 @@ mod tests {
     #[test]
     fn the_tolerances_in_use_are_valid() {
         assert_eq!(SETTINGS.validated(), Ok(SETTINGS));
-        assert!(SETTINGS.carried <= 0.5 * voussoir_core::certificate::ROUNDING);
+        const { assert!(SETTINGS.carried <= 0.5 * voussoir_core::certificate::ROUNDING) };
     }
 
     /// No number, negative numbers, infinite ones and bounds in the wrong order are refused by name.
