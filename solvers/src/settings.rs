@@ -1,7 +1,7 @@
 //! The numbers that paths, rate problems and contact laws share: tolerances, and what steers the length of steps.
 //!
-//! Tolerances derive from three: what is rounding, what is admissible and what is active. Each is relative to the size of what it
-//! judges, in the units of the problem, so that neither the size of a scene nor its units matter. Limit analysis has its own
+//! Tolerances derive from three: rounding, admissibility and activity. Each is relative to the size of the judged quantity in
+//! the units of the problem, so that neither the size of a scene nor its units matter. Limit analysis has its own
 //! (`limit/settings.rs`).
 
 /// Numbers of paths, rate problems and contact laws.
@@ -19,12 +19,12 @@ pub struct Settings {
     pub mode: f64,
     /// Share that is small but no rounding: strength of a pivot, rotation of a step, least motion before an event.
     pub small: f64,
-    /// Share below which two effects are told apart with refinement only, such as a mechanism and a soft structure; energy that a
+    /// Share below which two effects can be distinguished with refinement only, such as a mechanism and a soft structure; energy that a
     /// step may leave over.
     pub fine: f64,
     /// Change of the factor in a step of blocks that flow, relative to its motion. In an elastic step it is about 1.
     pub flat: f64,
-    /// Energy of a stage, relative to it, that its steps may leave over: half of what a certificate allows.
+    /// Energy of a stage, relative to it, that its steps may leave over: half of the tolerance of a certificate.
     pub energy_of_stage: f64,
     /// Motion, as a share of the size of the scene, that can be seen: over it a mechanism is followed.
     pub visible: f64,
@@ -38,7 +38,7 @@ pub struct Settings {
     pub wanted_error: f64,
     /// The same above which a step is repeated.
     pub most_error: f64,
-    /// Length of a step, relative to the wanted one, from which on its error tells how long the next one may be.
+    /// Length of a step, relative to the wanted one, from which on its error determines the length of the next one.
     pub telling: f64,
     /// Length of a step, relative to the way to the first event: the event is then in it.
     pub beyond: f64,
@@ -101,7 +101,7 @@ impl Settings {
     const fn validated(self) -> Settings {
         assert!(0.0 < self.refined && self.refined < self.rounding, "refined solutions are better than rounding");
         assert!(self.rounding < self.admissible && self.admissible < self.active, "rounding < admissible < active");
-        assert!(self.admissible < self.mode && self.mode < self.active, "modes are decided within what is active");
+        assert!(self.admissible < self.mode && self.mode < self.active, "the tolerance of modes lies below activity");
         assert!(
             self.active < self.flat && self.flat < self.fine && self.fine < self.small && self.small < self.visible
         );
@@ -125,7 +125,7 @@ impl Settings {
         0.01 * self.rounding
     }
 
-    /// Share of what it began with at which an update has died away.
+    /// Share of its first size at which an update has died away.
     pub const fn negligible(&self) -> f64 {
         0.1 * self.rounding
     }
@@ -140,7 +140,7 @@ impl Settings {
         10.0 * self.rounding
     }
 
-    /// What is added to a factorised matrix and taken out again by refinement; pivots below it are none.
+    /// Shift of a factorised matrix, which refinement removes. Smaller pivots count as zero.
     pub const fn shift(&self) -> f64 {
         100.0 * self.rounding
     }
@@ -185,7 +185,7 @@ impl Settings {
 mod tests {
     use super::SETTINGS;
 
-    /// Derived tolerances stay in the order in which they are used: what one part accepts no later part refuses.
+    /// Derived tolerances stay in the order of their use: no later part refuses a state that an earlier one accepts.
     #[test]
     fn derived_tolerances_are_in_order() {
         let ascending = [

@@ -4,12 +4,12 @@ use voussoir_core::law::{FacetMode, ForceRow, JointStrength, StressBlock};
 use voussoir_core::limit::{LimitJoint, LimitProblem};
 use voussoir_core::model::geometry::{Vec2, turned};
 
-/// What joints of a scene can carry.
+/// The strengths of the joints of a scene.
 #[derive(Debug, Clone, Copy)]
 pub struct Dry {
     /// Friction; stuck joints without it.
     pub friction: Option<f64>,
-    /// Whether sliding opens joints, as associated flow has it.
+    /// True if sliding opens joints: associated flow.
     pub associated: bool,
     /// Force that crushes a joint \[N\].
     pub crushing: Option<f64>,
@@ -54,7 +54,7 @@ impl Dry {
     }
 }
 
-/// A block of so much width and height on the ground, of weight 1 N, pushed by λ N at half its height: λ = b/h (1 − W/F)
+/// A block of a width and a height on the ground, of weight 1 N, pushed by λ N at half its height: λ = b/h (1 − W/F)
 /// if it rocks, μ if it slides.
 pub fn block(width: f64, height: f64, dry: Dry) -> LimitProblem {
     LimitProblem {

@@ -40,7 +40,7 @@ pub struct LimitSettings {
     pub pivot: f64,
     /// Weight of a force that no row bounds.
     pub unbounded: f64,
-    /// What a row adds to others, relative to itself, if it is independent of them.
+    /// Part of a row that is independent of others, relative to the row.
     pub independent: f64,
     /// Shift of singular systems.
     pub shift: f64,
@@ -207,7 +207,7 @@ impl LimitSettings {
 mod tests {
     use super::*;
 
-    /// The tolerances in use contradict nothing, and certificates allow twice what they let pass.
+    /// The tolerances in use contradict nothing. Certificates allow twice the errors that these tolerances accept.
     #[test]
     fn the_tolerances_in_use_are_valid() {
         assert_eq!(SETTINGS.validated(), Ok(SETTINGS));

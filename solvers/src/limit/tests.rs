@@ -227,7 +227,7 @@ fn the_load_of_a_toe_changes_with_its_strength() {
     assert!((face.derivative(&rate).expect("a rate") - 0.5 / 16.0).abs() < 1e-7);
 }
 
-/// Errors of fields are those known by hand: none in balance, the excess over a row, and what is out of equilibrium.
+/// Errors of fields agree with errors by hand: zero in balance, the excess over a row, and forces out of equilibrium.
 #[test]
 fn errors_of_fields_are_shares_of_the_loads() {
     let problem = block(1.0, 2.0, sliding(0.5));
@@ -249,7 +249,7 @@ fn a_stress_block_is_exceeded_by_its_parabola() {
     assert_eq!(excess(block, &force([1.5, 0.25])), 0.265_625);
 }
 
-/// Variables give joint forces back in their unit, and equilibrium over them is that of the wrenches.
+/// Variables give joint forces back in their unit, and equilibrium over them equals equilibrium of the wrenches.
 #[test]
 fn force_variables_are_joint_forces() {
     let problem = block(1.0, 2.0, sliding(0.5));

@@ -20,7 +20,7 @@ fn value(i: usize, j: usize) -> f64 {
     ((7 * i + 11 * j * j + 3) as f64).sin()
 }
 
-/// Equations of contact points, of which the last feels the force of the one before, and of what follows.
+/// Equations of contact points and bodies. The last contact point feels the force of the one before.
 fn entries() -> Entries {
     let mut entries = Vec::new();
     for i in 0..SIZE {
@@ -71,7 +71,7 @@ fn condensed_equations_have_the_solution_of_all_equations() {
     assert!(distance(&own.solve(&right, 1).unwrap(), &solved(dense(&entries), &right)) < 1e-13);
 }
 
-/// What is added for the factorisation is no part of the equations: each refinement takes it out by its own size.
+/// Shifts that are added for the factorisation are not part of the equations: each refinement removes them by their size.
 #[test]
 fn refinement_takes_out_what_is_added_to_the_factors() {
     let (entries, right) = (entries(), right());
@@ -173,7 +173,7 @@ fn with_last_row(entries: &Entries, control: &[f64]) -> DMatrix<f64> {
     matrix
 }
 
-/// A dense control beside the equations has the solution of all rows, and its residual is that of all rows.
+/// A dense control beside the equations has the solution and the residual of all rows.
 #[test]
 fn a_control_beside_the_equations_is_their_last_row() {
     let (entries, right) = (entries(), right());
@@ -262,7 +262,7 @@ fn block_products_are_those_of_the_definition() {
     }
 }
 
-/// The greatest size counts every number, whatever their number; the error of a row of zeros is none, and of no number infinite.
+/// The greatest size counts every number of a list of any length. The error of a row of zeros is zero; the error of a NaN is infinite.
 #[test]
 fn sizes_and_errors_of_rows_are_safe() {
     for n in [0, 1, 7, 8, 9, 31] {

@@ -72,7 +72,7 @@ fn length(edges: &BTreeMap<String, BTreeSet<String>>, from: &String, known: &mut
     beyond + 1
 }
 
-/// Functions of the paths take what they need: few take a struct of many fields as `&mut`.
+/// Few functions of the paths change a struct of many fields.
 #[test]
 fn few_functions_take_a_large_struct_to_change_it() {
     let files = solvers().files;
@@ -113,7 +113,7 @@ fn numbers_live_in_settings() {
     }
 }
 
-/// What is counted for a report steers no algorithm: no solver reads a counter.
+/// Counters of a report steer no algorithm: no solver reads them.
 #[test]
 fn no_solver_reads_its_counters() {
     for (module, source) in solvers().files {

@@ -336,8 +336,8 @@ curve = true
 /// Rigid-block limit load of the reference bridge \[kN\].
 const RIGID: f64 = REFERENCE_ARCH;
 
-/// `tolerance` is what is asked of states: a loose one saves iterations and keeps the peak within it, a tight one changes nothing
-/// that the default gives.
+/// `tolerance` is the accuracy of states: a loose one saves iterations and keeps the peak within it; a tight one gives the peak of
+/// the default.
 #[test]
 fn the_tolerance_of_a_study_is_that_of_its_states() {
     let of = |tolerance: &str| {

@@ -21,7 +21,7 @@ pub enum Next {
 pub struct Continued {
     pub next: Next,
     pub none_rises: Option<NoRate>,
-    /// Whether the chain of joints gave the direction.
+    /// True if the chain of joints gave the direction.
     pub by_chain: bool,
 }
 

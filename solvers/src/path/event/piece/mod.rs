@@ -1,4 +1,4 @@
-//! What holds within one piece of the path: the modes of its points, its equations and its rates.
+//! One piece of the path: the modes of its points, its equations and its rates.
 
 pub mod factorisation;
 pub mod point;

@@ -1,4 +1,4 @@
-//! What is read from states and rates: tractions, plastic work, sizes, monitors, records.
+//! Quantities of states and rates: tractions, plastic work, sizes, monitors, records.
 
 pub mod ahead;
 pub mod control_row;

@@ -1,4 +1,4 @@
-//! Newton's method for a state, its rates with their modes, and what the rates prove.
+//! Newton's method for a state, its rates with their modes, and proofs by rates.
 
 pub mod iteration;
 pub mod limit_point_test;
