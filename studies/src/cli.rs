@@ -8,9 +8,12 @@ use clap::{Args, CommandFactory, Parser, Subcommand};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+/// Version and commit of the program.
+const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (commit ", env!("VOUSSOIR_COMMIT"), ")");
+
 /// How masonry made of blocks stands and collapses.
 #[derive(Parser)]
-#[command(name = "voussoir", version, about)]
+#[command(name = "voussoir", version = VERSION, about)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
