@@ -40,7 +40,7 @@ book:
 
 # A small binary with drawings and pixels.
 dist:
-    cargo build --profile dist --locked -p voussoir --features dxf,png
+    cargo build --profile dist --locked -p voussoir --features png
 
 # Packages of all crates, built from what they contain.
 package:

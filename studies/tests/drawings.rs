@@ -1,5 +1,4 @@
-//! Drawings as profiles and as blocks: run with `cargo test --release -p voussoir --features dxf --test drawings`.
-#![cfg(feature = "dxf")]
+//! Drawings as profiles and as blocks.
 
 use voussoir::kinds::read_source;
 use voussoir::solve_case;

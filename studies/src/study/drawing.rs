@@ -1,6 +1,6 @@
 //! Drawings (DXF): polylines become the points of a profile, closed ones blocks, layers materials.
 //!
-//! What a drawing holds is separate from how its file is read, which needs the cargo feature `dxf`.
+//! The content of a drawing is separate from the reader of its file ([`dxf`](super::dxf)).
 
 use crate::config::diagnostic::suggest;
 use std::collections::BTreeMap;

@@ -9,7 +9,6 @@ mod case;
 mod diagnostics;
 mod documented_vehicles;
 pub mod drawing;
-#[cfg(feature = "dxf")]
 mod dxf;
 mod error;
 mod export;

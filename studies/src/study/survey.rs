@@ -2,7 +2,6 @@
 //! resolved study needs the file no longer. The file may be a drawing, `survey.dxf`, and so may that of a scene of blocks.
 
 use super::drawing::{Drawing, DrawnBlock};
-#[cfg(feature = "dxf")]
 use super::dxf::read_drawing;
 use crate::config::diagnostic::{LocatedDiagnostic, suggest};
 use crate::config::document::{Entry, Node, Table, Value};
@@ -47,11 +46,6 @@ pub fn beside(study: &Path) -> impl Fn(&str) -> Result<String, String> {
             Err(error) => Err(error.to_string()),
         }
     }
-}
-
-#[cfg(not(feature = "dxf"))]
-fn read_drawing(_: &str) -> Result<Drawing, String> {
-    Err("this program was built without drawings; build it with cargo's `--features dxf`".into())
 }
 
 fn is_drawing(file: &str) -> bool {
