@@ -1,6 +1,6 @@
 //! Drawings (DXF): polylines become the points of a profile, closed ones blocks, layers materials.
 //!
-//! The content of a drawing is separate from the reader of its file ([`dxf`](super::dxf)).
+//! The content of a drawing is separate from the reader of its file (`dxf.rs`).
 
 use crate::config::diagnostic::suggest;
 use std::collections::BTreeMap;
