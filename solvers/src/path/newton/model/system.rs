@@ -38,6 +38,8 @@ pub struct Laws {
 #[derive(Default)]
 pub struct Report {
     pub counters: Counters,
+    /// Iterations of Newton's method: the budget of a load step.
+    pub iterations: u64,
     /// Greatest relative residual of each iteration of the last step that was tried.
     pub residuals: Vec<f64>,
     /// The reason why a law or a block gave no stresses last.

@@ -7,9 +7,11 @@
 use super::corrector::correct;
 use super::monitors::Reading;
 use super::piece::{Piece, scaled_row};
+use crate::linear::inner;
 use crate::path::newton::model::control::Control;
 use crate::path::newton::model::state::{State, Tangent, moved};
 use crate::path::newton::model::system::StepSystem;
+use crate::path::newton::quantities::ahead::length_ahead;
 use crate::settings::SETTINGS;
 
 /// Points between the ends of a step at which a cubic is looked at.
@@ -74,8 +76,6 @@ struct Step<'a, 's> {
     start: &'a State,
     piece: &'a Piece,
     watched: Watched,
-    /// Counts the states that are computed.
-    states: &'a mut usize,
 }
 
 impl Step<'_, '_> {
@@ -110,7 +110,6 @@ impl Step<'_, '_> {
 
     /// The state of a control, about a length away.
     fn controlled(&mut self, from: &StepEnd, length: f64, control: &Control) -> Option<Trial> {
-        *self.states += 1;
         let guess = moved(&from.state, &from.rate, length - from.length);
         let state = correct(self.system, self.start, guess, control)?;
         let rate = self.piece.rate_at(self.system, &state)?;
@@ -118,9 +117,20 @@ impl Step<'_, '_> {
         let moved = scaled_row(self.system, &step);
         let away: f64 = moved.iter().zip(self.piece.row.iter()).map(|(x, t)| (x - length * t).powi(2)).sum();
         let error = away.sqrt() / length.abs().max(1e-300);
+        let bonds = !self.system.laws.responses.is_empty();
+        if bonds && error > SETTINGS.half + SETTINGS.inequality() / length.abs().max(1e-300) {
+            // The state is on another branch of a bond.
+            return None;
+        }
         let unexplained = self.unexplained(&state, &rate, length);
         let readings = self.readings(&state, &rate);
         Some(Trial { end: StepEnd { state, rate, length, error, unexplained }, readings })
+    }
+
+    /// Distance of two states over the scaled unknowns.
+    fn distance(&self, low: &Trial, high: &Trial) -> f64 {
+        let row = scaled_row(self.system, &chord(&low.end.state, &high.end.state));
+        inner(&row, &row).sqrt()
     }
 
     /// Error of the trapezoidal rule for the factor.
@@ -160,19 +170,18 @@ pub(super) fn chord(from: &State, to: &State) -> Tangent {
 /// The state at a length along a piece from one of its states, whatever its monitors read.
 pub(super) fn state_at(system: &mut StepSystem, start: &State, piece: &Piece, length: f64) -> Option<StepEnd> {
     let low = StepEnd { state: start.clone(), rate: piece.tangent.clone(), length: 0.0, error: 0.0, unexplained: 0.0 };
-    let mut step = Step { system, start, piece, watched: Watched { sense: None, target: None }, states: &mut 0 };
+    let mut step = Step { system, start, piece, watched: Watched { sense: None, target: None } };
     step.trial(&low, length).map(|trial| trial.end)
 }
 
-/// Goes a length along a piece from one of its states. `states` counts those that are computed.
+/// Goes a length along a piece from one of its states.
 pub(super) fn advance(
     system: &mut StepSystem,
     (start, piece): (&State, &Piece),
     length: f64,
     watched: Watched,
-    states: &mut usize,
 ) -> Advance {
-    let mut step = Step { system, start, piece, watched, states };
+    let mut step = Step { system, start, piece, watched };
     let readings = step.readings(start, &piece.tangent);
     let end = StepEnd { state: start.clone(), rate: piece.tangent.clone(), length: 0.0, error: 0.0, unexplained: 0.0 };
     let low = Trial { end, readings };
@@ -262,7 +271,8 @@ fn locate(step: &mut Step, mut low: Trial, mut high: Trial) -> Advance {
     }
     // A path, its slacks and its openings are continuous: behind a bracket over which one jumps the states are on another branch.
     let jumps = |(a, b): (&Reading, &Reading)| a.rate.is_some() && !a.is_active() && b.is_violated();
-    match low.readings.iter().zip(&high.readings).any(jumps) {
+    let far = SETTINGS.cancels * (high.end.length - low.end.length) + length_ahead(step.system, step.start);
+    match step.distance(&low, &high) > far || low.readings.iter().zip(&high.readings).any(jumps) {
         true if low.end.length > 0.0 => Advance::Whole(low.end),
         true => Advance::Failed,
         false => ended(low, &high),

@@ -56,6 +56,7 @@ pub(super) fn correct(system: &mut StepSystem, start: &State, guess: State, cont
         let row = control_row(system, control);
         let right: Vec<f64> = residual.iter().map(|x| -x).collect();
         system.count("newton_iterations", 1);
+        system.report.iterations += 1;
         let (step, solved) = solve(system, &state, &equations, (&row, &right), Accuracy::Rough)?;
         if !solved {
             return None;

@@ -37,7 +37,7 @@ pub(super) fn plateau(tracer: &mut Tracer, piece: &Piece, direction: f64, flows:
     let (mut moved, mut length) = (0.0, if tracer.system.finite() { 1e-3 * whole } else { whole });
     for _ in 0..200 {
         let step = length.min(whole - moved);
-        match advance(&mut tracer.system, (&state, &piece_here), step, watched, &mut 0) {
+        match advance(&mut tracer.system, (&state, &piece_here), step, watched) {
             Advance::Whole(StepEnd { state: mut next, rate, length: taken, .. }) => {
                 states.push(next.clone());
                 tracer.system.keep(&state, &mut next);

@@ -81,6 +81,7 @@ pub fn iterate(
         let row = control_row(system, control);
         let right: Vec<f64> = residual.iter().map(|x| -x).collect();
         system.count("newton_iterations", 1);
+        system.report.iterations += 1;
         let solution = solve(system, &state, &equations, (&row, &right), Accuracy::Rough);
         // Modes without a solution may be on the way to ones that have one: with small
         // displacements the shifted equations, a soft bedding, show which points close.

@@ -39,9 +39,7 @@ fn a_whole_step_ends_on_the_curve() {
     let (mut system, state) = second_step(&problem);
     let piece = piece_at(&mut system, &state);
     let length = 0.1 * system.units().factor / piece.tangent.factor;
-    let Advance::Whole(end) = advance(&mut system, (&state, &piece), length, UNWATCHED, &mut 0) else {
-        panic!("an event")
-    };
+    let Advance::Whole(end) = advance(&mut system, (&state, &piece), length, UNWATCHED) else { panic!("an event") };
     assert!(end.state.factor > 0.05);
     assert_close(end.state.factor, load(-end.state.motion[1][2]), 1e-10);
     assert_close(end.length, length, 0.0);
@@ -54,7 +52,7 @@ fn a_long_step_ends_at_the_event() {
     let (mut system, state) = second_step(&problem);
     let piece = piece_at(&mut system, &state);
     let length = 2.0 / piece.tangent.factor;
-    let Advance::Event(end, hits) = advance(&mut system, (&state, &piece), length, UNWATCHED, &mut 0) else {
+    let Advance::Event(end, hits) = advance(&mut system, (&state, &piece), length, UNWATCHED) else {
         panic!("no event")
     };
     let hits: Vec<_> = hits.iter().map(|hit| piece.monitors.0[*hit]).collect();
@@ -70,8 +68,7 @@ fn a_step_ends_at_its_target() {
     let (mut system, state) = second_step(&problem);
     let piece = piece_at(&mut system, &state);
     let watched = Watched { sense: Some(1.0), target: Some((0.123, 1.0)) };
-    let Advance::Target(end) = advance(&mut system, (&state, &piece), 2.0 / piece.tangent.factor, watched, &mut 0)
-    else {
+    let Advance::Target(end) = advance(&mut system, (&state, &piece), 2.0 / piece.tangent.factor, watched) else {
         panic!("no target")
     };
     assert_close(end.state.factor, 0.123, 1e-14);
