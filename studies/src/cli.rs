@@ -4,6 +4,7 @@ use crate::commands;
 pub use crate::commands::clock::processor_time;
 use crate::commands::new::Template;
 use crate::commands::options::{Options, Shard};
+pub use crate::commands::{CliError, ErrorKind, Outcome, Verdict};
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -190,8 +191,8 @@ enum Command {
 }
 
 impl Command {
-    /// The exit code of what was asked for; `arguments` are those after the program's name.
-    fn answer(self, arguments: &[String]) -> u8 {
+    /// Does what was asked for; `arguments` are those after the program's name.
+    fn answer(self, arguments: &[String]) -> Outcome {
         match self {
             Command::Run { studies, out, set, jobs, case, resume, quiet, shard, json, list, open } => {
                 let again = commands::run::going_on(arguments);
@@ -259,7 +260,7 @@ struct NewStudy {
 }
 
 impl New {
-    fn answer(self) -> u8 {
+    fn answer(self) -> Outcome {
         let (template, study) = match self {
             New::Arch(study) => (Template::Arch, study),
             New::Wall(study) => (Template::Wall, study),
@@ -283,14 +284,15 @@ pub fn main() -> ExitCode {
     }
     match std::panic::catch_unwind(|| main_from(std::env::args_os().skip(1))) {
         Err(_) => {
-            commands::complain("voussoir: this is an error of the program, not of its input; please report it");
-            ExitCode::from(commands::ended(commands::NO_ACCESS))
+            let why = "voussoir: this is an error of the program, not of its input; please report it";
+            ExitCode::from(commands::ended(Err(CliError::no_access(why))))
         }
         Ok(Ok(code)) => ExitCode::from(code),
         // Asked for help or version, or not understood: said, and ended as clap does.
         Ok(Err(said)) => {
-            let code = u8::try_from(said.exit_code()).unwrap_or(commands::WRONG_INPUT);
-            ExitCode::from(commands::printed(said.print(), code))
+            commands::keep(said.print());
+            let printed = commands::ended(Ok(Verdict::Proved));
+            ExitCode::from(printed.max(u8::try_from(said.exit_code()).unwrap_or(2)))
         }
     }
 }
@@ -304,7 +306,7 @@ const WORKER: &str = "run-behaviour";
 fn behaviour_for_another() -> Option<ExitCode> {
     if std::env::args_os().nth(1).is_some_and(|word| word == WORKER) {
         let ended = crate::external::serve();
-        return Some(if ended.is_ok() { ExitCode::SUCCESS } else { ExitCode::from(commands::NO_ACCESS) });
+        return Some(if ended.is_ok() { ExitCode::SUCCESS } else { ExitCode::from(3) });
     }
     if let Ok(program) = std::env::current_exe() {
         crate::external::isolate_with(program, vec![WORKER.into()]);
@@ -314,20 +316,28 @@ fn behaviour_for_another() -> Option<ExitCode> {
 
 /// The same for given arguments, without the program's name; an error is what clap has to say instead.
 pub fn main_from(arguments: impl IntoIterator<Item = std::ffi::OsString>) -> Result<u8, clap::Error> {
+    outcome_of(arguments).map(commands::ended)
+}
+
+/// The outcome of given arguments, without the program's name, with nothing printed of an error.
+///
+/// # Errors
+/// The message of clap, if the arguments are not understood or ask for help or the version.
+pub fn outcome_of(arguments: impl IntoIterator<Item = std::ffi::OsString>) -> Result<Outcome, clap::Error> {
     let arguments: Vec<std::ffi::OsString> = arguments.into_iter().collect();
     let wrong = voussoir_core::plugin::audit();
     if !wrong.is_empty() {
-        wrong.iter().for_each(|why| commands::complain(format_args!("voussoir: registry: {why}")));
-        return Ok(commands::NO_ACCESS);
+        let diagnostics = wrong.iter().map(|why| format!("voussoir: registry: {why}")).collect();
+        return Ok(Err(CliError { kind: ErrorKind::NoAccess, diagnostics }));
     }
     let words: Vec<String> = arguments.iter().map(|word| word.to_string_lossy().into_owned()).collect();
     let cli = Cli::try_parse_from(std::iter::once("voussoir".into()).chain(arguments))?;
     #[cfg(feature = "external")]
     for path in &cli.allow_library {
         if let Err(error) = crate::external::allow(path) {
-            commands::complain(format_args!("voussoir: --allow-library {}: {error}", path.display()));
-            return Ok(commands::NO_ACCESS);
+            let why = format_args!("voussoir: --allow-library {}: {error}", path.display());
+            return Ok(Err(CliError::no_access(why)));
         }
     }
-    Ok(commands::ended(cli.command.answer(&words)))
+    Ok(cli.command.answer(&words))
 }

@@ -1,9 +1,10 @@
 //! `voussoir bench`.
 
 use super::clock::processor_time;
-use super::codes::{FINE, NOT_PROVEN, WRONG_INPUT, complain, say};
+use super::error::{CliError, Outcome, Verdict};
 use super::files;
 use super::folder::ResultFolder;
+use super::print::{complain, say};
 use crate::bench::{Bench, BenchOptions, Measurement, Reference, bench, csv, error_chart, names, profile_chart, table};
 use crate::config::diagnostic::suggest;
 use crate::figures::format::{format_short, status_word};
@@ -28,15 +29,11 @@ pub struct BenchArguments {
 }
 
 /// Measures a study's variants, or all solvers that can answer it, side by side.
-pub fn measure(path: &Path, arguments: &BenchArguments) -> u8 {
-    measured(path, arguments).unwrap_or_else(|code| code)
-}
-
-fn measured(path: &Path, arguments: &BenchArguments) -> Result<u8, u8> {
+pub fn measure(path: &Path, arguments: &BenchArguments) -> Outcome {
     let loaded = files::study(path, &files::overrides(&arguments.set)?)?;
     let Some(CasesOf::Held(study)) = loaded.cases() else {
-        complain(format_args!("{}: only studies with a scene and at most 5000 cases can be benched", path.display()));
-        return Err(WRONG_INPUT);
+        let why = format_args!("{}: only studies with a scene and at most 5000 cases can be benched", path.display());
+        return Err(CliError::wrong_input(why));
     };
     let reference = arguments.reference.as_deref().map(|word| reference(study, word)).transpose()?;
     let told = |own: &Measurement| {
@@ -68,11 +65,11 @@ fn measured(path: &Path, arguments: &BenchArguments) -> Result<u8, u8> {
     }
     let answered =
         |problem: usize| found.measurements.iter().any(|own| own.problem == problem && own.factor().is_some());
-    Ok(if (0..found.problems.len()).all(answered) { FINE } else { NOT_PROVEN })
+    Ok(Verdict::of((0..found.problems.len()).all(answered)))
 }
 
 /// A load factor, or the name of somebody who takes part.
-fn reference(study: &Study, word: &str) -> Result<Reference, u8> {
+fn reference(study: &Study, word: &str) -> Result<Reference, CliError> {
     if let Some(factor) = word.parse().ok().filter(|factor: &f64| factor.is_finite()) {
         return Ok(Reference::Known(factor));
     }
@@ -82,11 +79,10 @@ fn reference(study: &Study, word: &str) -> Result<Reference, u8> {
     }
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let what = if study.outline.variants.is_empty() { "contestants" } else { "variants" };
-    complain(format_args!(
+    Err(CliError::wrong_input(format_args!(
         "--reference {word}: neither a load factor nor one of those that take part; {}",
         suggest(word, &names, what)
-    ));
-    Err(WRONG_INPUT)
+    )))
 }
 
 /// Where errors are measured from, once for all problems that share it.

@@ -1,9 +1,10 @@
 //! Solving the cases of a study into lines of a journal, so that nothing is held and nothing finished is lost.
 
 use super::case_lines::{CaseLines, LineHead};
-use super::codes::{NO_ACCESS, complain, say};
+use super::error::CliError;
 use super::folder::{JOURNAL, ResultFolder};
 use super::options::{Options, useful_jobs};
+use super::print::say;
 use super::progress::Progress;
 use crate::kinds::{Backing, BackingCount, CasesOf, kind, resumed};
 use crate::results::case_with_path::{CaseWithPath, read_case};
@@ -11,14 +12,7 @@ use crate::results::sealed_line::sealed;
 use crate::side_by_side::{in_order, side_by_side, threads};
 use std::collections::BTreeSet;
 use std::io::Write;
-use std::path::Path;
 use voussoir_core::limit::Status;
-
-/// Says that a file cannot be read or written.
-pub fn no_access(path: &Path, why: impl std::fmt::Display) -> u8 {
-    complain(format_args!("voussoir: {}: {why}", path.display()));
-    NO_ACCESS
-}
 
 /// Solves cases; with `--resume` only those that are not finished in the journal. The lines of all of them, in order.
 pub fn solve_into_journal(
@@ -27,18 +21,20 @@ pub fn solve_into_journal(
     ids: &[usize],
     folder: &ResultFolder,
     options: &Options,
-) -> Result<CaseLines, u8> {
+) -> Result<CaseLines, CliError> {
     let path = folder.path().join(JOURNAL);
-    let journal = folder.journal(options.resume).ok_or(NO_ACCESS)?;
-    let mut own = journal.try_clone().map_err(|error| no_access(&path, error))?;
-    let before = journal.metadata().map_err(|error| no_access(&path, error))?.len();
+    let journal = folder
+        .journal(options.resume)
+        .ok_or_else(|| CliError::unwritten(&path, "it is no regular file that can be written"))?;
+    let mut own = journal.try_clone().map_err(|error| CliError::of_file(&path, error))?;
+    let before = journal.metadata().map_err(|error| CliError::of_file(&path, error))?.len();
     let mut lines = CaseLines::default();
     if options.resume {
         let wanted = |id: usize| ids.binary_search(&id).is_ok();
         let mut take = |head: &LineHead| wanted(head.id) && head.status != Status::Stalled && !makes_cases(cases);
-        let damaged = lines.add(&path, 0, &mut take).map_err(|error| no_access(&path, error))?;
+        let damaged = lines.add(&path, 0, &mut take).map_err(|error| CliError::of_file(&path, error))?;
         let told = keep_proved(cases, &mut lines, damaged, useful_jobs(options.jobs));
-        let told = told.map_err(|error| no_access(&path, error))?;
+        let told = told.map_err(|error| CliError::of_file(&path, error))?;
         if !options.quiet && !options.json {
             told.into_iter().for_each(say);
         }
@@ -56,9 +52,9 @@ pub fn solve_into_journal(
     });
     progress.finish();
     if let Some(error) = failed {
-        return Err(no_access(&path, error));
+        return Err(CliError::of_file(&path, error));
     }
-    lines.add(&path, before, &mut |_| true).map_err(|error| no_access(&path, error))?;
+    lines.add(&path, before, &mut |_| true).map_err(|error| CliError::of_file(&path, error))?;
     lines.sort();
     Ok(lines)
 }

@@ -1,24 +1,18 @@
 //! `voussoir check`.
 
-use super::codes::{FINE, say};
+use super::error::{Outcome, Verdict, joined};
 use super::files;
-use std::path::PathBuf;
+use super::print::say;
+use std::path::{Path, PathBuf};
 
 /// Checks studies; prints what they hold.
-pub fn check(paths: &[PathBuf], sets: &[String]) -> u8 {
-    let sets = match files::overrides(sets) {
-        Ok(sets) => sets,
-        Err(code) => return code,
+pub fn check(paths: &[PathBuf], sets: &[String]) -> Outcome {
+    let sets = files::overrides(sets)?;
+    let one = |path: &Path| {
+        let study = files::study(path, &sets)?;
+        study.notes().into_iter().for_each(|note| say(format!("{}: note: {note}", path.display())));
+        say(format!("{}: fine, {} case(s)", path.display(), study.count()));
+        Ok(Verdict::Proved)
     };
-    let mut code = FINE;
-    for path in paths {
-        match files::study(path, &sets) {
-            Ok(study) => {
-                study.notes().into_iter().for_each(|note| say(format!("{}: note: {note}", path.display())));
-                say(format!("{}: fine, {} case(s)", path.display(), study.count()));
-            }
-            Err(wrong) => code = code.max(wrong),
-        }
-    }
-    code
+    joined(paths.iter().map(|path| one(path)))
 }

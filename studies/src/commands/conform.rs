@@ -1,6 +1,7 @@
 //! `voussoir conform`.
 
-use super::codes::{FINE, NO_ACCESS, NOT_PROVEN, WRONG_INPUT, complain, say};
+use super::error::{CliError, ErrorKind, Outcome, Verdict, joined};
+use super::print::say;
 use crate::config::diagnostic::suggest;
 use crate::conformance::{Options, Report, conform, conform_all};
 use std::path::Path;
@@ -16,17 +17,16 @@ const KINDS: [PluginKind; 5] = [
 ];
 
 /// Checks plug-ins of these tags, or all laws; failures of laws become studies in a folder.
-pub fn conform_tags(tags: &[String], out: Option<&Path>) -> u8 {
+pub fn conform_tags(tags: &[String], out: Option<&Path>) -> Outcome {
     let cards: Vec<_> = KINDS.into_iter().flat_map(cards_of).collect();
     let names: Vec<&str> = cards.iter().map(|card| card.tag).collect();
-    let mut unknown = FINE;
-    for tag in tags.iter().filter(|tag| !names.contains(&tag.as_str())) {
+    let unknown = tags.iter().filter(|tag| !names.contains(&tag.as_str())).map(|tag| {
         let help = suggest(tag, &names, "plug-ins with checks");
-        complain(format_args!("no law, solver or strategy is called \"{tag}\"; {help}"));
-        unknown = WRONG_INPUT;
-    }
-    if unknown != FINE {
-        return unknown;
+        format!("no law, solver or strategy is called \"{tag}\"; {help}")
+    });
+    let diagnostics: Vec<String> = unknown.collect();
+    if !diagnostics.is_empty() {
+        return Err(CliError { kind: ErrorKind::WrongInput, diagnostics });
     }
     // Panics of a plug-in are findings; dishonest solvers panic too.
     let said = std::panic::take_hook();
@@ -40,13 +40,11 @@ pub fn conform_tags(tags: &[String], out: Option<&Path>) -> u8 {
         }
     };
     std::panic::set_hook(said);
-    let mut code = FINE;
+    let mut outcomes = Vec::new();
     for report in &reports {
         say(report.to_string().trim_end());
-        code = code.max(if report.passed() { FINE } else { NOT_PROVEN });
-        if let Some(dir) = out {
-            code = code.max(write(report, dir));
-        }
+        outcomes.push(Ok(Verdict::of(report.passed())));
+        outcomes.extend(out.map(|dir| write(report, dir)));
     }
     let failed: Vec<&str> =
         reports.iter().filter(|report| !report.passed()).map(|report| report.tag.as_str()).collect();
@@ -56,22 +54,17 @@ pub fn conform_tags(tags: &[String], out: Option<&Path>) -> u8 {
             say(format!("{} of {} plug-in(s) do not conform: {}", failed.len(), reports.len(), failed.join(", ")))
         }
     }
-    code
+    joined(outcomes)
 }
 
 /// Writes the studies that show what was found.
-fn write(report: &Report, dir: &Path) -> u8 {
-    let mut code = FINE;
+fn write(report: &Report, dir: &Path) -> Outcome {
     let studies = report.findings.iter().filter_map(|finding| Some((finding.check, finding.study.as_ref()?)));
     for (index, (check, study)) in studies.enumerate() {
         let place = dir.join(format!("{}_{check}_{index}.toml", report.tag));
-        match std::fs::create_dir_all(dir).and_then(|()| std::fs::write(&place, study)) {
-            Ok(()) => say(format!("  {check}: voussoir run {} shows it", place.display())),
-            Err(error) => {
-                complain(format_args!("voussoir: cannot write {}: {error}", place.display()));
-                code = NO_ACCESS;
-            }
-        }
+        let written = std::fs::create_dir_all(dir).and_then(|()| std::fs::write(&place, study));
+        written.map_err(|error| CliError::unwritten(&place, error))?;
+        say(format!("  {check}: voussoir run {} shows it", place.display()));
     }
-    code
+    Ok(Verdict::Proved)
 }

@@ -1,21 +1,22 @@
 //! `voussoir list`, `explain` and `schema`.
 
-use super::codes::{FINE, NO_ACCESS, WRONG_INPUT, complain, say, say_data};
+use super::error::{CliError, Outcome, Verdict};
+use super::print::{say, say_data};
 use super::{files, topics};
 use crate::kinds::json_schema::json_schema;
 use std::path::Path;
 use voussoir_core::plugin::{Card, PluginKind, cards, cards_of, describe, nearest};
 
 /// Lists plug-ins, of one kind or all.
-pub fn list(kind: Option<&str>) -> u8 {
+pub fn list(kind: Option<&str>) -> Outcome {
     let kinds: Vec<PluginKind> = match kind {
         None => PluginKind::ALL.to_vec(),
         Some(word) => match PluginKind::ALL.iter().find(|kind| kind.plural() == word) {
             Some(kind) => vec![*kind],
             None => {
                 let words = PluginKind::ALL.map(PluginKind::plural);
-                complain(format_args!("there are no \"{word}\" to list; list one of: {}", words.join(", ")));
-                return WRONG_INPUT;
+                let why = format_args!("there are no \"{word}\" to list; list one of: {}", words.join(", "));
+                return Err(CliError::wrong_input(why));
             }
         },
     };
@@ -25,43 +26,32 @@ pub fn list(kind: Option<&str>) -> u8 {
             say(format!("  {:<20} {}", card.tag, card.summary));
         }
     }
-    FINE
+    Ok(Verdict::Proved)
 }
 
 /// Prints the JSON Schema of study files.
-pub fn schema() -> u8 {
+pub fn schema() -> Outcome {
     say(format!("{:#}", json_schema()));
-    FINE
+    Ok(Verdict::Proved)
 }
 
 /// Forms in which a study can be written.
 pub const EXPORTS: [&str; 1] = ["blocks"];
 
 /// Prints the first case of a study in another form.
-pub fn export(path: &Path) -> u8 {
-    match files::study(path, &[]).map(|study| study.as_blocks()) {
-        Ok(Ok(text)) => {
-            say_data(&text);
-            FINE
-        }
-        Ok(Err(why)) => {
-            complain(format_args!("{}: cannot be written as blocks: {why}", path.display()));
-            WRONG_INPUT
-        }
-        Err(code) => code,
-    }
+pub fn export(path: &Path) -> Outcome {
+    let text = files::study(path, &[])?
+        .as_blocks()
+        .map_err(|why| CliError::wrong_input(format_args!("{}: cannot be written as blocks: {why}", path.display())))?;
+    say_data(&text);
+    Ok(Verdict::Proved)
 }
 
 /// Explains a plug-in by its tag, or a study file by the plan of its solution.
-pub fn explain(what: &str) -> u8 {
+pub fn explain(what: &str) -> Outcome {
     if what.ends_with(".toml") || Path::new(what).is_file() {
-        return match files::study(Path::new(what), &[]) {
-            Ok(study) => {
-                say(study.explain());
-                FINE
-            }
-            Err(code) => code,
-        };
+        say(files::study(Path::new(what), &[])?.explain());
+        return Ok(Verdict::Proved);
     }
     let found: Vec<&Card> = cards().iter().copied().filter(|card| card.tag == what).collect();
     let known = topics::explain(what);
@@ -70,14 +60,14 @@ pub fn explain(what: &str) -> u8 {
         let words: Vec<String> = tags.chain(topics::words()).collect();
         let near = nearest(what, words.iter().map(String::as_str));
         let advice = near.map_or("see `voussoir list`".into(), |tag| format!("did you mean \"{tag}\"?"));
-        complain(format_args!("no plug-in, key or word is called \"{what}\"; {advice}"));
-        return if what.contains('/') { NO_ACCESS } else { WRONG_INPUT };
+        let why = format!("no plug-in, key or word is called \"{what}\"; {advice}");
+        return Err(if what.contains('/') { CliError::no_access(why) } else { CliError::wrong_input(why) });
     }
     found.iter().for_each(|card| print_card(card));
     if !known.is_empty() {
         say(known.trim_end());
     }
-    FINE
+    Ok(Verdict::Proved)
 }
 
 fn print_card(card: &Card) {

@@ -1,6 +1,6 @@
 //! A result folder: one run at a time, files whole or not at all, nothing through symbolic links.
 
-use super::codes::{NO_ACCESS, complain};
+use super::error::CliError;
 use crate::regular_file::open_regular;
 use crate::results::stored_path::PATH_PROOFS;
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -22,20 +22,16 @@ pub struct ResultFolder {
     lock: File,
 }
 
-fn refused(path: &Path, why: impl std::fmt::Display) -> u8 {
-    complain(format_args!("voussoir: cannot write {}: {why}", path.display()));
-    NO_ACCESS
-}
-
 /// Refuses a symbolic link, a pipe and a device. A path that does not exist passes.
-fn no_link(path: &Path) -> Result<(), u8> {
+fn no_link(path: &Path) -> Result<(), CliError> {
     match fs::symlink_metadata(path) {
         Ok(found) if !found.is_file() && !found.is_dir() && !found.file_type().is_symlink() => {
-            Err(refused(path, "it is neither a regular file nor a folder"))
+            Err(CliError::unwritten(path, "it is neither a regular file nor a folder"))
         }
-        Ok(found) if found.file_type().is_symlink() => {
-            Err(refused(path, "it is a symbolic link, and nothing is written through one; give the place it leads to"))
-        }
+        Ok(found) if found.file_type().is_symlink() => Err(CliError::unwritten(
+            path,
+            "it is a symbolic link, and nothing is written through one; give the place it leads to",
+        )),
         _ => Ok(()),
     }
 }
@@ -49,25 +45,32 @@ fn entries(path: &Path) -> Vec<String> {
 }
 
 /// The lock on a folder: an error where another run has it.
-fn locked(path: &Path) -> Result<File, u8> {
+fn locked(path: &Path) -> Result<File, CliError> {
     let place = path.join(LOCK);
     // A run that ends removes the file: a lock on what is no longer there is none.
     for _ in 0..100 {
-        let file = OpenOptions::new().create(true).append(true).open(&place).map_err(|error| refused(&place, error))?;
+        let file = OpenOptions::new()
+            .create(true)
+            .append(true)
+            .open(&place)
+            .map_err(|error| CliError::unwritten(&place, error))?;
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {
-                return Err(refused(path, "another run is writing into it; wait for it, or give another --out"));
+                return Err(CliError::unwritten(
+                    path,
+                    "another run is writing into it; wait for it, or give another --out",
+                ));
             }
             // A file system without locks.
             Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Unsupported => {}
-            Err(TryLockError::Error(error)) => return Err(refused(&place, error)),
+            Err(TryLockError::Error(error)) => return Err(CliError::unwritten(&place, error)),
         }
         if is_same(&file, &place) {
             return Ok(file);
         }
     }
-    Err(refused(path, "other runs go on writing into it"))
+    Err(CliError::unwritten(path, "other runs go on writing into it"))
 }
 
 #[cfg(unix)]
@@ -84,9 +87,9 @@ fn is_same(_: &File, place: &Path) -> bool {
 
 impl ResultFolder {
     /// Opens a folder for a run, and makes it if need be.
-    pub fn open(path: &Path) -> Result<Self, u8> {
+    pub fn open(path: &Path) -> Result<Self, CliError> {
         no_link(path)?;
-        fs::create_dir_all(path).map_err(|error| refused(path, error))?;
+        fs::create_dir_all(path).map_err(|error| CliError::unwritten(path, error))?;
         for name in entries(path) {
             no_link(&path.join(&name))?;
         }
@@ -120,21 +123,23 @@ impl ResultFolder {
     }
 
     /// Writes a file whole or not at all; folders on the way are made.
-    pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), u8> {
+    pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), CliError> {
         let mut file = self.aside(name)?;
         let written = file.write_all(bytes);
         file.done(written)
     }
 
     /// Begins a file that gets its name when it is done; folders on the way are made.
-    pub fn aside(&self, name: &str) -> Result<Aside, u8> {
+    pub fn aside(&self, name: &str) -> Result<Aside, CliError> {
         let place = self.path.join(name);
         let mut folder = self.path.clone();
         for part in Path::new(name).parent().into_iter().flat_map(Path::components) {
             folder.push(part);
             no_link(&folder)?;
             match fs::create_dir(&folder) {
-                Err(error) if error.kind() != ErrorKind::AlreadyExists => return Err(refused(&folder, error)),
+                Err(error) if error.kind() != ErrorKind::AlreadyExists => {
+                    return Err(CliError::unwritten(&folder, error));
+                }
                 _ => {}
             }
         }
@@ -144,7 +149,7 @@ impl ResultFolder {
         drop(fs::remove_file(&aside));
         match OpenOptions::new().write(true).create_new(true).open(&aside) {
             Ok(file) => Ok(Aside { file: BufWriter::with_capacity(1 << 16, file), aside, place }),
-            Err(error) => Err(refused(&place, error)),
+            Err(error) => Err(CliError::unwritten(&place, error)),
         }
     }
 
@@ -222,14 +227,14 @@ impl Write for Aside {
 
 impl Aside {
     /// Gives the file its name if all was `written`, else removes it and says why.
-    pub fn done(mut self, written: std::io::Result<()>) -> Result<(), u8> {
+    pub fn done(mut self, written: std::io::Result<()>) -> Result<(), CliError> {
         let attempt = written.and_then(|()| self.file.flush()).and_then(|()| {
             self.file.get_ref().sync_data()?;
             fs::rename(&self.aside, &self.place)
         });
         attempt.map_err(|error| {
             drop(fs::remove_file(&self.aside));
-            refused(&self.place, error)
+            CliError::unwritten(&self.place, error)
         })
     }
 }

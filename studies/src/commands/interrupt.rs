@@ -1,7 +1,7 @@
 //! Ctrl-C: what is finished stays, and how to go on is said.
 
-use super::codes::complain;
 use super::journal::{Journal, say_unwritten};
+use super::print::complain;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, Weak};
 

@@ -1,6 +1,6 @@
 //! The journal of finished cases, with which `--resume` goes on.
 
-use super::codes::complain;
+use super::print::complain;
 use std::fs::File;
 use std::io::{Result, Write};
 use std::time::{Duration, Instant};

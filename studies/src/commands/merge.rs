@@ -1,11 +1,12 @@
 //! `voussoir merge`: the parts of a study that were solved apart, put together into the results of a whole run.
 
-use super::by_case::{backings, no_access};
+use super::by_case::backings;
 use super::case_lines::CaseLines;
-use super::codes::{FINE, NOT_PROVEN, WRONG_INPUT, complain, say};
+use super::error::{CliError, Outcome, Verdict};
 use super::files;
 use super::folder::{JOURNAL, ResultFolder};
 use super::options::useful_jobs;
+use super::print::say;
 use super::shard::{PART, PartEnd, PartHead, study_hash};
 use super::stream;
 use super::today::today;
@@ -34,17 +35,13 @@ pub struct MergeOptions {
 }
 
 /// Merges parts.
-pub fn merge(dirs: &[PathBuf], options: &MergeOptions) -> u8 {
+pub fn merge(dirs: &[PathBuf], options: &MergeOptions) -> Outcome {
     silence_caught_panics();
-    match caught(|| merged(dirs, options)) {
-        Ok(Ok(code) | Err(code)) => code,
-        Err(why) => wrong(why),
-    }
+    caught(|| merged(dirs, options)).unwrap_or_else(|why| Err(wrong(why)))
 }
 
-fn wrong(text: impl std::fmt::Display) -> u8 {
-    complain(format_args!("voussoir merge: {text}; nothing was written"));
-    WRONG_INPUT
+fn wrong(text: impl std::fmt::Display) -> CliError {
+    CliError::wrong_input(format_args!("voussoir merge: {text}; nothing was written"))
 }
 
 /// A part that was found.
@@ -53,14 +50,14 @@ struct Part {
     head: PartHead,
 }
 
-fn merged(dirs: &[PathBuf], options: &MergeOptions) -> Result<u8, u8> {
+fn merged(dirs: &[PathBuf], options: &MergeOptions) -> Outcome {
     let parts = dirs.iter().map(|dir| found(dir)).collect::<Result<Vec<_>, _>>()?.concat();
     let mut lines = CaseLines::default();
     let parts = parts.into_iter().map(|folder| read_part(&folder, &mut lines)).collect::<Result<Vec<_>, _>>()?;
     let first = parts.first().ok_or_else(|| wrong("no part was found"))?;
     same_study(&parts)?;
     let resolved = first.folder.join("resolved.toml");
-    open_regular(&resolved, MAX_PART_BYTES).map_err(|error| no_access(&resolved, error))?;
+    open_regular(&resolved, MAX_PART_BYTES).map_err(|error| CliError::of_file(&resolved, error))?;
     let study = files::study(&resolved, &[])?;
     if study_hash(study.resolved()) != first.head.study_hash {
         return Err(wrong(format!("{}: resolved.toml is not that of its cases", first.folder.display())));
@@ -97,7 +94,7 @@ fn merged(dirs: &[PathBuf], options: &MergeOptions) -> Result<u8, u8> {
         CasesOf::Streamed(sweep) => return stream::finish(sweep, &folder, &lines, None, options.quiet),
         CasesOf::Held(study) => study,
     };
-    let results = lines.cases().collect::<Result<Vec<_>, _>>().map_err(|error| no_access(&out, error))?;
+    let results = lines.cases().collect::<Result<Vec<_>, _>>().map_err(|error| CliError::of_file(&out, error))?;
     let (version, date) = (env!("CARGO_PKG_VERSION").to_string(), Some(today()));
     let output =
         study.output_of(&RunRequest { version, date, jobs, quiet: options.quiet, ..Default::default() }, results);
@@ -109,15 +106,15 @@ fn merged(dirs: &[PathBuf], options: &MergeOptions) -> Result<u8, u8> {
         say(output.table);
         say(format!("{} parts confirmed and merged; results in {}", parts.len(), out.display()));
     }
-    Ok(if output.certified { FINE } else { NOT_PROVEN })
+    Ok(Verdict::of(output.certified))
 }
 
 /// The folders of parts in a folder, or the folder itself.
-fn found(dir: &Path) -> Result<Vec<PathBuf>, u8> {
+fn found(dir: &Path) -> Result<Vec<PathBuf>, CliError> {
     if dir.join(PART).is_file() {
         return Ok(vec![dir.into()]);
     }
-    let listed = std::fs::read_dir(dir).map_err(|error| no_access(dir, error))?;
+    let listed = std::fs::read_dir(dir).map_err(|error| CliError::of_file(dir, error))?;
     let mut folders: Vec<PathBuf> = listed.flatten().map(|entry| entry.path()).collect();
     folders.retain(|folder| folder.file_name().is_some_and(|name| name.to_string_lossy().starts_with("shard-")));
     folders.sort();
@@ -138,23 +135,23 @@ fn found(dir: &Path) -> Result<Vec<PathBuf>, u8> {
 }
 
 /// The head of a part whose end is there; adds its lines.
-fn read_part(folder: &Path, lines: &mut CaseLines) -> Result<Part, u8> {
+fn read_part(folder: &Path, lines: &mut CaseLines) -> Result<Part, CliError> {
     let path = folder.join(PART);
-    let mut file = open_regular(&path, MAX_PART_BYTES).map_err(|error| no_access(&path, error))?;
+    let mut file = open_regular(&path, MAX_PART_BYTES).map_err(|error| CliError::of_file(&path, error))?;
     let mut first = Vec::new();
     let read = BufReader::new(&file).take(MAX_HEAD_BYTES).read_until(b'\n', &mut first);
-    read.map_err(|error| no_access(&path, error))?;
+    read.map_err(|error| CliError::of_file(&path, error))?;
     let head: PartHead = serde_json::from_slice(&first)
         .map_err(|error| wrong(format!("{} is no part of a study: {error}", path.display())))?;
     let mut tail = Vec::new();
     let length = file.seek(SeekFrom::End(0)).unwrap_or(0);
     let read = file.seek(SeekFrom::Start(length.saturating_sub(64))).and_then(|_| file.read_to_end(&mut tail));
-    read.map_err(|error| no_access(&path, error))?;
+    read.map_err(|error| CliError::of_file(&path, error))?;
     let last = tail.trim_ascii_end().rsplit(|byte| *byte == b'\n').next().unwrap_or_default();
     let end: PartEnd =
         serde_json::from_slice(last).map_err(|_| wrong(format!("{} is cut short: copy it again", path.display())))?;
     let before = lines.ids().count();
-    let damaged = lines.add(&path, 0, &mut |_| true).map_err(|error| no_access(&path, error))?;
+    let damaged = lines.add(&path, 0, &mut |_| true).map_err(|error| CliError::of_file(&path, error))?;
     if damaged > 0 {
         return Err(wrong(format!("{damaged} lines of {} are damaged: copy it again", path.display())));
     }
@@ -167,7 +164,7 @@ fn read_part(folder: &Path, lines: &mut CaseLines) -> Result<Part, u8> {
 }
 
 /// All parts must be of one study, one version and one way to cut it.
-fn same_study(parts: &[Part]) -> Result<(), u8> {
+fn same_study(parts: &[Part]) -> Result<(), CliError> {
     let Some(first) = parts.first() else { return Ok(()) };
     for part in parts {
         let (a, b) = (&first.head, &part.head);
@@ -220,8 +217,8 @@ fn hint(parts: &[Part], missing: &[usize], cases: &CasesOf<'_>) -> String {
 }
 
 /// Every case must be the study's own, and hold by its own proof.
-fn confirmed(cases: &CasesOf<'_>, lines: &CaseLines, jobs: usize) -> Result<BackingCount, u8> {
-    let found = backings(cases, lines, jobs).map_err(|error| no_access(Path::new(PART), error))?;
+fn confirmed(cases: &CasesOf<'_>, lines: &CaseLines, jobs: usize) -> Result<BackingCount, CliError> {
+    let found = backings(cases, lines, jobs).map_err(|error| CliError::of_file(Path::new(PART), error))?;
     let (mut count, mut findings) = (BackingCount::default(), Vec::new());
     for (id, backing) in lines.ids().zip(found) {
         match backing {
@@ -232,6 +229,7 @@ fn confirmed(cases: &CasesOf<'_>, lines: &CaseLines, jobs: usize) -> Result<Back
     if findings.is_empty() {
         return Ok(count);
     }
-    findings.iter().take(NAMED).for_each(complain);
-    Err(wrong(format!("{} finding(s): the parts do not hold", findings.len())))
+    let mut error = wrong(format!("{} finding(s): the parts do not hold", findings.len()));
+    error.diagnostics.splice(0..0, findings.into_iter().take(NAMED));
+    Err(error)
 }

@@ -1,12 +1,13 @@
-//! What each command prints, reads and writes, and its exit code. Nothing else in this crate prints.
+//! What each command prints, reads and writes. Nothing else in this crate prints. Errors are values that
+//! [`crate::cli::main`] prints.
 
 pub mod bench;
 mod by_case;
 mod case_lines;
 pub mod check;
 pub mod clock;
-mod codes;
 pub mod conform;
+mod error;
 pub mod explain;
 pub mod files;
 mod folder;
@@ -19,6 +20,7 @@ pub mod new_law;
 mod open;
 pub mod options;
 pub mod pages;
+mod print;
 mod progress;
 mod refill;
 pub mod run;
@@ -30,4 +32,5 @@ mod today;
 mod topics;
 pub mod verify;
 
-pub use codes::{NO_ACCESS, WRONG_INPUT, complain, ended, printed};
+pub use error::{CliError, ErrorKind, Outcome, Verdict};
+pub use print::{ended, keep};

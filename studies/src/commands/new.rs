@@ -1,6 +1,7 @@
 //! `voussoir new`: commented studies that run as they stand.
 
-use super::codes::{FINE, NO_ACCESS, WRONG_INPUT, complain, say};
+use super::error::{CliError, Outcome, Verdict};
+use super::print::say;
 use std::io::{ErrorKind, Write};
 
 /// What a new study is about.
@@ -63,12 +64,12 @@ impl Template {
 }
 
 /// Writes a new study into the folder where the command is given; a file that is there stays.
-pub fn new(what: Template, name: Option<&str>) -> u8 {
+pub fn new(what: Template, name: Option<&str>) -> Outcome {
     let word = what.word();
     let name = name.map_or(word, |name| name.strip_suffix(".toml").unwrap_or(name));
     if name.is_empty() || name.contains(['/', '\\', '"', ':', '*', '?', '<', '>', '|']) || name.starts_with('.') {
-        complain(format_args!("voussoir new: \"{name}\" is no name of a study: use letters, digits, blanks, - and _"));
-        return WRONG_INPUT;
+        let why = format_args!("voussoir new: \"{name}\" is no name of a study: use letters, digits, blanks, - and _");
+        return Err(CliError::wrong_input(why));
     }
     let text = what.text().replacen(&format!("name = \"{word}\""), &format!("name = \"{name}\""), 1);
     let file = format!("{name}.toml");
@@ -76,18 +77,12 @@ pub fn new(what: Template, name: Option<&str>) -> u8 {
     match written.and_then(|mut out| out.write_all(text.as_bytes())) {
         Ok(()) => {
             say(format!("{file} is written; run it with\n  voussoir run {file}"));
-            FINE
+            Ok(Verdict::Proved)
         }
-        Err(error) if error.kind() == ErrorKind::AlreadyExists => {
-            complain(format_args!(
-                "voussoir new: {file} is there and stays as it is; give another name: voussoir new {word} NAME"
-            ));
-            WRONG_INPUT
-        }
-        Err(error) => {
-            complain(format_args!("voussoir new: cannot write {file}: {error}"));
-            NO_ACCESS
-        }
+        Err(error) if error.kind() == ErrorKind::AlreadyExists => Err(CliError::wrong_input(format_args!(
+            "voussoir new: {file} is there and stays as it is; give another name: voussoir new {word} NAME"
+        ))),
+        Err(error) => Err(CliError::no_access(format_args!("voussoir new: cannot write {file}: {error}"))),
     }
 }
 

@@ -1,6 +1,7 @@
 //! `voussoir new law`: the files of a law, from those of an example that is compiled and tested.
 
-use super::codes::{FINE, NO_ACCESS, WRONG_INPUT, complain, say};
+use super::error::{CliError, Outcome, Verdict};
+use super::print::say;
 use std::path::Path;
 use voussoir_core::plugin::{PluginKind, card};
 
@@ -27,23 +28,16 @@ fn type_name(tag: &str) -> String {
 }
 
 /// Writes a law of joints, its page and its test into a crate; nothing that is there is overwritten.
-pub fn law(tag: &str, into: &Path) -> u8 {
+pub fn law(tag: &str, into: &Path) -> Outcome {
     if let Some(why) = unfit(tag) {
-        complain(format_args!("voussoir new law {tag}: {why}"));
-        return WRONG_INPUT;
+        return Err(CliError::wrong_input(format_args!("voussoir new law {tag}: {why}")));
     }
     let manifest = into.join("Cargo.toml");
-    let text = match std::fs::read_to_string(&manifest) {
-        Ok(text) => text,
-        Err(error) => {
-            complain(format_args!("voussoir: {}: {error}; --out names the folder of a crate", manifest.display()));
-            return NO_ACCESS;
-        }
-    };
+    let text = std::fs::read_to_string(&manifest)
+        .map_err(|error| CliError::of_file(&manifest, format_args!("{error}; --out names the folder of a crate")))?;
     let table: Option<toml::Table> = text.parse().ok();
     let Some(name) = table.as_ref().and_then(|table| table.get("package")?.get("name")?.as_str()) else {
-        complain(format_args!("{}: names no package", manifest.display()));
-        return WRONG_INPUT;
+        return Err(CliError::wrong_input(format_args!("{}: names no package", manifest.display())));
     };
     let own = |text: &str| {
         text.replace("Keyed", &type_name(tag)).replace("keyed", tag).replace("my_law", &name.replace('-', "_"))
@@ -54,22 +48,20 @@ pub fn law(tag: &str, into: &Path) -> u8 {
         files.push((format!("tests/{tag}.rs"), own(TEST)));
     }
     if let Some((there, _)) = files.iter().find(|(file, _)| into.join(file).exists()) {
-        complain(format_args!("voussoir: {} is there already; nothing was written", into.join(there).display()));
-        return WRONG_INPUT;
+        let place = into.join(there);
+        let why = format_args!("voussoir: {} is there already; nothing was written", place.display());
+        return Err(CliError::wrong_input(why));
     }
     for (file, text) in &files {
         let place = into.join(file);
         let written =
             std::fs::create_dir_all(place.parent().unwrap_or(into)).and_then(|()| std::fs::write(&place, text));
-        if let Err(error) = written {
-            complain(format_args!("voussoir: cannot write {}: {error}", place.display()));
-            return NO_ACCESS;
-        }
+        written.map_err(|error| CliError::unwritten(&place, error))?;
         say(format!("{}", place.display()));
     }
     say(format!(
         "add `pub mod {tag};` to {}, change the equations, and say `voussoir conform {tag}`",
         into.join("src/lib.rs").display()
     ));
-    FINE
+    Ok(Verdict::Proved)
 }

@@ -1,6 +1,6 @@
 //! Opening a file or an address as the desktop does.
 
-use super::codes::complain;
+use super::print::complain;
 
 /// Opens it; that it cannot is no error of the command.
 pub fn open(what: impl AsRef<std::ffi::OsStr>) {

@@ -1,18 +1,19 @@
 //! `voussoir completions` and `voussoir man`.
 
-use super::codes::{FINE, NO_ACCESS, print};
+use super::error::{CliError, Outcome, Verdict};
+use super::print::print;
 use std::io::Write;
 
 /// Prints what a shell needs to complete the words of the command line.
-pub fn completions(shell: clap_complete::Shell, command: &mut clap::Command) -> u8 {
+pub fn completions(shell: clap_complete::Shell, command: &mut clap::Command) -> Outcome {
     let mut text = Vec::new();
     clap_complete::generate(shell, command, "voussoir", &mut text);
     print(&text);
-    FINE
+    Ok(Verdict::Proved)
 }
 
 /// Prints the manual page: the program, then each command.
-pub fn man(command: clap::Command) -> u8 {
+pub fn man(command: clap::Command) -> Outcome {
     let mut text = Vec::new();
     let mut written = clap_mangen::Man::new(command.clone()).render(&mut text);
     for each in command.get_subcommands().filter(|each| !each.is_hide_set()) {
@@ -24,6 +25,7 @@ pub fn man(command: clap::Command) -> u8 {
             page.render_options_section(&mut text)
         });
     }
+    written.map_err(|error| CliError::no_access(format_args!("voussoir man: {error}")))?;
     print(&text);
-    if written.is_ok() { FINE } else { NO_ACCESS }
+    Ok(Verdict::Proved)
 }

@@ -1,8 +1,8 @@
 //! Progress on a terminal, and the journal of finished cases for `--resume`.
 
-use super::codes::say_data;
 use super::interrupt;
 use super::journal::{Journal, say_unwritten};
+use super::print::say_data;
 use crate::results::CaseResult;
 use crate::results::case_with_path::CaseWithPath;
 use crate::results::sealed_line::sealed;

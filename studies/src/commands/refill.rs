@@ -1,6 +1,6 @@
 //! From results.json and path_proofs.jsonl back to a journal, so that `--resume` of a finished run finds its cases finished.
 
-use super::by_case::no_access;
+use super::error::CliError;
 use super::folder::{JOURNAL, ResultFolder};
 use crate::regular_file::open_regular;
 use crate::results::CaseResult;
@@ -18,12 +18,12 @@ const MAX_CASE_BYTES: u64 = 1 << 30;
 
 /// Writes the cases of results.json as lines of a journal, where there is no journal yet. Read as it is written: a case stands
 /// between two lines of four blanks and a brace. Of a file that somebody has laid out otherwise nothing is taken.
-pub fn refill(folder: &ResultFolder) -> Result<(), u8> {
+pub fn refill(folder: &ResultFolder) -> Result<(), CliError> {
     let (results, journal) = (folder.path().join("results.json"), folder.path().join(JOURNAL));
     if journal.exists() || !results.exists() {
         return Ok(());
     }
-    let file = open_regular(&results, MAX_RESULTS_BYTES).map_err(|error| no_access(&results, error))?;
+    let file = open_regular(&results, MAX_RESULTS_BYTES).map_err(|error| CliError::of_file(&results, error))?;
     let proofs = open_regular(&folder.path().join(PATH_PROOFS), MAX_RESULTS_BYTES).ok();
     let mut proofs = proofs.map(|file| PathProofLines::new(Some(Box::new(file))));
     let mut aside = folder.aside(JOURNAL)?;

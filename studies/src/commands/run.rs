@@ -2,11 +2,12 @@
 
 use super::by_case::damaged_lines;
 use super::case_lines::CaseLines;
-use super::codes::{FINE, NO_ACCESS, NOT_PROVEN, WRONG_INPUT, complain, say, say_data};
+use super::error::{CliError, Outcome, Verdict, joined};
 use super::files;
 use super::folder::{JOURNAL, ResultFolder};
 use super::open::open;
 use super::options::{Options, useful_jobs};
+use super::print::{say, say_data};
 use super::progress::Progress;
 use super::today::today;
 use super::{interrupt, shard, stream};
@@ -26,8 +27,8 @@ pub fn going_on(arguments: &[String]) -> Vec<String> {
     arguments.iter().cloned().chain(resume).collect()
 }
 
-/// Runs studies of any kind; the greatest exit code of them. Every study is checked before the first is run.
-pub fn run(paths: &[PathBuf], options: &Options) -> u8 {
+/// Runs studies of any kind. Every study is checked before the first is run.
+pub fn run(paths: &[PathBuf], options: &Options) -> Outcome {
     match useful_jobs(options.jobs) {
         1 => run_all(paths, options),
         // From the first case that is read to the last that is written the same threads.
@@ -35,124 +36,110 @@ pub fn run(paths: &[PathBuf], options: &Options) -> u8 {
     }
 }
 
-fn run_all(paths: &[PathBuf], options: &Options) -> u8 {
-    let sets = match files::overrides(&options.set) {
-        Ok(sets) => sets,
-        Err(code) => return code,
-    };
-    let (mut studies, mut wrong) = (Vec::new(), FINE);
-    for path in paths {
-        match files::study(path, &sets) {
-            Ok(study) => studies.push((path, study)),
-            Err(code) => wrong = wrong.max(code),
-        }
-    }
-    if wrong == FINE {
-        wrong = same_names(&studies);
-    }
-    if wrong != FINE {
-        return wrong;
-    }
+fn run_all(paths: &[PathBuf], options: &Options) -> Outcome {
+    let sets = files::overrides(&options.set)?;
+    let mut studies = Vec::new();
+    // The mistakes of all of them at once.
+    joined(paths.iter().map(|path| {
+        studies.push((path, files::study(path, &sets)?));
+        Ok(Verdict::Proved)
+    }))?;
+    same_names(&studies)?;
     if options.list {
-        return studies.iter().map(|(_, study)| list(study.as_ref(), options)).max().unwrap_or(FINE);
+        return joined(studies.iter().map(|(_, study)| list(study.as_ref(), options)));
     }
     interrupt::catch(&options.again);
-    let mut code = FINE;
-    for (path, study) in &studies {
+    let one = |(path, study): &(&PathBuf, Box<dyn LoadedStudy>)| {
         let dir = match &options.out {
             Some(dir) if studies.len() > 1 => dir.join(study.name()),
             Some(dir) => dir.clone(),
             None => Path::new("results").join(study.name()),
         };
-        let foreign = if options.out.is_none() { results_of_another(path, &dir) } else { FINE };
-        code = code.max(match foreign {
-            FINE => run_one(study.as_ref(), path, &dir, options).unwrap_or_else(|code| code),
-            foreign => foreign,
-        });
-    }
+        if options.out.is_none() {
+            results_of_another(path, &dir)?;
+        }
+        run_one(study.as_ref(), path, &dir, options)
+    };
+    let outcome = joined(studies.iter().map(one));
     // The program ends: giving back all that they hold takes as long as reading it.
     std::mem::forget(studies);
-    code
+    outcome
 }
 
 /// Refuses studies that would write into one folder.
-fn same_names(studies: &[(&PathBuf, Box<dyn LoadedStudy>)]) -> u8 {
+fn same_names(studies: &[(&PathBuf, Box<dyn LoadedStudy>)]) -> Result<(), CliError> {
     for (index, (path, study)) in studies.iter().enumerate() {
         // File systems may not tell capitals apart.
         let same = |other: &str| other.to_lowercase() == study.name().to_lowercase();
         if let Some((first, _)) = studies[..index].iter().find(|(_, earlier)| same(earlier.name())) {
-            complain(format_args!(
+            return Err(CliError::wrong_input(format_args!(
                 "{}: this study is called \"{}\", as that of {}: their results would overwrite each other; give one another \
                  name, or run them one by one with --out",
                 path.display(),
                 study.name(),
                 first.display()
-            ));
-            return WRONG_INPUT;
+            )));
         }
     }
-    FINE
+    Ok(())
 }
 
 /// The first line of resolved.toml: which file was run.
 const SOURCE: &str = "# study: ";
 
 /// Refuses a default folder that holds the results of another study file that is still there.
-fn results_of_another(path: &Path, dir: &Path) -> u8 {
+fn results_of_another(path: &Path, dir: &Path) -> Result<(), CliError> {
     let mut first = Vec::new();
     if let Ok(file) = open_regular(&dir.join("resolved.toml"), u64::MAX) {
         drop(BufReader::new(file).take(1 << 16).read_until(b'\n', &mut first));
     }
     let first = String::from_utf8_lossy(&first);
-    let Some(source) = first.trim_end().strip_prefix(SOURCE) else { return FINE };
+    let Some(source) = first.trim_end().strip_prefix(SOURCE) else { return Ok(()) };
     let places = (Path::new(source).canonicalize(), path.canonicalize());
-    let (Ok(earlier), Ok(own)) = places else { return FINE };
+    let (Ok(earlier), Ok(own)) = places else { return Ok(()) };
     if earlier == own {
-        return FINE;
+        return Ok(());
     }
-    complain(format_args!(
+    Err(CliError::wrong_input(format_args!(
         "{}: {} holds the results of {source}, a study of the same name; give one of them another name, or say where \
          results go with --out",
         path.display(),
         dir.display()
-    ));
-    WRONG_INPUT
+    )))
 }
 
 /// Ids of the cases that are asked for.
-fn wanted(study: &dyn LoadedStudy, case: Option<usize>) -> Result<Vec<usize>, u8> {
+fn wanted(study: &dyn LoadedStudy, case: Option<usize>) -> Result<Vec<usize>, CliError> {
     match case {
         Some(id) if id < study.count() => Ok(vec![id]),
         Some(id) => {
             let last = study.count().saturating_sub(1);
-            complain(format_args!("--case {id}: the study \"{}\" has cases 0 to {last}", study.name()));
-            Err(WRONG_INPUT)
+            let what = format_args!("--case {id}: the study \"{}\" has cases 0 to {last}", study.name());
+            Err(CliError::wrong_input(what))
         }
         None => Ok((0..study.count()).collect()),
     }
 }
 
 /// Prints the label of each case as a line of JSON.
-fn list(study: &dyn LoadedStudy, options: &Options) -> u8 {
+fn list(study: &dyn LoadedStudy, options: &Options) -> Outcome {
     let Some(cases) = study.cases() else {
         (0..study.count()).for_each(|id| say_data(&json!({ "study": study.name(), "id": id }).to_string()));
-        return FINE;
+        return Ok(Verdict::Proved);
     };
-    let ids = match (options.case, shard::ids_of(study, options.shard)) {
-        (Some(id), _) => vec![id],
-        (None, Ok(ids)) => ids,
-        (None, Err(code)) => return code,
+    let ids = match options.case {
+        Some(id) => vec![id],
+        None => shard::ids_of(study, options.shard)?,
     };
     for case in ids.into_iter().filter_map(|id| cases.case(id)) {
         say_data(&serde_json::to_string(&label_of(&case)).unwrap_or_default());
     }
-    FINE
+    Ok(Verdict::Proved)
 }
 
-fn run_one(study: &dyn LoadedStudy, path: &Path, dir: &Path, options: &Options) -> Result<u8, u8> {
+fn run_one(study: &dyn LoadedStudy, path: &Path, dir: &Path, options: &Options) -> Outcome {
     let resolved = study.resolved_text().map_err(|error| {
-        complain(format_args!("voussoir: the study \"{}\" cannot be written back: {error}", study.name()));
-        NO_ACCESS
+        CliError::no_access(format_args!("voussoir: the study \"{}\" cannot be written back: {error}", study.name()))
     })?;
     let resolved = format!("{SOURCE}{}\n{resolved}", path.display().to_string().replace(['\n', '\r'], " "));
     let wanted = wanted(study, options.case)?;
@@ -174,18 +161,12 @@ fn finished_cases(folder: &ResultFolder) -> (String, usize) {
 }
 
 /// Runs a study whose cases are held, all at once.
-fn run_held(
-    study: &dyn LoadedStudy,
-    wanted: Vec<usize>,
-    dir: &Path,
-    resolved: &str,
-    options: &Options,
-) -> Result<u8, u8> {
+fn run_held(study: &dyn LoadedStudy, wanted: Vec<usize>, dir: &Path, resolved: &str, options: &Options) -> Outcome {
     let folder = ResultFolder::open(dir)?;
-    let (mut code, mut parts) = (FINE, Vec::new());
+    let (mut verdict, mut parts) = (Verdict::Proved, Vec::new());
     for part in study.parts() {
         let own = dir.join(&part.folder);
-        code = code.max(run_one(part.study.as_ref(), Path::new(&part.file), &own, options)?);
+        verdict = verdict.max(run_one(part.study.as_ref(), Path::new(&part.file), &own, options)?);
         parts.push(files::read(&own.join("results.json"))?);
     }
     let keep = options.case.is_some();
@@ -238,5 +219,5 @@ fn run_held(
     if options.open && output.files.iter().any(|(name, _)| name == "report.html") {
         open(folder.path().join("report.html"));
     }
-    Ok(code.max(if output.certified { FINE } else { NOT_PROVEN }))
+    Ok(verdict.max(Verdict::of(output.certified)))
 }

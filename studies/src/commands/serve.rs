@@ -1,9 +1,10 @@
 //! `voussoir serve`: a study in a browser on this machine, following its sliders.
 
-use super::codes::{FINE, NO_ACCESS, say};
+use super::error::{CliError, Outcome, Verdict};
 use super::files;
 use super::http::{self, Answer, Gate};
 use super::open::open;
+use super::print::say;
 use crate::serve::{Asked, Session};
 use crate::solve::Observer;
 use crate::writers::page::served_policy;
@@ -34,23 +35,18 @@ fn token() -> String {
 }
 
 /// Serves a study until Ctrl-C.
-pub fn serve(path: &Path, sets: &[String], in_browser: bool) -> u8 {
-    let session = match files::overrides(sets).and_then(|sets| files::session(path, &sets)) {
-        Ok(session) => session,
-        Err(code) => return code,
-    };
+pub fn serve(path: &Path, sets: &[String], in_browser: bool) -> Outcome {
+    let session = files::session(path, &files::overrides(sets)?)?;
     let bound = TcpListener::bind("127.0.0.1:0").and_then(|listener| {
         let port = listener.local_addr()?.port();
         Ok((listener, port))
     });
-    let (listener, port) = match bound {
-        Ok(bound) => bound,
-        Err(error) => return refused(error),
-    };
+    let refused = |error| CliError::no_access(format_args!("voussoir: cannot serve on 127.0.0.1: {error}"));
+    let (listener, port) = bound.map_err(refused)?;
     // Where signals cannot be caught the system's own way ends it.
     drop(ctrlc::set_handler(|| {
         eprintln!("\nvoussoir: serving has ended");
-        std::process::exit(i32::from(FINE));
+        std::process::exit(0);
     }));
     let token = token();
     let place = format!("http://127.0.0.1:{port}/?token={token}");
@@ -62,12 +58,7 @@ pub fn serve(path: &Path, sets: &[String], in_browser: bool) -> u8 {
     // Only a header can forbid frames.
     let gate = Gate { port, token, policy: format!("{}; frame-ancestors 'none'", served_policy()) };
     http::serve(&listener, &gate, &|method, path, query, body| route(&session, method, path, query, body));
-    FINE
-}
-
-fn refused(why: impl std::fmt::Display) -> u8 {
-    eprintln!("voussoir: cannot serve on 127.0.0.1: {why}");
-    NO_ACCESS
+    Ok(Verdict::Proved)
 }
 
 /// The answer to a request that has passed the gate.

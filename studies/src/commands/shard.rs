@@ -5,9 +5,10 @@
 
 use super::by_case::{backings, solve_into_journal};
 use super::case_lines::CaseLines;
-use super::codes::{FINE, NOT_PROVEN, WRONG_INPUT, complain, say};
+use super::error::{CliError, Outcome, Verdict};
 use super::folder::{JOURNAL, ResultFolder};
 use super::options::{Options, Shard, useful_jobs};
+use super::print::say;
 use crate::kinds::{CasesOf, LoadedStudy};
 use crate::results::sealed_line::{checksum, sealed_text};
 use serde::{Deserialize, Serialize};
@@ -43,16 +44,18 @@ pub fn study_hash(resolved: &toml::Value) -> String {
 }
 
 /// Ids of the cases of a part, in order; of the whole study where there is no part. A study of this kind may have none.
-pub fn ids_of(study: &dyn LoadedStudy, shard: Option<Shard>) -> Result<Vec<usize>, u8> {
+pub fn ids_of(study: &dyn LoadedStudy, shard: Option<Shard>) -> Result<Vec<usize>, CliError> {
     let Some(shard) = shard else { return Ok((0..study.count()).collect()) };
-    let Some(cases) = study.cases() else {
-        complain(format_args!(
-            "--shard: the study \"{}\" is of a kind that cannot be solved in parts; it costs little",
-            study.name()
-        ));
-        return Err(WRONG_INPUT);
-    };
+    let cases = cases_of(study)?;
     Ok((0..study.count()).filter(|id| cases.part(*id, shard.of) == Some(shard.number - 1)).collect())
+}
+
+/// The cases of a study that can be solved in parts.
+fn cases_of(study: &dyn LoadedStudy) -> Result<CasesOf<'_>, CliError> {
+    study.cases().ok_or_else(|| {
+        let words = "is of a kind that cannot be solved in parts; it costs little";
+        CliError::wrong_input(format_args!("--shard: the study \"{}\" {words}", study.name()))
+    })
 }
 
 /// Returns true if a part holds all its cases, no line is damaged and every case holds by its own proof.
@@ -66,9 +69,9 @@ fn finished(path: &Path, cases: &CasesOf<'_>, count: usize, jobs: usize) -> bool
 }
 
 /// Solves a part of a study.
-pub fn run(study: &dyn LoadedStudy, shard: Shard, dir: &Path, resolved: &str, options: &Options) -> Result<u8, u8> {
+pub fn run(study: &dyn LoadedStudy, shard: Shard, dir: &Path, resolved: &str, options: &Options) -> Outcome {
     let ids = ids_of(study, Some(shard))?;
-    let Some(cases) = study.cases() else { return Err(WRONG_INPUT) };
+    let cases = cases_of(study)?;
     let folder = ResultFolder::open(&dir.join(shard.folder()))?;
     let path = folder.path().join(PART);
     let head = PartHead {
@@ -83,7 +86,7 @@ pub fn run(study: &dyn LoadedStudy, shard: Shard, dir: &Path, resolved: &str, op
             if !options.quiet {
                 say(format!("{} is finished", path.display()));
             }
-            return Ok(FINE);
+            return Ok(Verdict::Proved);
         }
         // The undamaged cases of a part are kept.
         folder.part_becomes_journal(PART);
@@ -116,5 +119,5 @@ pub fn run(study: &dyn LoadedStudy, shard: Shard, dir: &Path, resolved: &str, op
             dir.display()
         ));
     }
-    Ok(if certified == count { FINE } else { NOT_PROVEN })
+    Ok(Verdict::of(certified == count))
 }

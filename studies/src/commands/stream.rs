@@ -2,9 +2,10 @@
 
 use super::by_case::solve_into_journal;
 use super::case_lines::CaseLines;
-use super::codes::{FINE, NOT_PROVEN, WRONG_INPUT, complain, say};
+use super::error::{CliError, Outcome, Verdict};
 use super::folder::{Aside, JOURNAL, ResultFolder};
 use super::options::Options;
+use super::print::say;
 use super::refill::refill;
 use super::tables::Tables;
 use super::today::today;
@@ -68,13 +69,12 @@ impl Tally {
 }
 
 /// Solves a study whose cases are streamed.
-pub fn run(sweep: &Sweep, dir: &Path, resolved: &str, options: &Options) -> Result<u8, u8> {
+pub fn run(sweep: &Sweep, dir: &Path, resolved: &str, options: &Options) -> Outcome {
     if options.case.is_some() && dir.join("results.json").exists() {
-        complain(format_args!(
+        return Err(CliError::wrong_input(format_args!(
             "voussoir: {}: of so many cases one cannot be replaced; write it into a folder of its own with --out",
             dir.display()
-        ));
-        return Err(WRONG_INPUT);
+        )));
     }
     let folder = ResultFolder::open(dir)?;
     folder.write("resolved.toml", resolved.as_bytes())?;
@@ -119,7 +119,7 @@ pub fn finish(
     lines: &CaseLines,
     only_cases: Option<Vec<usize>>,
     quiet: bool,
-) -> Result<u8, u8> {
+) -> Outcome {
     let mut tally = Tally::default();
     let mut json = folder.aside("results.json")?;
     let mut tables = Tables::begin(sweep, folder)?;
@@ -139,5 +139,5 @@ pub fn finish(
         say(tally.text());
         say(format!("results.json and results.csv in {}; so many cases are not drawn", folder.path().display()));
     }
-    Ok(if tally.certified == tally.count { FINE } else { NOT_PROVEN })
+    Ok(Verdict::of(tally.certified == tally.count))
 }

@@ -1,6 +1,6 @@
 //! Tables of very many cases, row by row, beside results.json.
 
-use super::by_case::no_access;
+use super::error::CliError;
 use super::folder::{Aside, ResultFolder};
 use crate::results::CaseResult;
 use crate::study::Sweep;
@@ -15,12 +15,12 @@ pub struct Tables<'a> {
 
 impl<'a> Tables<'a> {
     /// Begins the tables.
-    pub fn begin(sweep: &Sweep, folder: &'a ResultFolder) -> Result<Self, u8> {
+    pub fn begin(sweep: &Sweep, folder: &'a ResultFolder) -> Result<Self, CliError> {
         let begun = |name: &'static str| {
             let table = StreamedTable::new(name, folder.aside(name)?, sweep);
-            Ok((name, table.map_err(|error| no_access(&folder.path().join(name), error))?))
+            Ok((name, table.map_err(|error| CliError::of_file(&folder.path().join(name), error))?))
         };
-        Ok(Tables { folder, tables: wanted(sweep).into_iter().map(begun).collect::<Result<_, u8>>()? })
+        Ok(Tables { folder, tables: wanted(sweep).into_iter().map(begun).collect::<Result<_, CliError>>()? })
     }
 
     /// Adds the row of a case.
@@ -29,12 +29,12 @@ impl<'a> Tables<'a> {
     }
 
     /// Gives the tables their names; those of an earlier run that are not wanted now are removed.
-    pub fn done(self) -> Result<(), u8> {
+    pub fn done(self) -> Result<(), CliError> {
         let folder = self.folder;
         let unwanted = |name: &&&str| self.tables.iter().all(|(own, _)| own != *name);
         TABLES.iter().filter(unwanted).for_each(|name| folder.remove(name));
         self.tables.into_iter().try_for_each(|(name, table)| {
-            table.finish().map_err(|error| no_access(&folder.path().join(name), error))?.done(Ok(()))
+            table.finish().map_err(|error| CliError::of_file(&folder.path().join(name), error))?.done(Ok(()))
         })
     }
 }

@@ -1,9 +1,10 @@
 //! `voussoir verify`.
 
-use super::codes::{FINE, NO_ACCESS, NOT_PROVEN, WRONG_INPUT, complain, say};
+use super::error::{CliError, Outcome, Verdict};
 use super::files;
 use super::folder::named_by_writers;
 use super::options::useful_jobs;
+use super::print::say;
 use super::progress::{Progress, Shown};
 use crate::caught::{caught, silence_caught_panics};
 use crate::kinds::{CasesOf, LoadedStudy, StoredResults, Verification};
@@ -36,39 +37,36 @@ pub struct VerifyOptions {
 }
 
 /// Checks a results folder.
-pub fn verify(dir: &Path, options: &VerifyOptions) -> u8 {
+pub fn verify(dir: &Path, options: &VerifyOptions) -> Outcome {
     silence_caught_panics();
     let checked = caught(|| {
         let sets = files::overrides(&options.set)?;
         let wanted = options.study.as_ref().map(|path| files::study(path, &sets)).transpose()?;
-        confirm(dir, wanted.as_deref(), options).map(|checked| checked.code)
+        confirm(dir, wanted.as_deref(), options).map(|checked| checked.verdict)
     });
-    match checked {
-        Ok(Ok(code) | Err(code)) => code,
-        Err(why) => {
-            say(format!("{}: {why}", dir.display()));
-            NOT_PROVEN
-        }
-    }
+    checked.unwrap_or_else(|why| {
+        say(format!("{}: {why}", dir.display()));
+        Ok(Verdict::NotProved)
+    })
 }
 
 /// The outcome of the check of one folder.
 struct Checked {
-    code: u8,
+    verdict: Verdict,
     /// True if nothing was found, in its parts neither.
     holds: bool,
 }
 
 /// Opens a file that a results folder must have.
-fn opened(dir: &Path, name: &str, limit: u64) -> Result<File, u8> {
+fn opened(dir: &Path, name: &str, limit: u64) -> Result<File, CliError> {
     let path = dir.join(name);
     open_regular(&path, limit).map_err(|error| {
-        complain(format_args!("voussoir: cannot read {}: {error}", path.display()));
+        let why = format!("voussoir: cannot read {}: {error}", path.display());
         let no_results = error.kind() == ErrorKind::NotFound && dir.is_dir();
         match error.kind() {
-            ErrorKind::InvalidInput | ErrorKind::FileTooLarge => WRONG_INPUT,
-            _ if no_results => WRONG_INPUT,
-            _ => NO_ACCESS,
+            ErrorKind::InvalidInput | ErrorKind::FileTooLarge => CliError::wrong_input(why),
+            _ if no_results => CliError::wrong_input(why),
+            _ => CliError::no_access(why),
         }
     })
 }
@@ -82,11 +80,11 @@ impl Read for Unreadable {
     }
 }
 
-fn confirm(dir: &Path, wanted: Option<&dyn LoadedStudy>, options: &VerifyOptions) -> Result<Checked, u8> {
+fn confirm(dir: &Path, wanted: Option<&dyn LoadedStudy>, options: &VerifyOptions) -> Result<Checked, CliError> {
     opened(dir, "results.json", MAX_FILE_BYTES)?;
     opened(dir, "resolved.toml", MAX_STUDY_BYTES)?;
     let study = files::study(&dir.join("resolved.toml"), &[])?;
-    let mut whole = Checked { code: FINE, holds: true };
+    let mut whole = Checked { verdict: Verdict::Proved, holds: true };
     let mut findings = Vec::new();
     if let Some(why) = wanted.and_then(|wanted| first_difference(study.resolved(), wanted.resolved())) {
         findings.push(format!("the folder does not answer this study: {why}"));
@@ -94,7 +92,7 @@ fn confirm(dir: &Path, wanted: Option<&dyn LoadedStudy>, options: &VerifyOptions
     for part in study.parts() {
         let own = wanted.and_then(|wanted| wanted.parts().iter().find(|own| own.folder == part.folder));
         let checked = confirm(&dir.join(&part.folder), own.map(|own| own.study.as_ref()), options)?;
-        whole = Checked { code: whole.code.max(checked.code), holds: whole.holds && checked.holds };
+        whole = Checked { verdict: whole.verdict.max(checked.verdict), holds: whole.holds && checked.holds };
     }
     if !whole.holds {
         say(format!("{}: not compared, because a study that it reports on does not hold", dir.display()));
@@ -109,11 +107,11 @@ fn confirm(dir: &Path, wanted: Option<&dyn LoadedStudy>, options: &VerifyOptions
             found.own, found.of
         ));
     }
-    Ok(told(&dir.join("results.json"), &findings, &found, whole.code))
+    Ok(told(&dir.join("results.json"), &findings, &found, whole.verdict))
 }
 
 /// Compares a folder with its study.
-fn compared(dir: &Path, study: &dyn LoadedStudy, jobs: usize) -> Result<Verification, u8> {
+fn compared(dir: &Path, study: &dyn LoadedStudy, jobs: usize) -> Result<Verification, CliError> {
     let streamed = matches!(study.cases(), Some(CasesOf::Streamed(_)));
     let limit = |name: &str| if name == "results.json" && !streamed { MAX_HELD_BYTES } else { MAX_FILE_BYTES };
     drop(opened(dir, "results.json", limit("results.json"))?);
@@ -126,8 +124,7 @@ fn compared(dir: &Path, study: &dyn LoadedStudy, jobs: usize) -> Result<Verifica
     let found = study.verify_stored(&StoredResults { jobs: useful_jobs(jobs), file: &file }, &progress);
     progress.finish();
     let mut found = found.map_err(|error| {
-        complain(format_args!("{}: not a results file: {error}", dir.join("results.json").display()));
-        WRONG_INPUT
+        CliError::wrong_input(format_args!("{}: not a results file: {error}", dir.join("results.json").display()))
     })?;
     // Where cases are missing nothing is made, and what they wrote is not foreign for that.
     if !found.made.is_empty() {
@@ -150,7 +147,7 @@ fn path_words([proved, not_solved]: [usize; 2]) -> Option<String> {
 }
 
 /// Prints the findings, or the number of confirmed cases.
-fn told(path: &Path, findings: &[String], found: &Verification, code: u8) -> Checked {
+fn told(path: &Path, findings: &[String], found: &Verification, parts: Verdict) -> Checked {
     findings.iter().take(LISTED).for_each(say);
     if findings.len() > LISTED {
         say(format!("{} more findings are not listed", findings.len() - LISTED));
@@ -166,5 +163,5 @@ fn told(path: &Path, findings: &[String], found: &Verification, code: u8) -> Che
     } else {
         say(format!("{}: {} finding(s); the results do not hold", path.display(), findings.len()));
     }
-    Checked { code: if holds && found.stalled == 0 { code } else { NOT_PROVEN }, holds }
+    Checked { verdict: parts.max(Verdict::of(holds && found.stalled == 0)), holds }
 }

@@ -1,5 +1,6 @@
-//! Exit codes, and the one way to print a line.
+//! The one way to print a line.
 
+use super::error::{CliError, Outcome, Verdict};
 use crate::config::characters::escape;
 use std::fmt::Display;
 use std::io::{ErrorKind, Write};
@@ -7,15 +8,6 @@ use std::sync::Mutex;
 
 /// Why standard output could not be written; `None` if it could.
 static UNWRITTEN: Mutex<Option<std::io::Error>> = Mutex::new(None);
-
-/// All cases answered and certified.
-pub const FINE: u8 = 0;
-/// Some case stalled, failed its certificate, or was not confirmed.
-pub const NOT_PROVEN: u8 = 1;
-/// Wrong input.
-pub const WRONG_INPUT: u8 = 2;
-/// Cannot read or write.
-pub const NO_ACCESS: u8 = 3;
 
 /// Prints a line on standard output, with its invisible characters escaped.
 pub fn say(text: impl Display) {
@@ -39,7 +31,7 @@ pub fn complain(text: impl Display) {
 }
 
 /// A reader that has gone away (`| head`) is no error: the command goes on in silence. Any other error is kept.
-fn keep(written: std::io::Result<()>) {
+pub fn keep(written: std::io::Result<()>) {
     if let Err(error) = written
         && error.kind() != ErrorKind::BrokenPipe
         && let Ok(mut unwritten) = UNWRITTEN.lock()
@@ -48,19 +40,23 @@ fn keep(written: std::io::Result<()>) {
     }
 }
 
-/// The exit code of a program that printed a text by other means.
-pub fn printed(written: std::io::Result<()>, code: u8) -> u8 {
-    keep(written);
-    ended(code)
-}
-
-/// The exit code of a command that is done: [`NO_ACCESS`] if some of its output could not be written.
-pub fn ended(code: u8) -> u8 {
+/// The exit code of a command with this outcome, whose error is printed here. An error of standard output is an error of
+/// the command.
+pub fn ended(outcome: Outcome) -> u8 {
+    let lines = |error: &CliError| error.diagnostics.iter().for_each(complain);
+    let code = outcome.map_or_else(
+        |error| {
+            lines(&error);
+            error.exit_code()
+        },
+        Verdict::exit_code,
+    );
     keep(std::io::stdout().flush());
     match UNWRITTEN.lock().ok().and_then(|mut unwritten| unwritten.take()) {
         Some(error) => {
-            complain(format_args!("voussoir: cannot write standard output: {error}"));
-            NO_ACCESS
+            let error = CliError::no_access(format_args!("voussoir: cannot write standard output: {error}"));
+            lines(&error);
+            error.exit_code()
         }
         None => code,
     }
