@@ -290,6 +290,23 @@ fn killed_and_resumed() {
     assert_eq!(timeless(&at.join("out")), timeless(&at.join("whole")));
 }
 
+/// A swept text with a unit is a number in every file, in the unit that the header of its column names.
+#[test]
+fn swept_units_are_numbers() {
+    let at = folder("units");
+    let swept = study("ring", 0.6).replace("{ from = 2.6, to = 3.3, count = 8 }", "{ list = [\"2600 mm\", \"3 m\"] }")
+        + "\"stages.live.loads.0.force.1\" = { list = [\"-1 kN\", \"-2 kN\"] }\n[output]\nfigures = false\n";
+    std::fs::write(at.join("a.toml"), swept).expect("written");
+    let run = voussoir(&["run", "a.toml", "--out", "out"], &at);
+    assert_eq!(code(&run), 0, "{}", said(&run));
+    let table = text(&at.join("out/results.csv"));
+    let cells: Vec<Vec<&str>> = table.lines().map(|line| line.split(',').skip(2).take(2).collect()).collect();
+    assert_eq!(cells[0], ["scene.profile.rise [m]", "stages.live.loads.0.force.1 [N]"]);
+    assert_eq!(cells[1..], [["2.6", "-1000"], ["2.6", "-2000"], ["3", "-1000"], ["3", "-2000"]]);
+    let results = timeless(&at.join("out"));
+    assert_eq!(results["cases"][3]["parameters"]["stages.live.loads.0.force.1"], -2000.0);
+}
+
 /// A cell of a table that a spreadsheet would take for a formula is text.
 #[test]
 fn cells_are_no_formulas() {

@@ -5,9 +5,12 @@
 use crate::config::diagnostic::{LocatedDiagnostic, suggest};
 use crate::config::document::{Node, Table, Value};
 use crate::config::dotted_key::{join, segments};
+use crate::config::gravity::gravity_of;
+use crate::config::key_meaning::key_meaning;
 use crate::config::origin::Origin;
 use crate::config::overlay::set;
 use serde_json::{Map, Value as Json};
+use voussoir_core::plugin::Parameter;
 
 /// Greatest number of cases.
 pub const MAX_CASES: usize = 1_000_000;
@@ -33,6 +36,8 @@ pub struct Expansion {
     variants: Vec<Variant>,
     scenes: Vec<Variant>,
     axes: Vec<Axis>,
+    /// Keys of the study file, by whose quantities texts with units become numbers.
+    schema: &'static [Parameter],
 }
 
 /// One case before its check.
@@ -42,7 +47,7 @@ pub struct Expanded {
     pub variant: Option<String>,
     /// Name of its scene, where the study compares several.
     pub scene: Option<String>,
-    /// Swept key → value.
+    /// Swept key → value; of a text with a unit, the number in the unit of its key.
     pub parameters: Map<String, Json>,
     /// The whole study file of this case, without `sweep`, `variants`
     /// and the tables of study kinds.
@@ -56,8 +61,13 @@ pub fn rounded(x: f64) -> f64 {
 
 impl Expansion {
     /// Reads `sweep` and `variants` of a study file, and the `scenes` of its kind's table; all mistakes in
-    /// them. `kind_tables` are the tables of study kinds, which are no part of a case.
-    pub fn new(root: &Node, kind_tables: &[&str]) -> Result<Self, Vec<LocatedDiagnostic>> {
+    /// them. `kind_tables` are the tables of study kinds, which are no part of a case,
+    /// and `schema` the keys of the study file.
+    pub fn new(
+        root: &Node,
+        kind_tables: &[&str],
+        schema: &'static [Parameter],
+    ) -> Result<Self, Vec<LocatedDiagnostic>> {
         let mut mistakes = Vec::new();
         let table = root.table().cloned().unwrap_or_default();
         let axes = table.get("sweep").map(|node| axes(node, &mut mistakes)).unwrap_or_default();
@@ -90,7 +100,7 @@ impl Expansion {
         let base = table.entries.into_iter().filter(|entry| !apart(&entry.key));
         let base = Table { entries: base.collect() };
         let base = Node { value: Value::Table(base), origin: root.origin.clone() };
-        let expansion = Expansion { base, variants, scenes, axes };
+        let expansion = Expansion { base, variants, scenes, axes, schema };
         let overridden = expansion.variants.len().checked_mul(expansion.scenes.len());
         let count = expansion
             .axes
@@ -124,17 +134,31 @@ impl Expansion {
     /// Each axis of the sweep: its keys, and whether the values of the first are numbers.
     pub fn axes(&self) -> Vec<(Vec<String>, bool)> {
         let keys = |axis: &Axis| axis.keys.iter().map(|(key, _)| key.clone()).collect();
-        let numbers = |axis: &Axis| axis.values.iter().all(|step| step[0].number().is_some());
-        self.axes.iter().map(|axis| (keys(axis), numbers(axis))).collect()
+        (0..self.axes.len()).map(|axis| (keys(&self.axes[axis]), self.is_number(axis, 0))).collect()
     }
 
     /// Keys that are swept, and whether all values of each are numbers.
     pub fn number_keys(&self) -> Vec<(String, bool)> {
-        let of = |axis: &Axis, place: usize| axis.values.iter().all(|step| step[place].number().is_some());
-        let keys = |axis: &Axis| -> Vec<_> {
-            axis.keys.iter().enumerate().map(|(place, (key, _))| (key.clone(), of(axis, place))).collect()
+        let keys = |axis: usize| {
+            let keys = self.axes[axis].keys.iter().enumerate();
+            keys.map(move |(place, (key, _))| (key.clone(), self.is_number(axis, place)))
         };
-        self.axes.iter().flat_map(keys).collect()
+        (0..self.axes.len()).flat_map(keys).collect()
+    }
+
+    /// Returns true if all values of a key are numbers, or texts that are numbers with a unit in every variant and scene.
+    fn is_number(&self, axis: usize, place: usize) -> bool {
+        let own = &self.axes[axis];
+        let inner: usize = self.axes[axis + 1..].iter().map(|axis| axis.values.len()).product();
+        let outer = self.count() / (own.values.len() * inner);
+        let key = &own.keys[place].0;
+        let in_case = |id: usize| self.case(id).is_ok_and(|case| case.parameters[key].is_number());
+        let texts = own.values.iter().enumerate().filter(|(_, step)| step[place].number().is_none());
+        // The axes outside of this one do not change the unit.
+        let stride = self.axes[..axis].iter().map(|axis| axis.values.len()).product::<usize>().max(1);
+        texts
+            .map(|(step, _)| step)
+            .all(|step| (0..outer).step_by(stride).all(|outer| in_case((outer * own.values.len() + step) * inner)))
     }
 
     /// Names of the variants; empty where the study has none.
@@ -182,10 +206,29 @@ impl Expansion {
                 mistakes.extend(set(&mut root, key, value.clone(), origin).err().map(|mistake| *mistake));
             }
         }
+        self.add_numbers(&root, &mut parameters);
         if mistakes.is_empty() {
             Ok(Expanded { variant: variant.name.clone(), scene: scene.name.clone(), parameters, root })
         } else {
             Err(mistakes)
+        }
+    }
+}
+
+impl Expansion {
+    /// Replaces texts with units by numbers in the unit of their key.
+    fn add_numbers(&self, root: &Node, parameters: &mut Map<String, Json>) {
+        if !parameters.values().any(Json::is_string) {
+            return;
+        }
+        let (tables, gravity) = (root.to_json(), gravity_of(root));
+        for (key, value) in parameters.iter_mut() {
+            let Some(text) = value.as_str() else { continue };
+            let quantity = key_meaning(self.schema, &|name| tables.get(name), key).and_then(|meaning| meaning.quantity);
+            let number = quantity.and_then(|quantity| quantity.parse(text, gravity).ok());
+            if let Some(number) = number.map(rounded).filter(|number| number.is_finite()) {
+                *value = number.into();
+            }
         }
     }
 }
@@ -398,7 +441,7 @@ mod tests {
     use crate::config::document::parse;
 
     fn expansion(text: &str) -> Result<Expansion, Vec<LocatedDiagnostic>> {
-        Expansion::new(&parse(text, "a.toml").unwrap(), &[])
+        Expansion::new(&parse(text, "a.toml").unwrap(), &[], &[])
     }
 
     fn column(expansion: &Expansion, key: &str) -> Vec<Json> {

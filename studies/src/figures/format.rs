@@ -54,6 +54,16 @@ pub fn format_length(metres: f64) -> String {
     format!("{} m", format_short(metres, 4))
 }
 
+/// A number with its unit; stresses in the unit in which they are short.
+pub fn format_quantity(x: f64, unit: &str) -> String {
+    let (x, unit) = match unit {
+        "Pa" if x.abs() >= 1e9 => (x / 1e9, "GPa"),
+        "Pa" if x.abs() >= 1e5 => (x / 1e6, "MPa"),
+        unit => (x, unit),
+    };
+    format!("{} {unit}", format_short(x, 7)).trim_end().to_string()
+}
+
 /// A time \[s\] with three digits, in s, ms or µs.
 pub fn format_seconds(seconds: f64) -> String {
     let (unit, name) = match seconds {

@@ -56,7 +56,7 @@ impl StudyFile {
         let before = diagnostics.len();
         let table = kind_table(&root, &mut diagnostics);
         let table_is_fine = diagnostics.len() == before;
-        let expansion = match Expansion::new(&root, kind_tables()) {
+        let expansion = match Expansion::new(&root, kind_tables(), study_keys()) {
             Ok(expansion) => expansion,
             Err(wrong) => {
                 diagnostics.extend(wrong);

@@ -6,15 +6,26 @@ use super::resolved::Resolved;
 use super::sweep::Sweep;
 use crate::config::expand::Expansion;
 use crate::config::key_meaning::{KeyMeaning, key_meaning};
+use crate::figures::format::{format_quantity, format_value};
 use serde_json::{Map, Value as Json};
 use voussoir_core::plugin::Parameter;
 
 /// Greatest number of cases in which keys are looked up.
 const MAX_CASES: usize = 1000;
 
-/// The swept keys of a study, each with its different meanings in the variants and scenes.
+/// A swept key.
+#[derive(Debug, Clone)]
+struct SweptKey {
+    key: String,
+    /// Its different meanings in the variants and scenes.
+    meanings: Vec<KeyMeaning>,
+    /// True if all values are numbers.
+    number: bool,
+}
+
+/// The swept keys of a study.
 #[derive(Debug, Clone, Default)]
-pub struct SweptKeys(Vec<(String, Vec<KeyMeaning>)>);
+pub struct SweptKeys(Vec<SweptKey>);
 
 /// The meaning of a key in a case; `None` if the schema does not know the key.
 pub fn meaning_in(resolved: &Resolved, key: &str) -> Option<KeyMeaning> {
@@ -25,16 +36,17 @@ impl SweptKeys {
     /// The axes of an expansion. `parameters` are the top-level keys of the study file. One case is read for each variant,
     /// scene and text of an axis, because these decide which plug-in owns a key.
     pub(crate) fn of_expansion(parameters: &'static [Parameter], expansion: &Expansion) -> Self {
-        let mut keys = SweptKeys(expansion.swept().map(|key| (key.to_string(), Vec::new())).collect());
+        let swept = |(key, number)| SweptKey { key, meanings: Vec::new(), number };
+        let mut keys = SweptKeys(expansion.number_keys().into_iter().map(swept).collect());
         let ids = if keys.0.is_empty() { Vec::new() } else { expansion.one_of_each(MAX_CASES) };
         for case in ids.into_iter().filter_map(|id| expansion.case(id).ok()) {
             let root = case.root.to_json();
-            for (key, meanings) in &mut keys.0 {
+            for SweptKey { key, meanings, .. } in &mut keys.0 {
                 let meaning = key_meaning(parameters, &|name| root.get(name), key);
                 meanings.extend(meaning.filter(|meaning| !meanings.contains(meaning)));
             }
         }
-        for (_, meanings) in &mut keys.0 {
+        for SweptKey { meanings, .. } in &mut keys.0 {
             if meanings.iter().any(|meaning| meaning.used) {
                 meanings.retain(|meaning| meaning.used);
             }
@@ -45,16 +57,22 @@ impl SweptKeys {
     /// Adds the keys of cases that a study kind has made.
     pub fn add_keys_of<'a>(&mut self, cases: impl Iterator<Item = &'a Case>) {
         for case in cases {
-            for key in case.parameters.keys() {
-                if self.0.iter().all(|(known, _)| known != key) {
-                    self.0.push((key.clone(), meaning_in(&case.resolved, key).into_iter().collect()));
+            for (key, value) in &case.parameters {
+                if self.0.iter().all(|known| known.key != *key) {
+                    let meanings = meaning_in(&case.resolved, key).into_iter().collect();
+                    self.0.push(SweptKey { key: key.clone(), meanings, number: value.is_number() });
                 }
             }
         }
     }
 
     fn meanings(&self, key: &str) -> &[KeyMeaning] {
-        self.0.iter().find(|(own, _)| own == key).map_or(&[], |(_, meanings)| meanings)
+        self.0.iter().find(|own| own.key == key).map_or(&[], |own| &own.meanings)
+    }
+
+    /// Returns true if all values of a key are numbers.
+    pub fn is_number(&self, key: &str) -> bool {
+        self.0.iter().any(|own| own.key == key && own.number)
     }
 
     /// The first meaning of a key.
@@ -110,10 +128,12 @@ impl SweptKeys {
         self.told_apart(key, KeyMeaning::short_name, |_| key.into())
     }
 
-    /// The value of a key with its unit; a text contains its unit already.
+    /// The value of a key with its unit; a text contains its unit already. Stresses have the unit in which they are short.
     pub fn value(&self, key: &str, value: &Json) -> String {
-        let unit = self.unit(key).filter(|_| value.is_number()).map_or(String::new(), |unit| format!(" {unit}"));
-        format!("{}{unit}", crate::figures::format::format_value(value))
+        match value.as_f64() {
+            Some(number) => format_quantity(number, &self.unit(key).unwrap_or_default()),
+            None => format_value(value),
+        }
     }
 
     fn with_unit(&self, key: &str, words: String) -> String {
@@ -126,7 +146,7 @@ impl SweptKeys {
             return key.into();
         }
         let own = self.joined(key, short);
-        let shared = self.0.iter().any(|(other, _)| other != key && self.joined(other, short) == own);
+        let shared = self.0.iter().any(|other| other.key != key && self.joined(&other.key, short) == own);
         if shared { self.joined(key, long) } else { own }
     }
 }

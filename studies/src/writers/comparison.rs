@@ -1,11 +1,12 @@
 //! `comparison.csv` and the figures of comparisons and maps: the cases beside each other.
 
+use super::columns::swept_text;
 use super::csv_table::csv_table;
 use super::register::register;
 use super::study_output::StudyOutput;
 use super::writer::Writer;
 use crate::figures::comparison::{comparison_svg, open_bracket, remark, row_name};
-use crate::figures::format::{format_number, format_short, format_value, kind_word, snap_words, status_word};
+use crate::figures::format::{format_number, format_short, kind_word, snap_words, status_word};
 use crate::figures::map::map_svg;
 use crate::results::{Comparison, ComparisonCell};
 use crate::study::SweptKeys;
@@ -61,7 +62,7 @@ pub fn comparison_csv(comparison: &Comparison, meanings: &SweptKeys) -> String {
     let number = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
     let rows = comparison.rows.iter().map(|row| {
         let mut cells = vec![row.scene.clone().unwrap_or_default()];
-        cells.extend(keys.iter().map(|key| row.parameters.get(key).map(format_value).unwrap_or_default()));
+        cells.extend(keys.iter().map(|key| swept_text(row.parameters.get(key))));
         for cell in &row.cells {
             cells.extend([
                 cell.status.map_or("not answered", status_word).to_string(),

@@ -1,10 +1,11 @@
 //! `curve.csv`: the points of load-displacement curves, where a study asks for them.
 
+use super::columns::Column;
+use super::csv::row;
 use super::csv_table::csv_table;
 use super::register::register;
 use super::study_output::StudyOutput;
 use super::writer::Writer;
-use crate::figures::format::format_value;
 use serde_json::Value as Json;
 
 /// Writes `curve.csv`.
@@ -20,17 +21,14 @@ impl Writer for CurveCsv {
 
 /// One row per point of each case's curve, in the order of the path.
 pub fn curve_csv(study: &StudyOutput) -> String {
-    let mut header = vec!["id".to_string(), "variant".into()];
-    header.extend(study.sweep_columns());
+    let labels = study.file_labels().columns();
+    let mut header: Vec<String> = labels.iter().map(Column::header).collect();
     header.extend(["stage", "displacement [m]", "load_factor [-]"].map(String::from));
     let mut rows = Vec::new();
     for case in &study.results.cases {
         let stage = case.stages.last().map_or("", |stage| stage.name.as_str());
         for [displacement, factor] in case.path.curve.iter().flatten() {
-            let mut row = vec![case.label.id.to_string(), case.label.variant.clone().unwrap_or_default()];
-            row.extend(
-                study.sweep_keys.iter().map(|key| case.label.parameters.get(key).map(format_value).unwrap_or_default()),
-            );
+            let mut row = row(&labels, case);
             row.extend([stage.to_string(), displacement.to_string(), factor.to_string()]);
             rows.push(row);
         }

@@ -4,6 +4,7 @@
 //! to the registry.
 
 mod assumptions;
+pub mod columns;
 pub mod comparison;
 pub mod csv;
 pub mod csv_table;

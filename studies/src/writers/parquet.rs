@@ -3,32 +3,22 @@
 //!
 //! Source: Apache Parquet, `parquet-format` 2 (`parquet.thrift`, Encodings.md); the compact protocol of Apache Thrift.
 
+use super::columns::{Cell, CellKind};
 use std::io::{self, Write};
 
-/// One value of a row, or none.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Cell {
-    /// UTF-8.
-    Text(Option<String>),
-    /// Every bit of it.
-    Number(Option<f64>),
-    /// An integer.
-    Whole(Option<i64>),
-    /// True or false.
-    Truth(Option<bool>),
+impl CellKind {
+    /// Its place in `enum Type` of the format.
+    fn stored(self) -> i64 {
+        match self {
+            CellKind::Truth => 0,
+            CellKind::Whole => 2,
+            CellKind::Number => 5,
+            CellKind::Text => 6,
+        }
+    }
 }
 
 impl Cell {
-    /// Its place in `enum Type` of the format.
-    fn stored(&self) -> i64 {
-        match self {
-            Cell::Truth(_) => 0,
-            Cell::Whole(_) => 2,
-            Cell::Number(_) => 5,
-            Cell::Text(_) => 6,
-        }
-    }
-
     fn is_there(&self) -> bool {
         match self {
             Cell::Text(text) => text.is_some(),
@@ -191,17 +181,17 @@ pub struct Parquet<W: Write> {
 }
 
 impl<W: Write> Parquet<W> {
-    /// Begins a table whose columns have these names, and values like these.
-    pub fn new(mut out: W, like: &[(String, Cell)]) -> io::Result<Self> {
+    /// Begins a table whose columns have these names and types.
+    pub fn new(mut out: W, columns: impl Iterator<Item = (String, CellKind)>) -> io::Result<Self> {
         out.write_all(MAGIC)?;
-        let columns = like.iter().map(|(name, cell)| (name.clone(), cell.stored())).collect();
+        let columns = columns.map(|(name, kind)| (name, kind.stored())).collect();
         Ok(Parquet { out, at: MAGIC.len() as i64, columns, waiting: Vec::new(), groups: Vec::new(), rows: 0 })
     }
 
     /// Adds a row: a cell for each column, of its type.
     pub fn add(&mut self, row: Vec<Cell>) -> io::Result<()> {
-        let fits =
-            row.len() == self.columns.len() && row.iter().zip(&self.columns).all(|(cell, own)| cell.stored() == own.1);
+        let fits = row.len() == self.columns.len()
+            && row.iter().zip(&self.columns).all(|(cell, own)| cell.kind().stored() == own.1);
         if !fits {
             return Err(io::Error::other("a row is not like the columns of its table"));
         }
@@ -287,7 +277,7 @@ mod tests {
 
     #[test]
     fn a_table_takes_rows_like_its_columns_only() {
-        let mut table = Parquet::new(Vec::new(), &[("a".into(), Cell::Whole(None))]).expect("a table");
+        let mut table = Parquet::new(Vec::new(), [("a".to_string(), CellKind::Whole)].into_iter()).expect("a table");
         table.add(vec![Cell::Whole(Some(1))]).expect("a row");
         assert!(table.add(vec![Cell::Number(Some(1.0))]).is_err() && table.add(Vec::new()).is_err());
         let bytes = table.finish().expect("a file");

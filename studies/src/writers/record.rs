@@ -3,7 +3,7 @@
 use super::assumptions::{assumptions, sources};
 use crate::config::dotted_key::join;
 use crate::config::key_meaning::KeyMeaning;
-use crate::figures::format::{escape, format_short, format_value};
+use crate::figures::format::{escape, format_quantity, format_value};
 use crate::study::{Case, Study, meaning_in};
 use serde_json::Value as Json;
 use std::collections::HashSet;
@@ -100,7 +100,7 @@ fn is_in_place(meaning: &KeyMeaning, value: &Json) -> bool {
 fn shown(key: &str, value: &Json, case: &Case) -> String {
     let unit = meaning_in(&case.resolved, key).and_then(|meaning| meaning.unit()).unwrap_or_default();
     match value {
-        Json::Number(_) => quantity(value.as_f64().unwrap_or(f64::NAN), unit),
+        Json::Number(_) => format_quantity(value.as_f64().unwrap_or(f64::NAN), unit),
         Json::Array(items) => {
             // Entries show their units if the list has no common one.
             let entry = |(index, item): (usize, &Json)| match unit {
@@ -128,16 +128,6 @@ fn plain(value: &Json) -> String {
         Json::Bool(truth) => if *truth { "yes" } else { "no" }.into(),
         other => format_value(other),
     }
-}
-
-/// A number with its unit; stresses in the unit in which they are short.
-fn quantity(x: f64, unit: &str) -> String {
-    let (x, unit) = match unit {
-        "Pa" if x.abs() >= 1e9 => (x / 1e9, "GPa"),
-        "Pa" if x.abs() >= 1e5 => (x / 1e6, "MPa"),
-        unit => (x, unit),
-    };
-    format!("{} {unit}", format_short(x, 7)).trim_end().to_string()
 }
 
 /// Axes of the sweep with their values, and the variants.

@@ -1,7 +1,8 @@
 //! The files beside results.json of very many cases, row by row: those that a study asks for, by their name.
 
+use super::columns::{Column, Labels};
 use super::path_proofs::write_path_proof;
-use super::results_parquet::{FILE, ParquetRows, SweptColumn, TAG};
+use super::results_parquet::{FILE, ParquetRows, TAG};
 use super::stream::CsvStream;
 use crate::results::CaseResult;
 use crate::results::stored_path::PATH_PROOFS;
@@ -30,6 +31,11 @@ pub fn wanted(sweep: &Sweep) -> Vec<&'static str> {
     tables.into_iter().filter(|(_, wanted)| *wanted).map(|(name, _)| name).collect()
 }
 
+/// The columns of the tables of results.
+fn columns(sweep: &Sweep) -> Vec<Column> {
+    Labels { swept: &sweep.keys(), keys: &sweep.swept_keys(), variants: true, scenes: false }.with_results()
+}
+
 /// Names of all tables.
 pub const TABLES: [&str; 3] = [PATH_PROOFS, CSV, FILE];
 
@@ -38,14 +44,8 @@ impl<W: Write> StreamedTable<W> {
     pub fn new(name: &str, out: W, sweep: &Sweep) -> io::Result<Self> {
         Ok(match name {
             PATH_PROOFS => StreamedTable::PathProofs(out),
-            FILE => {
-                let meanings = sweep.swept_keys();
-                let key = |(key, numeric): (String, bool)| SweptColumn { name: meanings.column(&key), key, numeric };
-                let keys = sweep.expansion.number_keys().into_iter().map(key).collect();
-                let rows = ParquetRows::new(out, keys, false)?;
-                StreamedTable::Parquet(Box::new(rows))
-            }
-            _ => StreamedTable::Csv(Box::new(CsvStream::new(out, sweep)?)),
+            FILE => StreamedTable::Parquet(Box::new(ParquetRows::new(out, columns(sweep))?)),
+            _ => StreamedTable::Csv(Box::new(CsvStream::new(out, columns(sweep))?)),
         })
     }
 

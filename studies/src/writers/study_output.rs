@@ -1,5 +1,6 @@
 //! What writers are given: the results and what they were computed from.
 
+use super::columns::Labels;
 use crate::results::{CaseResult, StudyResults, least_of};
 use crate::study::{Case, Drawn, Output, Resolved, Study, SweptKeys};
 use serde_json::Value as Json;
@@ -66,9 +67,20 @@ impl<'a> StudyOutput<'a> {
         }
     }
 
-    /// Names of the columns of the swept keys.
-    pub fn sweep_columns(&self) -> impl Iterator<Item = String> {
-        self.sweep_keys.iter().map(|key| self.keys.column(key))
+    /// The columns of files that tell cases apart.
+    pub fn file_labels(&self) -> Labels<'_> {
+        Labels { variants: true, ..self.page_labels() }
+    }
+
+    /// The columns of pages that tell cases apart.
+    pub fn page_labels(&self) -> Labels<'_> {
+        let any = |given: fn(&CaseResult) -> bool| self.results.cases.iter().any(given);
+        Labels {
+            swept: &self.sweep_keys,
+            keys: &self.keys,
+            variants: any(|case| case.label.variant.is_some()),
+            scenes: any(|case| case.label.scene.is_some()),
+        }
     }
 
     /// The title of a case: `strathmashie, case 3, associated, rise = 2.99 m`.

@@ -1,9 +1,9 @@
 //! The table on the terminal.
 
+use super::columns::{CellKind, Column};
 use super::study_output::StudyOutput;
 use crate::figures::format::{
-    format_number, format_short, format_value, hinge_list, kind_word, open_bounds, proved_interval, snap_words,
-    status_word,
+    format_number, format_short, hinge_list, kind_word, open_bounds, proved_interval, snap_words, status_word,
 };
 use crate::results::CaseResult;
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
@@ -13,13 +13,8 @@ use voussoir_core::limit::Status;
 /// One row per case, then each distinct note once with the cases it belongs to.
 pub fn results_table(study: &StudyOutput) -> String {
     let cases = &study.results.cases;
-    let variants = cases.iter().any(|case| case.label.variant.is_some());
-    let mut header = vec!["id".to_string()];
-    header.extend(variants.then(|| "variant".to_string()));
-    let scenes = cases.iter().any(|case| case.label.scene.is_some());
-    header.extend(scenes.then(|| "scene".to_string()));
-    header.extend(study.sweep_columns());
-    let factor_column = header.len() + 1;
+    let labels = study.page_labels().columns();
+    let mut header: Vec<String> = labels.iter().map(Column::header).collect();
     header.extend(["status", "load factor", "kind", "hinges", "certificate", "notes"].map(String::from));
     let mut table = Table::new();
     table.load_style(presets::NOTHING).set_content_arrangement(ContentArrangement::Disabled).set_header(header);
@@ -36,23 +31,13 @@ pub fn results_table(study: &StudyOutput) -> String {
         }
     }
     let factors = aligned(&cases.iter().map(factor).collect::<Vec<_>>());
-    let swept: Vec<Vec<String>> = study
-        .sweep_keys
-        .iter()
-        .map(|key| {
-            aligned(
-                &cases
-                    .iter()
-                    .map(|c| c.label.parameters.get(key).map(format_value).unwrap_or_default())
-                    .collect::<Vec<_>>(),
-            )
-        })
-        .collect();
+    let cells = |column: &Column| {
+        let cells: Vec<String> = cases.iter().map(|case| column.words(case)).collect();
+        if column.is_swept() { aligned(&cells) } else { cells }
+    };
+    let label_cells: Vec<Vec<String>> = labels.iter().map(cells).collect();
     for (place, case) in cases.iter().enumerate() {
-        let mut row = vec![case.label.id.to_string()];
-        row.extend(variants.then(|| case.label.variant.clone().unwrap_or_default()));
-        row.extend(scenes.then(|| case.label.scene.clone().unwrap_or_default()));
-        row.extend(swept.iter().map(|column| column[place].clone()));
+        let mut row: Vec<String> = label_cells.iter().map(|column| column[place].clone()).collect();
         row.push(status_word(case.status).into());
         row.push(factors[place].clone());
         row.push(case.mechanism.as_ref().map_or(String::new(), |m| kind_word(m.kind).into()));
@@ -62,10 +47,11 @@ pub fn results_table(study: &StudyOutput) -> String {
         table.add_row(row);
     }
     for (index, column) in table.column_iter_mut().enumerate() {
-        let text = index != 0
-            && !(factor_column - 1 - study.sweep_keys.len()..factor_column - 1).contains(&index)
-            && index != factor_column;
-        column.set_cell_alignment(if text { CellAlignment::Left } else { CellAlignment::Right });
+        let number = match labels.get(index) {
+            Some(label) => label.kind == CellKind::Whole || label.is_swept(),
+            None => index == labels.len() + 1,
+        };
+        column.set_cell_alignment(if number { CellAlignment::Right } else { CellAlignment::Left });
     }
     let mut text: String = table.to_string().lines().map(|line| line.trim_end().to_string() + "\n").collect();
     for (i, (note, ids)) in notes.iter().enumerate() {

@@ -13,6 +13,7 @@ use crate::results::{head, without_origin};
 use crate::solve::Observer;
 use crate::study::SweptKeys;
 use crate::verify::Agreement;
+use crate::writers::columns::swept_text;
 use crate::writers::csv_table::csv_table;
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 use serde_json::Value as Json;
@@ -169,7 +170,7 @@ pub fn csv(study: &PointStudy, results: &[PointResult]) -> String {
             columns.iter().map(|column| result.columns.iter().position(|own| own == *column)).collect();
         for (index, numbers) in result.rows.iter().enumerate() {
             let mut row = vec![result.id.to_string(), result.variant.clone().unwrap_or_default()];
-            row.extend(keys.iter().map(|key| result.parameters.get(key).map(format_value).unwrap_or_default()));
+            row.extend(keys.iter().map(|key| swept_text(result.parameters.get(key))));
             row.extend([result.segments[index].to_string(), result.regions[index].to_string()]);
             row.extend(places.iter().map(|place| place.map_or(String::new(), |place| numbers[place].to_string())));
             rows.push(row);

@@ -163,7 +163,7 @@ impl PointStudy {
     /// The study that a source describes.
     pub fn from_source(source: StudySource) -> Result<Self, StudyError> {
         let StudySource { root, mut diagnostics, .. } = source;
-        let expansion = match Expansion::new(&root, &[]) {
+        let expansion = match Expansion::new(&root, &[], STUDY) {
             Ok(expansion) => expansion,
             Err(wrong) => {
                 diagnostics.extend(wrong);
