@@ -29,7 +29,7 @@ stress:
 bench:
     cargo bench -p voussoir-benches
 
-# The tables of docs/performance.md.
+# The tables of docs/notebook/performance.md.
 goals:
     cargo build --release -p voussoir
     python3 benches/goals.py

@@ -4,7 +4,7 @@
     cargo build --release -p voussoir
     python3 benches/goals.py [--voussoir target/release/voussoir] [--runs 3] [--only WORDS]
 
-writes docs/goals.csv and from it the part of docs/performance.md between its two marks; with `--page` nothing is measured. Whole
+writes docs/notebook/goals.csv and from it the part of docs/notebook/performance.md between its two marks; with `--page` nothing is measured. Whole
 processes of `voussoir run` are measured as in `scaling.py`, certified cases in memory by `voussoir bench`. Peers are those of
 `peers/`, which say what they need; without them their columns stay empty. Processor time, least of `--runs`, peers by turns.
 """
@@ -19,7 +19,7 @@ from pathlib import Path
 from measured import ROOT, circumstances, read_rows, run, short, write_part, write_rows
 from studies import NO_WRITERS, RING, friction, ring, square, sweep
 
-TABLE = ROOT / "docs/goals.csv"
+TABLE = ROOT / "docs/notebook/goals.csv"
 KEYS = ["work", "seconds", "memory_mb", "answer", "certified", "peer", "peer_seconds", "peer_error", "least", "most_seconds", "most_mb", "date", "machine", "commit"]
 
 ELASTIC = 'law = "elastic"\nyoung_modulus = 15e9\npoisson_ratio = 0.3'

@@ -11,7 +11,7 @@ from datetime import date
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-PAGE = ROOT / "docs/performance.md"
+PAGE = ROOT / "docs/notebook/performance.md"
 # Of the first case, by another process: what this one has in memory counts for those that it starts.
 FIRST = """import json, sys
 case = json.load(open(sys.argv[1]))["cases"][0]

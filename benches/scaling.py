@@ -4,7 +4,7 @@
     cargo build --release -p voussoir
     python3 benches/scaling.py [--voussoir target/release/voussoir] [--most 1e5] [--runs 2]
 
-writes docs/scaling.csv and docs/scaling.svg, and from the CSV the part of docs/performance.md between its two marks. With
+writes docs/notebook/scaling.csv and docs/notebook/scaling.svg, and from the CSV the part of docs/notebook/performance.md between its two marks. With
 `--page` nothing is measured: the page is written from the CSV as it is. Processor time is user + system of the process; least of
 `--runs`. Needs nothing but Python.
 """
@@ -15,7 +15,7 @@ import math
 from measured import ROOT, circumstances, read_rows, run, short, write_part, write_rows
 from studies import NO_WRITERS, RIGID, RING, friction, ring, square, sweep
 
-TABLE, FIGURE = ROOT / "docs/scaling.csv", ROOT / "docs/scaling.svg"
+TABLE, FIGURE = ROOT / "docs/notebook/scaling.csv", ROOT / "docs/notebook/scaling.svg"
 KEYS = ["part", "name", "size", "seconds", "memory_mb", "factor", "status", "date", "machine", "commit"]
 
 FRICTION = friction(RING["friction"])

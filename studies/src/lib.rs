@@ -72,5 +72,5 @@ pub use voussoir_solvers as solvers;
 
 /// The page's Rust compiles, and gives the numbers that it shows.
 #[cfg(doctest)]
-#[doc = include_str!("../../docs/library.md")]
+#[doc = include_str!("../../docs/reference/library.md")]
 pub struct Page;

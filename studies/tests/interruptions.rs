@@ -1,5 +1,5 @@
 //! Runs that are killed, whose study is edited, whose disk is full, or that are not alone: run by hand,
-//! `cargo test --release -p voussoir --test interruptions -- --ignored`. What came out stands in docs/verifying.md.
+//! `cargo test --release -p voussoir --test interruptions -- --ignored`. What came out stands in docs/theory/verifying.md.
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};

@@ -1,6 +1,8 @@
 //! The book: the pages of `docs/`, with those that nobody writes by hand. Plug-ins come from their cards, the keys of a study
 //! file from its schema, the table of verification from the tests themselves, so none of them can be out of date.
 
+pub mod gallery;
+
 use serde_json::{Map, Value as Json};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -12,92 +14,127 @@ fn tree() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// Chapters by part: file and title. Pages of `docs/` and made ones.
+/// Chapters by part: file and title. Pages of `docs/` and generated ones.
 const PARTS: [(&str, &[(&str, &str)]); 6] = [
     (
-        "Using it",
+        "Tutorials",
         &[
-            ("study_files.md", "Study files"),
-            ("keys.md", "Every key"),
-            ("verifying.md", "What a result is worth"),
-            ("accuracy.md", "Errors and run time"),
-            ("reports.md", "Reports"),
-            ("glossary.md", "Glossary"),
+            ("tutorials/first_bridge.md", "From nothing to an assessed bridge"),
+            ("tutorials/first_law.md", "Your first law"),
+            ("tutorials/two_flow_rules.md", "Compare two flow rules"),
+            ("gallery.md", "Gallery"),
         ],
     ),
     (
-        "Mechanics",
+        "How to",
         &[
-            ("flow_rule.md", "Flow rules"),
-            ("sensitivities.md", "Sensitivities of limit loads"),
-            ("elastic_paths.md", "Elastic paths"),
-            ("paths.md", "Paths: pieces, events, ends"),
-            ("finite_displacements.md", "Finite displacements"),
-            ("crushing.md", "Crushing"),
-            ("softening.md", "Softening joints"),
-            ("bridges.md", "Bridges"),
-            ("point_driver.md", "One point"),
+            ("how_to/surveyed_bridge.md", "Assess a surveyed bridge"),
+            ("how_to/settlements.md", "Move supports"),
+            ("how_to/walls.md", "Describe a wall"),
+            ("how_to/drawings.md", "Use a drawing as scene"),
+            ("how_to/one_point.md", "Test a law at one point"),
+            ("how_to/clusters.md", "Run a sweep on a cluster"),
+            ("how_to/pandas.md", "Read results with pandas"),
+            ("how_to/reports.md", "Write a report"),
         ],
     ),
     (
-        "Plug-ins",
+        "Reference",
         &[
-            ("laws.md", "Laws of joints"),
-            ("materials.md", "Materials"),
-            ("solvers.md", "Solvers"),
-            ("scenes.md", "Scenes and loads"),
-            ("outputs.md", "Study kinds and writers"),
+            ("reference/command_line.md", "Command line"),
+            ("reference/study_files.md", "Study files"),
+            ("reference/keys.md", "Every key"),
+            ("reference/scenes.md", "Scenes and loads"),
+            ("reference/laws.md", "Laws of joints"),
+            ("reference/materials.md", "Materials"),
+            ("reference/solvers.md", "Solvers"),
+            ("reference/outputs.md", "Study kinds and writers"),
+            ("reference/statuses.md", "Statuses and results"),
+            ("reference/python.md", "Python"),
+            ("reference/library.md", "Rust"),
+            ("performance.md", "Performance"),
+            ("reference/glossary.md", "Glossary"),
         ],
     ),
     (
-        "Programs and machines",
-        &[("library.md", "From Rust"), ("python.md", "Python"), ("clusters.md", "Several machines")],
+        "Theory",
+        &[
+            ("theory/limit_analysis.md", "Limit analysis"),
+            ("theory/flow_rule.md", "Non-associated friction"),
+            ("theory/sensitivities.md", "Sensitivities of limit loads"),
+            ("theory/event_paths.md", "Elastic paths from event to event"),
+            ("theory/paths.md", "Ends of a path and limit points"),
+            ("theory/finite_displacements.md", "Finite displacements"),
+            ("theory/crushing.md", "Crushing"),
+            ("theory/softening.md", "Softening joints"),
+            ("theory/bridges.md", "Bridges and fill"),
+            ("theory/accuracy.md", "Error estimates"),
+            ("theory/verifying.md", "Certificates and verification"),
+        ],
     ),
     (
-        "Changing it",
+        "Development",
         &[
             ("architecture.md", "Architecture"),
             ("adding_a_law.md", "Adding a law"),
-            ("adding_plug_ins.md", "Adding anything else"),
-            ("conformance.md", "Conformance"),
+            ("adding_plug_ins.md", "Adding other plug-ins"),
+            ("reference/conformance.md", "Conformance"),
+            ("reference/verification.md", "Every test"),
         ],
     ),
     (
-        "Proof",
-        &[("verification.md", "Every test"), ("random_scenes.md", "Random scenes"), ("performance.md", "Performance")],
+        "Notebook",
+        &[
+            ("notebook/random_scenes.md", "Random scenes"),
+            ("notebook/performance.md", "Timings"),
+            ("notebook/paths.md", "Paths in pieces"),
+            ("notebook/finite_displacements.md", "Finite displacements"),
+            ("notebook/flow_rule.md", "Lower ends of walls"),
+            ("notebook/bridges.md", "Random bridges"),
+            ("notebook/verifying.md", "Attacks on results"),
+            ("notebook/clusters.md", "Sweeps on several machines"),
+        ],
     ),
 ];
 
-/// Which plug-ins stand on which made page.
+/// Generated pages of plug-ins: file, title, kinds of plug-ins.
 const PLUGINS: [(&str, &str, &[PluginKind]); 5] = [
-    ("laws.md", "Laws of joints", &[PluginKind::InterfaceLaw]),
-    ("materials.md", "Materials", &[PluginKind::BulkMaterial]),
-    ("solvers.md", "Solvers", &[PluginKind::LimitSolver, PluginKind::PathSolver, PluginKind::Continuation]),
+    ("reference/laws.md", "Laws of joints", &[PluginKind::InterfaceLaw]),
+    ("reference/materials.md", "Materials", &[PluginKind::BulkMaterial]),
+    ("reference/solvers.md", "Solvers", &[PluginKind::LimitSolver, PluginKind::PathSolver, PluginKind::Continuation]),
     (
-        "scenes.md",
+        "reference/scenes.md",
         "Scenes and loads",
         &[PluginKind::Scene, PluginKind::LoadKind, PluginKind::Dispersion, PluginKind::FillResistance],
     ),
-    ("outputs.md", "Study kinds and writers", &[PluginKind::StudyKind, PluginKind::Writer]),
+    ("reference/outputs.md", "Study kinds and writers", &[PluginKind::StudyKind, PluginKind::Writer]),
 ];
 
-/// The book's sources by file name; figures stand beside the pages in `docs/` and are not among them.
+/// The book's sources by file name. Figures are not among them: links lead to the files below `docs/`, and [`gallery`]
+/// names the figures that the program `book` draws.
 pub fn book() -> BTreeMap<String, String> {
-    let mut pages = BTreeMap::new();
     let docs = tree().join("docs");
-    let files = std::fs::read_dir(&docs).expect("docs/").map(|entry| entry.expect("a file").path());
-    for path in files.filter(|path| path.extension().is_some_and(|ending| ending == "md")) {
-        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
-        pages.insert(name, std::fs::read_to_string(&path).expect("a page"));
-    }
+    let mut files = Vec::new();
+    collect(&docs, &mut files);
+    let name = |path: &Path| path.strip_prefix(&docs).expect("below docs").to_string_lossy().replace('\\', "/");
+    let with = |ending: &'static str| {
+        files
+            .iter()
+            .filter(move |path| path.extension().is_some_and(|found| found == ending))
+            .map(|path| path.as_path())
+    };
+    let mut pages: BTreeMap<String, String> =
+        with("md").map(|path| (name(path), std::fs::read_to_string(path).expect("a page"))).collect();
     pages.insert("index.md".into(), std::fs::read_to_string(tree().join("README.md")).expect("the README"));
     for (file, title, kinds) in PLUGINS {
         pages.insert(file.into(), plugins(title, kinds));
     }
-    pages.insert("keys.md".into(), keys());
-    pages.insert("verification.md".into(), verification());
-    let known: BTreeSet<String> = pages.keys().cloned().collect();
-    pages.values_mut().for_each(|page| *page = own_links(page, &known));
+    pages.insert("reference/keys.md".into(), keys());
+    pages.insert("reference/verification.md".into(), verification());
+    pages.insert("gallery.md".into(), gallery::page());
+    let known: BTreeSet<String> =
+        pages.keys().cloned().chain(with("svg").map(name)).chain(gallery::figures()).collect();
+    pages.iter_mut().for_each(|(file, page)| *page = own_links(file, page, &known));
     let summary = summary(&pages);
     pages.insert("SUMMARY.md".into(), summary);
     pages
@@ -123,26 +160,43 @@ fn summary(pages: &BTreeMap<String, String>) -> String {
     text
 }
 
-/// Links between pages and to figures stay, those into the tree become the name of the file.
-fn own_links(page: &str, known: &BTreeSet<String>) -> String {
+/// The file of the book that a link of a page leads to.
+pub fn target(page: &str, link: &str) -> String {
+    let file = link.split('#').next().unwrap_or_default();
+    if let Some((_, below)) = file.rsplit_once("docs/") {
+        return below.to_string();
+    }
+    let mut parts: Vec<&str> = page.split('/').collect();
+    parts.pop();
+    for part in file.split('/') {
+        match part {
+            ".." => drop(parts.pop()),
+            "." => {}
+            part => parts.push(part),
+        }
+    }
+    parts.join("/")
+}
+
+/// Links between pages and to figures are kept. Other links into the tree become the name of the file.
+fn own_links(file: &str, page: &str, known: &BTreeSet<String>) -> String {
     let mut text = String::new();
     let mut rest = page;
     while let Some(at) = rest.find("](") {
         let (before, after) = rest.split_at(at + 2);
         let Some(end) = after.find(')') else { break };
         let link = &after[..end];
-        let local = link.strip_prefix("docs/").unwrap_or(link);
-        let file = local.split('#').next().unwrap_or_default();
-        if local.contains(':')
-            || file.is_empty()
-            || known.contains(file)
-            || (file.ends_with(".svg") && !file.contains('/'))
-        {
-            text += &format!("{before}{local})");
+        let target = target(file, link);
+        if link.contains(':') || link.starts_with('#') {
+            text += &format!("{before}{link})");
+        } else if known.contains(&target) {
+            let up = "../".repeat(file.matches('/').count());
+            let heading = link.split_once('#').map_or(String::new(), |(_, heading)| format!("#{heading}"));
+            text += &format!("{before}{up}{target}{heading})");
         } else {
             let opened = before.rfind('[').unwrap_or(0);
             text += &before[..opened];
-            text += &format!("{} (`{}`)", &before[opened + 1..before.len() - 2], local.trim_start_matches("../"));
+            text += &format!("{} (`{}`)", &before[opened + 1..before.len() - 2], link.trim_start_matches("../"));
         }
         rest = &after[end + 1..];
     }
@@ -266,6 +320,7 @@ fn verification() -> String {
         text += &format!("\n## {}{}: {kind}\n", folder[..1].to_uppercase(), &folder[1..]);
         let mut files = Vec::new();
         collect(&tree().join("tests/tests").join(folder), &mut files);
+        files.retain(|path| path.extension().is_some_and(|ending| ending == "rs"));
         files.sort();
         for path in files {
             let source = std::fs::read_to_string(&path).expect("a test");
@@ -286,13 +341,10 @@ fn verification() -> String {
     text
 }
 
+/// All files below a folder.
 fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("a file").path()) {
-        if entry.is_dir() {
-            collect(&entry, files);
-        } else if entry.extension().is_some_and(|ending| ending == "rs") {
-            files.push(entry);
-        }
+        if entry.is_dir() { collect(&entry, files) } else { files.push(entry) }
     }
 }
 

@@ -1,4 +1,4 @@
-//! No certificate passes above its gate: the gates as docs/verifying.md lists them, stated here once more, not asked of the
+//! No certificate passes above its gate: the gates as docs/theory/verifying.md lists them, stated here once more, not asked of the
 //! program.
 
 use voussoir::results::CaseResult;

@@ -10,7 +10,7 @@
 //! assert!(report.passed(), "{report}");
 //! ```
 //!
-//! What is checked, by name, stands in `docs/conformance.md`. Generic checks cannot see a memory that is missing in a
+//! What is checked, by name, stands in `docs/reference/conformance.md`. Generic checks cannot see a memory that is missing in a
 //! consistent way: each law that answers at a point brings a [known path](voussoir_core::plugin::KnownPath).
 
 mod energy;

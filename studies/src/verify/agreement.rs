@@ -67,10 +67,10 @@ impl Agreement {
         match self {
             Agreement::Bits => "compared bit by bit: this program on this kind of processor has written them",
             Agreement::Processor => {
-                "compared by claims, within the tolerances of docs/verifying.md: another kind of processor has written them"
+                "compared by claims, within the tolerances of docs/theory/verifying.md: another kind of processor has written them"
             }
             Agreement::Program => {
-                "compared by claims, within the tolerances of docs/verifying.md: another program has written them; its tables and \
+                "compared by claims, within the tolerances of docs/theory/verifying.md: another program has written them; its tables and \
                  figures were not compared"
             }
         }

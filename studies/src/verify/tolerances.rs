@@ -139,14 +139,14 @@ pub const SEARCHED: Tolerance = row(
     "a search goes on from the factors of earlier cases",
 );
 
-/// All tolerances, in the order of docs/verifying.md.
+/// All tolerances, in the order of docs/theory/verifying.md.
 pub const TOLERANCES: [&Tolerance; 10] =
     [&GEOMETRY, &FACTOR, &STATE, &RATE, &PEAK, &CURVE, &BEYOND, &ESTIMATE, &DERIVATIVE, &SEARCHED];
 
 /// Keys of a case that are not compared with a second run: they measure effort, are free words, or depend on rounding.
 pub const FREE: [&str; 6] = ["counters", "seconds", "notes", "certificate.failures", "end_is_checked", "end_proof"];
 
-/// The table in Markdown, as docs/verifying.md shows it.
+/// The table in Markdown, as docs/theory/verifying.md shows it.
 pub fn tolerance_table() -> String {
     let mut text = String::from(
         "| entries | limit analysis | events | steps | relative to | reason |\n|---|---|---|---|---|---|\n",

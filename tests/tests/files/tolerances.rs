@@ -141,9 +141,13 @@ fn values_that_a_search_has_chosen() {
 /// The page shows the table of the program.
 #[test]
 fn the_page_states_every_tolerance() {
-    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/verifying.md");
-    let page = std::fs::read_to_string(page).expect("docs/verifying.md");
-    assert!(page.contains(&tolerance_table()), "docs/verifying.md has another table than\n{}", tolerance_table());
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/theory/verifying.md");
+    let page = std::fs::read_to_string(page).expect("docs/theory/verifying.md");
+    assert!(
+        page.contains(&tolerance_table()),
+        "docs/theory/verifying.md has another table than\n{}",
+        tolerance_table()
+    );
 }
 
 /// Results of this program on this processor are compared bit by bit; a head that names another program is no way around

@@ -390,7 +390,7 @@ fn a_step_of_a_settlement_does_not_jump() {
 
 /// CASES=N tries N cases from FIRST on.
 #[test]
-#[ignore = "long; what came out stands in docs/random_scenes.md"]
+#[ignore = "long; what came out stands in docs/notebook/random_scenes.md"]
 fn supports_that_move() {
     let number = |name: &str, other: usize| std::env::var(name).ok().and_then(|n| n.parse().ok()).unwrap_or(other);
     let first = number("FIRST", 0);

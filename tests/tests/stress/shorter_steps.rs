@@ -121,7 +121,7 @@ fn a_quarter_of_the_step_changes_nothing() {
 
 /// CASES=N tries those among N cases of the family of settlements from FIRST on, all 3000 by default.
 #[test]
-#[ignore = "long; what came out stands in docs/random_scenes.md"]
+#[ignore = "long; what came out stands in docs/notebook/random_scenes.md"]
 fn a_quarter_of_the_step_changes_no_settlement() {
     let number = |name: &str, other: usize| std::env::var(name).ok().and_then(|n| n.parse().ok()).unwrap_or(other);
     let first = number("FIRST", 0);

@@ -197,7 +197,7 @@ fn a_peak_that_is_not_placed_shortens_the_step() {
 
 /// STRATEGIES=N tries N scenes from FIRST on, 250 by default.
 #[test]
-#[ignore = "long; what came out stands in docs/random_scenes.md"]
+#[ignore = "long; what came out stands in docs/notebook/random_scenes.md"]
 fn strategies_and_disguises_agree_in_250_scenes() {
     let number = |name: &str, other: usize| std::env::var(name).ok().and_then(|n| n.parse().ok()).unwrap_or(other);
     let first = number("FIRST", 0);

@@ -54,7 +54,7 @@ fn finer(scene: &Scene) -> f64 {
     followed(scene, mesh(scene.elements.map(|n| 8 * n)))
 }
 
-/// The mesh that docs/finite_displacements.md knows to be within 0.2 %: graded towards hinges.
+/// The mesh that docs/theory/finite_displacements.md knows to be within 0.2 %: graded towards hinges.
 fn graded(scene: &Scene) -> f64 {
     followed(scene, "elements = [8, 12]\ngrading = 10.0".into())
 }

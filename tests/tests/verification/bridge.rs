@@ -1,5 +1,5 @@
 //! Bridges: numbers of two independent formulations, closed forms of the fill, and what must be monotone
-//! (docs/bridges.md).
+//! (docs/theory/bridges.md).
 
 use serde_json::Value;
 use voussoir::core::limit::Status;

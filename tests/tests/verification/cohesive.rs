@@ -214,7 +214,7 @@ fn a_study_controls_the_opening_of_a_joint() {
     assert!(absent.notes.iter().any(|note| note.contains("joint 7")), "{:?}", absent.notes);
 }
 
-/// Steps of each strategy along both bars (printed: the table of docs/softening.md), none more than 45.
+/// Steps of each strategy along both bars (printed: the table of docs/theory/softening.md), none more than 45.
 #[test]
 fn strategies_need_few_steps() {
     for length in [1.0, 8.0] {

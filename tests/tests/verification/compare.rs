@@ -24,7 +24,7 @@ fn results(study: &Study) -> StudyResults {
     study.results("test", cases)
 }
 
-/// The ten scenes of docs/flow_rule.md, answered once for all tests.
+/// The ten scenes of docs/theory/flow_rule.md, answered once for all tests.
 fn ten_scenes() -> &'static (Study, StudyResults) {
     static ANSWERED: OnceLock<(Study, StudyResults)> = OnceLock::new();
     ANSWERED.get_or_init(|| {

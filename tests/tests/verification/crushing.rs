@@ -1,5 +1,5 @@
 //! An arch whose stone softens as it crushes: what the fracture energy makes independent of the mesh, and what
-//! goes wrong without it (docs/crushing.md).
+//! goes wrong without it (docs/theory/crushing.md).
 
 use voussoir::core::certificate::PathChecker;
 use voussoir::core::path::{PathProblem, PathSettings, PathSolver, PathState};
@@ -7,7 +7,7 @@ use voussoir::solvers::path::newton::NewtonPath;
 use voussoir_tests::seen::Seen;
 use voussoir_tests::{assert_close, changed, first_case};
 
-/// A row of the table in docs/crushing.md.
+/// A row of the table in docs/theory/crushing.md.
 #[derive(Debug)]
 struct Row {
     /// Greatest load \[kN\] and the displacement of the load there \[m\].
@@ -72,7 +72,7 @@ fn an_arch_that_softens_tends_to_one_peak() {
     assert!(fine.crushed > 0.1 && fine.peak[1] < AT, "{fine:?}");
 }
 
-/// The table of docs/crushing.md (TABLE=1; half an hour): the energy per band, per volume, without softening, order 2.
+/// The table of docs/theory/crushing.md (TABLE=1; half an hour): the energy per band, per volume, without softening, order 2.
 #[test]
 fn table() {
     if std::env::var("TABLE").is_err() {

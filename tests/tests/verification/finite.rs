@@ -369,7 +369,7 @@ fn the_peak_does_not_depend_on_steps_strategy_units_or_side() {
 }
 
 /// Peaks of converged meshes at E = 5, 20, 80, 320 GPa against the rigid limit. Near it (page
-/// `docs/finite_displacements.md`)
+/// `docs/theory/finite_displacements.md`)
 ///
 /// ```text
 /// λ(t) = λ_0 − A t − B / (E' t) + O(1/E),  deficit → 2 √(A B / E')

@@ -66,7 +66,7 @@ fn least_of_wall_4() {
 }
 
 /// Gilbert, Casapulla & Ahmed (2006) print .640, .356, .264. On wall 1 the sequence settles where the path of elastic
-/// blocks ends (.6399686, `docs/flow_rule.md`), above the least load.
+/// blocks ends (.6399686, `docs/theory/flow_rule.md`), above the least load.
 #[test]
 fn sequential_programs_give_the_published_factors() {
     for PublishedWall { number, wall: bricks, least, published: printed, .. } in [1, 3, 4].map(published_wall) {

@@ -1,5 +1,5 @@
 //! Random bridges against a program of their own: geometry, fill, spread, strengths and equilibrium written down again from
-//! the equations of docs/bridges.md, as a conic program for Clarabel. It shares no code with the scenes, loads and
+//! the equations of docs/theory/bridges.md, as a conic program for Clarabel. It shares no code with the scenes, loads and
 //! solvers of Voussoir; only the study's text is made from the same numbers.
 
 mod bridge;

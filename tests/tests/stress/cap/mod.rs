@@ -302,7 +302,7 @@ fn every_trial_state_returns_to_the_surface() {
 /// The same of caps from nearly flat to ten times as deep as wide, with friction up to 89°, and stresses up to 1e12 times the
 /// strength.
 #[test]
-#[ignore = "a minute; what came out stands in docs/random_scenes.md"]
+#[ignore = "a minute; what came out stands in docs/notebook/random_scenes.md"]
 fn trial_states_of_extreme_caps_return_to_the_surface() {
     for eccentricity in [1e-4, 1e-2, 1.0, 10.0] {
         for angle in [0.0, 30.0, 70.0, 85.0, 89.0] {

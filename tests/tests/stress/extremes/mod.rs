@@ -144,7 +144,7 @@ fn extreme_scenes_are_answered_or_refused_by_limit_analysis() {
 /// All families by all solvers. `ONLY=ring` takes some of them, `SHOW=1` prints all, `KEEP=folder` writes the studies of
 /// those that were not answered.
 #[test]
-#[ignore = "minutes; what came out stands in docs/random_scenes.md"]
+#[ignore = "minutes; what came out stands in docs/notebook/random_scenes.md"]
 fn extreme_scenes_are_answered_or_refused_by_all_solvers() {
     none_is_wrong(&try_all(|_, _| true));
 }
