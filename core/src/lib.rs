@@ -1,12 +1,12 @@
-//! Voussoir's core: the traits plug-ins implement, their cards and registry, geometry, the model of
-//! an assembly of blocks, and the certificates that prove an answer. It knows no plug-in.
+//! Core of Voussoir: the traits that plug-ins implement, their cards and registry, geometry, the model of an assembly
+//! of blocks, and the certificates that prove an answer. The core depends on no plug-in.
 //!
 //! # Conventions
-//! SI units; plane problems, x to the right, y upwards, `width` out of plane; rotations
-//! anticlockwise \[rad\]. Contact frame (n, t): n points from the *minus* to the *plus* body,
-//! t = n turned by +90°. The gap vector is g = u_plus − u_minus in (n, t), g_n ≥ 0 open. The
-//! contact force r pushes with +r on plus and −r on minus, r_n ≥ 0 in compression. Along a joint
-//! of height h the coordinate s runs along t from −h/2 (end 0) to +h/2 (end 1).
+//! SI units; plane problems with x to the right, y upwards and `width` out of plane; rotations are positive
+//! anticlockwise \[rad\]. The contact frame is (n, t): n points from the *minus* to the *plus* body, t is n rotated by
+//! +90°. The gap vector g = u_plus − u_minus has components in (n, t); positive g_n is open. The contact force r acts
+//! as +r on plus and as −r on minus; positive r_n is compressive. Along a joint of height h the coordinate s is
+//! parallel to t and goes from −h/2 (end 0) to +h/2 (end 1).
 #![forbid(unsafe_code)]
 
 pub mod certificate;

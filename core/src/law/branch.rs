@@ -1,12 +1,12 @@
-//! Names for what an update did, given by laws.
+//! Branches of laws: the set of equations that an update has solved, with a name that the law gives.
 
 use serde::{Serialize, Serializer};
 
-/// What happens in a branch of a law, for those who do not know the law.
+/// The physical effect of a branch, for code that does not know the law.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Effect {
-    /// Nothing irreversible.
+    /// Nothing irreversible happens.
     Elastic,
     /// A joint slides.
     Sliding,
@@ -18,30 +18,29 @@ pub enum Effect {
     Tearing,
 }
 
-/// What an update did: which of a law's equations were solved, by the law's own name for them, which stands
-/// in result files. `elastic` alone is the same in every law. Two branches are equal where names and
-/// effects are.
+/// The branch of an update: the set of a law's equations that was solved. The law chooses the name; result files show
+/// it. Only the name `elastic` is common to all laws. Two branches are equal if their names and effects are equal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct UpdateBranch {
-    /// Its name in result files.
+    /// Name in result files.
     pub name: &'static str,
-    /// What happens in it.
+    /// Physical effect.
     pub effect: Effect,
 }
 
 impl UpdateBranch {
-    /// Nothing irreversible in this step.
+    /// Nothing irreversible happens in this step.
     pub const ELASTIC: Self = Self::new("elastic", Effect::Elastic);
 
-    /// A joint is open, and nothing irreversible happens in this step.
+    /// The joint is open, and nothing irreversible happens in this step.
     pub const OPEN: Self = Self::new("open", Effect::Elastic);
 
-    /// A branch of a law.
+    /// Creates a branch of a law.
     pub const fn new(name: &'static str, effect: Effect) -> Self {
         UpdateBranch { name, effect }
     }
 
-    /// Whether nothing irreversible happened.
+    /// Returns true if nothing irreversible happened.
     pub fn is_elastic(self) -> bool {
         self.effect == Effect::Elastic
     }

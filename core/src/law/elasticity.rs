@@ -1,25 +1,25 @@
-//! Linear elasticity in space: the 6 × 6 operator of a material, its axes, and the law it makes at a point.
+//! Linear elasticity in space: the 6 × 6 operator of a material, its axes, and the stress update at a point.
 
 use super::branch::UpdateBranch;
 use super::stress::{StressPoint, StressUpdate, Voigt};
 use super::update::{UpdateContext, UpdateFailure};
 use nalgebra::Matrix6;
 
-/// How far an operator may be from symmetric, relative to its greatest entry.
+/// Greatest asymmetry of an operator, relative to its greatest entry.
 const SYMMETRIC: f64 = 1e-12;
 
-/// A linear elastic operator C, σ = C ε, along the axes of the block: x along its first edge (the intrados of
-/// the voussoirs of an arch), y inwards. Shear strains are engineering strains.
+/// A linear elastic operator C, σ = C ε, in the axes of the block: x is parallel to its first edge (the intrados of a
+/// voussoir of an arch), y points inwards. Shear strains are engineering strains.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Elasticity {
-    /// What the operator is measured in \[Pa\]: E where it is isotropic.
+    /// Reference modulus \[Pa\]: E if the material is isotropic.
     pub modulus: f64,
-    /// C / `modulus`.
+    /// C / `modulus`, dimensionless.
     pub relative: [Voigt; 6],
 }
 
 impl Elasticity {
-    /// Isotropic, from E \[Pa\] and ν.
+    /// Creates the isotropic operator from E \[Pa\] and ν.
     pub fn isotropic(young_modulus: f64, poisson_ratio: f64) -> Self {
         let nu = poisson_ratio;
         let (lambda, mu) = (nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), 0.5 / (1.0 + nu));
@@ -35,7 +35,7 @@ impl Elasticity {
         }
     }
 
-    /// From C⁻¹ × `modulus`. `None` where it has no inverse.
+    /// Creates the operator from C⁻¹ × `modulus`. Returns `None` if the matrix has no inverse.
     pub fn from_compliance(modulus: f64, compliance: &[Voigt; 6]) -> Option<Self> {
         let inverse = matrix(compliance).try_inverse()?;
         let symmetric = (inverse + inverse.transpose()) * 0.5;
@@ -47,19 +47,19 @@ impl Elasticity {
         self.relative.map(|row| row.map(|entry| entry * self.modulus))
     }
 
-    /// C⁻¹ × `modulus`.
+    /// C⁻¹ × `modulus`, dimensionless.
     pub fn compliance(&self) -> [Voigt; 6] {
         rows(&matrix(&self.relative).try_inverse().unwrap_or(Matrix6::repeat(f64::NAN)))
     }
 
-    /// The same operator seen from other axes; `axes` are the unit vectors of its own.
+    /// The same operator in other axes; `axes` are the unit vectors of the material's own axes.
     pub fn turned(&self, axes: &[[f64; 3]; 3]) -> Self {
         let turn = stress_turn(axes);
         Elasticity { relative: rows(&(turn * matrix(&self.relative) * turn.transpose())), ..*self }
     }
 
-    /// Whether it can be: finite, symmetric, positive definite, and with the plane of the scene as a plane of
-    /// symmetry, so that plane strains make no shear across. An error says what is wrong.
+    /// Checks that the operator is finite, symmetric and positive definite, and that the plane of the scene is a plane
+    /// of symmetry, so that strains in the plane cause no shear out of it. An error gives the reason.
     pub fn check(&self) -> Result<(), String> {
         let c = matrix(&self.relative);
         let symmetric = (c - c.transpose()).amax() <= SYMMETRIC * c.amax();
@@ -88,7 +88,7 @@ fn rows(matrix: &Matrix6<f64>) -> [Voigt; 6] {
     [0, 1, 2, 3, 4, 5].map(|i| [0, 1, 2, 3, 4, 5].map(|j| matrix[(i, j)]))
 }
 
-/// T: a stress vector along axes given by their unit vectors becomes T σ. Operators become T C Tᵀ.
+/// T: a stress vector σ in axes with these unit vectors becomes T σ; an operator C becomes T C Tᵀ.
 fn stress_turn(axes: &[[f64; 3]; 3]) -> Matrix6<f64> {
     const PLACES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)];
     Matrix6::from_fn(|row, column| {
@@ -98,7 +98,7 @@ fn stress_turn(axes: &[[f64; 3]; 3]) -> Matrix6<f64> {
     })
 }
 
-/// Hooke's law at a point; no state.
+/// Hooke's law at a point, without state.
 #[derive(Debug, Clone)]
 pub struct LinearUpdate(pub Elasticity);
 
@@ -135,7 +135,7 @@ impl StressUpdate for LinearUpdate {
 mod tests {
     use super::*;
 
-    /// Turning there and back gives the operator itself, an isotropic one is the same along any axes.
+    /// An operator that is rotated and rotated back is unchanged, and an isotropic operator is the same in all axes.
     #[test]
     fn operators_turn_with_their_axes() {
         let (sine, cosine) = 0.7f64.sin_cos();

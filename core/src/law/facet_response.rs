@@ -1,29 +1,29 @@
-//! Tractions from gaps for laws given by facets, with the joint's own stiffness.
+//! Tractions from gaps for laws that are given by facets, with the stiffness of the joint.
 //!
-//! t = −K (g − g_p) with K = diag(k_n, k_t), a·t ≤ b on every facet, ġ_p = −Σ γ_i d_i, γ ≥ 0, γ_i only on
-//! facets that are reached; fully implicit. Two facets at most can be active in the plane, so the step
-//! is the one admissible answer among the facets alone and in pairs. A facet of opening without tensile
-//! strength is no plastic flow: the joint opens and closes where it was, so its share in g_p is not
-//! kept; what has torn or crushed or dilated is.
+//! The update is fully implicit: t = −K (g − g_p) with K = diag(k_n, k_t), a·t ≤ b on every facet, ġ_p = −Σ γ_i d_i,
+//! γ_i ≥ 0, and γ_i > 0 only on facets that are reached. In the plane at most two facets can be active. The update
+//! therefore tries every single facet and every pair and uses the admissible candidate. An opening facet without
+//! tensile strength causes no plastic flow, since the joint closes again where it opened: its part of g_p is not
+//! stored. Plastic parts from tearing, crushing and dilation are stored.
 
 use super::branch::{Effect, UpdateBranch};
 use super::facet::{Facet, FacetMode};
 use super::response::{InterfaceResponse, TractionPoint};
 use super::update::UpdateFailure;
 
-/// The joint yields on some facet.
+/// The joint yields on a facet.
 const SLIDING: UpdateBranch = UpdateBranch::new("sliding", Effect::Sliding);
-/// A joint opens in a step in which it slides.
+/// The joint opens in a step in which it also slides.
 const SLIDING_OPEN: UpdateBranch = UpdateBranch::new("sliding_open", Effect::Sliding);
 
-/// A joint of facets with stiffness.
+/// A joint law made of facets and a stiffness.
 #[derive(Debug, Clone)]
 pub struct FacetResponse {
     facets: Vec<Facet>,
     stiffness: [f64; 2],
 }
 
-/// An active set: facets, their multipliers \[m\], and the traction.
+/// A candidate active set: its facets, their multipliers \[m\], and the traction.
 struct Active<'a> {
     facets: [Option<&'a Facet>; 2],
     steps: [f64; 2],
@@ -36,7 +36,7 @@ fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
 }
 
 impl FacetResponse {
-    /// Facets with stiffness \[k_n, k_t\] \[Pa/m\]; `None` unless both are finite.
+    /// Creates the response from facets and the stiffness \[k_n, k_t\] \[Pa/m\]. Returns `None` unless both are finite.
     pub fn new(facets: Vec<Facet>, stiffness: [f64; 2]) -> Option<Self> {
         stiffness.iter().all(|k| k.is_finite()).then_some(FacetResponse { facets, stiffness })
     }

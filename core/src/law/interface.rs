@@ -1,7 +1,7 @@
-//! Interface laws: what a joint can carry and how it moves when it yields.
+//! Interface laws: the strength of a joint and its flow when it yields.
 //!
-//! A law is parameters plus pure functions; state belongs to the solver. A law knows no solver: it gives the forms
-//! it has, and a solver takes the first that its card asks for.
+//! A law consists of parameters and pure functions; the solver stores the state. A law does not depend on any solver:
+//! it offers one or more forms, and a solver uses the first form that its card asks for.
 
 use super::facet::Facet;
 use super::facet_response::FacetResponse;
@@ -9,24 +9,23 @@ use super::response::InterfaceResponse;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// A law of a joint. Implementors also register with `#[typetag::serde]` and submit a
-/// [`Card`](crate::plugin::Card).
+/// The law of a joint. Implementors also register with `#[typetag::serde]` and submit a [`Card`](crate::plugin::Card).
 #[typetag::serde(tag = "law")]
 pub trait InterfaceLaw: Debug + Send + Sync {
-    /// Facets a·t ≤ b of what the joint can carry, and how it flows on them. `None` where the law has no such
+    /// Returns the facets a·t ≤ b that bound the tractions of the joint, with their flow. `None` if the law has no such
     /// form.
     fn facets(&self) -> Option<Vec<Facet>> {
         None
     }
 
-    /// Tractions from gaps, with state. `None` where the law has no such form; one of facets has it where
-    /// both its stiffnesses are finite. Where a law has both forms they say the same: tractions lie within the
-    /// facets and flow is theirs.
+    /// Returns the response of the joint, which computes tractions from gaps and a state. `None` if the law has no such
+    /// form. By default a law with facets has a response if both its stiffnesses are finite. If a law has both forms,
+    /// they must agree: tractions of the response lie within the facets and its flow is the flow of the facets.
     fn response(&self) -> Option<Arc<dyn InterfaceResponse>> {
         Some(Arc::new(FacetResponse::new(self.facets()?, self.stiffness()?)?))
     }
 
-    /// Joint stiffness \[k_n, k_t\] \[Pa/m\] where the joint itself is compliant. Limit loads do not
-    /// depend on it.
+    /// Returns the joint stiffness \[k_n, k_t\] \[Pa/m\] if the joint itself is compliant. Limit loads do not depend on
+    /// it.
     fn stiffness(&self) -> Option<[f64; 2]>;
 }

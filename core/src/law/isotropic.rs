@@ -1,8 +1,8 @@
-//! Bulk and shear modulus: what laws in pressure and deviator start from.
+//! Bulk and shear modulus, for laws that are written in pressure and deviator.
 
 use super::stress::Voigt;
 
-/// Linear isotropic elasticity, which every inelastic law starts from.
+/// Linear isotropic elasticity, the elastic part of inelastic laws.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Isotropic {
     /// K = E / (3(1 − 2ν)) \[Pa\].
@@ -12,7 +12,7 @@ pub struct Isotropic {
 }
 
 impl Isotropic {
-    /// From E \[Pa\] and ν.
+    /// Creates the moduli from E \[Pa\] and ν.
     pub fn new(young_modulus: f64, poisson_ratio: f64) -> Self {
         Isotropic {
             bulk: young_modulus / (3.0 * (1.0 - 2.0 * poisson_ratio)),
@@ -20,7 +20,7 @@ impl Isotropic {
         }
     }
 
-    /// Deviator 2 G e as a stress vector, and pressure p = −K tr ε (compression positive) \[Pa\].
+    /// Returns the deviator 2 G e as a stress vector and the pressure p = −K tr ε \[Pa\], positive in compression.
     pub fn split(&self, strain: &Voigt) -> (Voigt, f64) {
         let trace = strain[0] + strain[1] + strain[2];
         let mean = trace / 3.0;
@@ -36,8 +36,8 @@ impl Isotropic {
         (deviator, -self.bulk * trace)
     }
 
-    /// 2 `deviatoric` dev + `volumetric` 1⊗1 in engineering shears: the elastic stiffness for
-    /// (G, K) \[Pa\].
+    /// Returns 2 `deviatoric` dev + `volumetric` 1⊗1 \[Pa\] for engineering shear strains: the elastic stiffness if the
+    /// arguments are G and K.
     pub fn stiffness(deviatoric: f64, volumetric: f64) -> [Voigt; 6] {
         let mut tangent = [[0.0; 6]; 6];
         for (i, row) in tangent.iter_mut().enumerate() {
@@ -49,13 +49,13 @@ impl Isotropic {
         tangent
     }
 
-    /// The elastic stiffness \[Pa\].
+    /// Returns the elastic stiffness \[Pa\].
     pub fn tangent(&self) -> [Voigt; 6] {
         Isotropic::stiffness(self.shear, self.bulk)
     }
 }
 
-/// q = √(3/2 s:s) of a deviator \[Pa\], without overflow.
+/// Returns q = √(3/2 s:s) of a deviator s \[Pa\], without overflow.
 pub fn von_mises(deviator: &Voigt) -> f64 {
     let largest = deviator.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
     if largest == 0.0 {

@@ -1,7 +1,7 @@
-//! Bulk materials: what blocks are made of.
+//! Bulk materials of blocks.
 //!
-//! A material is parameters plus pure functions; state belongs to whoever solves. Plane strain and
-//! plane stress are made from the law in space by [`PlanarUpdate`](super::PlanarUpdate).
+//! A material consists of parameters and pure functions; the solver stores the state.
+//! [`PlanarUpdate`](super::PlanarUpdate) derives plane strain and plane stress from the law in space.
 
 use super::elasticity::{Elasticity, LinearUpdate};
 use super::stress::StressUpdate;
@@ -12,18 +12,18 @@ use std::sync::Arc;
 /// [`Card`](crate::plugin::Card).
 #[typetag::serde(tag = "law")]
 pub trait BulkMaterial: Debug + Send + Sync {
-    /// ρ \[kg/m³\].
+    /// Returns the density ρ \[kg/m³\].
     fn density(&self) -> f64;
 
-    /// How it deforms before it yields; `None` where it is rigid.
+    /// Returns the elasticity before the material yields. `None` if the material is rigid.
     fn elasticity(&self) -> Option<Elasticity>;
 
-    /// How it yields; `None` where it does not, and its elasticity says everything.
+    /// Returns the inelastic law. `None` if the material is linear elastic or rigid.
     fn inelastic(&self) -> Option<Arc<dyn StressUpdate>> {
         None
     }
 
-    /// Stress from strain at a point, whether it yields or not; `None` where it is rigid.
+    /// Returns the stress update, elastic or inelastic. `None` if the material is rigid.
     fn stress_update(&self) -> Option<Arc<dyn StressUpdate>> {
         self.inelastic().or_else(|| Some(Arc::new(LinearUpdate(self.elasticity()?))))
     }

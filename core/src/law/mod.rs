@@ -1,4 +1,5 @@
-//! Laws of joints and materials: the traits that plug-ins implement, and what core derives from them.
+//! Laws of joints and materials: the traits that plug-ins implement, and the quantities that the core derives from
+//! them.
 
 mod branch;
 mod elasticity;

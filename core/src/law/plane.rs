@@ -1,16 +1,16 @@
-//! Plane strain and plane stress around any law in space, written once.
+//! Plane strain and plane stress for any law in space.
 //!
-//! In the plane a strain is (ε_xx, ε_yy, γ_xy). Plane strain sets ε_zz = 0. Plane stress finds the
-//! ε_zz at which σ_zz = 0 by a bracketed Newton iteration on the law itself, and its tangent is that
-//! of the iteration's end: with a, b in the plane and z across,
+//! A strain in the plane is (ε_xx, ε_yy, γ_xy). Plane strain sets ε_zz = 0. Plane stress finds the ε_zz with σ_zz = 0
+//! by a bracketed Newton iteration on the law. Its tangent is the tangent at the end of the iteration; with a, b in the
+//! plane and z out of the plane:
 //!
 //! ```text
 //! 0 = C_zb dε_b + C_zz dε_zz    →    C̄_ab = C_ab − C_az C_zb / C_zz
 //! ```
 //!
-//! (static condensation; de Souza Neto, Perić & Owen 2008, section 9.2). The out-of-plane shears stay zero: the
-//! plane is a plane of symmetry of the material. ε_zz at the end of a step is the last number of the state: the next step
-//! starts there.
+//! This is static condensation (de Souza Neto, Perić & Owen 2008, section 9.2). The out-of-plane shear strains are
+//! zero, because the plane is a plane of symmetry of the material. The last number of the state is ε_zz at the end of a
+//! step, where the next step starts.
 
 use super::branch::UpdateBranch;
 use super::elasticity::Elasticity;
@@ -19,7 +19,7 @@ use super::update::{BatchFailure, UpdateContext, UpdateFailure};
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
 
-/// Stress state of deformable bodies.
+/// Stress state of deformable bodies: plane strain or plane stress.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Plane {
     /// ε_z = 0.
@@ -28,20 +28,20 @@ pub enum Plane {
     Stress,
 }
 
-/// Voigt indices of the plane's components.
+/// Voigt indices of the components in the plane.
 const IN_PLANE: [usize; 3] = [0, 1, 3];
 const ACROSS: usize = 2;
-/// Points that go to the law in one call.
+/// Number of points that are passed to the law in one call.
 const CHUNK: usize = 16;
-/// Law evaluations of one plane-stress update.
+/// Greatest number of evaluations of the law in one plane-stress update.
 const EVALUATIONS: usize = 200;
 
-/// What an update in the plane gives for one point.
+/// Result of an update in the plane at one point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanarPoint {
     /// σ_xx, σ_yy, σ_xy \[Pa\].
     pub stress: [f64; 3],
-    /// σ_zz \[Pa\]; rounding in plane stress.
+    /// σ_zz \[Pa\]; zero but for rounding in plane stress.
     pub stress_across: f64,
     /// ε_zz; 0 in plane strain.
     pub strain_across: f64,
@@ -49,7 +49,7 @@ pub struct PlanarPoint {
     pub tangent: [[f64; 3]; 3],
     /// ∂σ_zz/∂(ε_xx, ε_yy, γ_xy) \[Pa\]; 0 in plane stress.
     pub tangent_across: [f64; 3],
-    /// Where the stress lies.
+    /// The branch of the law.
     pub branch: UpdateBranch,
     /// Energy stored per volume at the end of the step \[J/m³\].
     pub stored: f64,
@@ -58,7 +58,7 @@ pub struct PlanarPoint {
 }
 
 impl PlanarPoint {
-    /// No stress and no stiffness: something to be overwritten.
+    /// Zero stress and zero stiffness, as initial value of a buffer.
     pub const ZERO: PlanarPoint = PlanarPoint {
         stress: [0.0; 3],
         stress_across: 0.0,
@@ -71,7 +71,7 @@ impl PlanarPoint {
     };
 }
 
-/// A law in space, used in a plane.
+/// A law in space that is used in a plane.
 #[derive(Debug, Clone)]
 pub struct PlanarUpdate {
     law: Arc<dyn StressUpdate>,
@@ -81,7 +81,10 @@ pub struct PlanarUpdate {
 }
 
 impl PlanarUpdate {
-    /// The law in this plane. Fails where the law has no response to zero strain.
+    /// Creates the law in this plane.
+    ///
+    /// # Errors
+    /// The law's failure at zero strain.
     pub fn new(law: Arc<dyn StressUpdate>, plane: Plane) -> Result<Self, UpdateFailure> {
         let mut old = vec![0.0; law.state_size()];
         law.initial_state(&mut old);
@@ -92,17 +95,17 @@ impl PlanarUpdate {
         Ok(PlanarUpdate { law, plane, stiffness })
     }
 
-    /// The law in space.
+    /// Returns the law in space.
     pub fn law(&self) -> &Arc<dyn StressUpdate> {
         &self.law
     }
 
-    /// The plane.
+    /// Returns the plane.
     pub fn plane(&self) -> Plane {
         self.plane
     }
 
-    /// Numbers in the state of a point: the law's, and ε_zz in plane stress.
+    /// Returns the number of state variables of a point: those of the law, and ε_zz in plane stress.
     pub fn state_size(&self) -> usize {
         self.law.state_size() + usize::from(self.plane == Plane::Stress)
     }
@@ -114,7 +117,7 @@ impl PlanarUpdate {
         state[own..].fill(0.0);
     }
 
-    /// The update of one point; as [`StressUpdate::update_point`].
+    /// Updates one point; see [`StressUpdate::update_point`].
     pub fn update_point(
         &self,
         strain: &[f64; 3],
@@ -131,7 +134,7 @@ impl PlanarUpdate {
         }
     }
 
-    /// Updates a group of points; as [`StressUpdate::update`].
+    /// Updates a group of points; see [`StressUpdate::update`].
     pub fn update(
         &self,
         strains: &[[f64; 3]],
@@ -172,8 +175,8 @@ impl PlanarUpdate {
         Ok(())
     }
 
-    /// Finds ε_zz with σ_zz = 0. σ_zz grows with ε_zz wherever the material is stable, so a bracket
-    /// found by growing steps holds a root; Newton steps that leave it become bisections.
+    /// Finds ε_zz with σ_zz = 0. If the material is stable, σ_zz increases with ε_zz, so a bracket that is found by
+    /// growing steps contains a root. A Newton step that leaves the bracket is replaced by bisection.
     fn zero_stress(
         &self,
         strain: &[f64; 3],
@@ -215,7 +218,7 @@ impl PlanarUpdate {
                 (Some(l), Some(h)) if slope > 0.0 && l < newton && newton < h => newton,
                 (Some(l), Some(h)) => 0.5 * (l + h),
                 _ => {
-                    // No bracket yet: Newton, but never farther than twice what was tried before.
+                    // Without a bracket a Newton step is limited to twice the distance tried before.
                     let step = if slope > 0.0 && newton.is_finite() { newton - z } else { -stress.signum() * reach };
                     reach *= 2.0;
                     z + step.clamp(-reach, reach)
@@ -226,7 +229,7 @@ impl PlanarUpdate {
     }
 }
 
-/// The rows and columns of the plane; condensed over zz where nothing holds the point there.
+/// Returns the rows and columns of the plane, condensed over zz if the point is free to strain in z.
 fn in_plane(c: &[Voigt; 6], free: bool) -> [[f64; 3]; 3] {
     IN_PLANE
         .map(|i| IN_PLANE.map(|j| c[i][j] - if free { c[i][ACROSS] * c[ACROSS][j] / c[ACROSS][ACROSS] } else { 0.0 }))
@@ -242,7 +245,8 @@ pub struct PlaneElasticity {
 }
 
 impl PlaneElasticity {
-    /// An operator in space, used in a plane that is one of its planes of symmetry.
+    /// Creates the operator in the plane from an operator in space. The plane must be a plane of symmetry of the
+    /// material.
     pub fn new(elasticity: &Elasticity, plane: Plane) -> Self {
         let c = &elasticity.relative;
         let rows = in_plane(c, plane == Plane::Stress);
@@ -258,12 +262,12 @@ impl PlaneElasticity {
         self.stiffness.try_inverse().unwrap_or(Matrix3::repeat(f64::NAN))
     }
 
-    /// (σ_xx, σ_yy, σ_zz, σ_xy) of an elastic stress in the plane.
+    /// Returns (σ_xx, σ_yy, σ_zz, σ_xy) of an elastic stress in the plane.
     pub fn with_across(&self, [xx, yy, xy]: [f64; 3]) -> [f64; 4] {
         [xx, yy, self.across.dot(&Vector3::new(xx, yy, xy)), xy]
     }
 
-    /// The smaller of the moduli along x and y.
+    /// Returns the smaller of the relative moduli along x and y.
     pub fn softest(&self) -> f64 {
         let compliance = self.compliance();
         1.0 / compliance.m11.max(compliance.m22)
@@ -274,10 +278,10 @@ fn in_space(strain: &[f64; 3], across: f64) -> Voigt {
     [strain[0], strain[1], across, strain[2], 0.0, 0.0]
 }
 
-/// The components in the plane; condensed over zz where C_zz of the undeformed material is given.
+/// Returns the components in the plane. They are condensed over zz if C_zz of the undeformed material is given.
 fn planar(point: &StressPoint, strain_across: f64, condense: Option<f64>) -> PlanarPoint {
     let c = &point.tangent;
-    // Without stiffness across, as at the tip of a cone, there is nothing to condense.
+    // Without stiffness in z, for example at the apex of a cone, the condensation is left out.
     let free = condense.is_some_and(|stiffness| c[ACROSS][ACROSS].abs() > 1e-14 * stiffness);
     let tangent = in_plane(c, free);
     PlanarPoint {
@@ -296,7 +300,8 @@ fn planar(point: &StressPoint, strain_across: f64, condense: Option<f64>) -> Pla
 mod tests {
     use super::*;
 
-    /// An isotropic operator in the plane is Hooke's law with Lamé's constants, and its compliance inverts it.
+    /// The operator of an isotropic material in the plane is Hooke's law with Lamé's constants, and its compliance is
+    /// its inverse.
     #[test]
     fn compliance_inverts_hooke() {
         let nu = 0.35;

@@ -1,26 +1,26 @@
-//! Tractions from gaps: what a law with state says at a point of a joint.
+//! Tractions from gaps at a point of a joint, for laws with state.
 
 use super::branch::UpdateBranch;
 use super::update::{BatchFailure, UpdateFailure};
 use std::fmt::Debug;
 
-/// What an update gives for one point of a joint.
+/// Result of an update at one point of a joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TractionPoint {
-    /// (t_n, t_t) on the plus side \[Pa\], t_n ≥ 0 in compression.
+    /// Traction (t_n, t_t) on the plus side \[Pa\], t_n ≥ 0 in compression.
     pub traction: [f64; 2],
-    /// ∂t/∂g of the update itself \[Pa/m\], row by row.
+    /// Consistent tangent ∂t/∂g of the update \[Pa/m\], row by row.
     pub tangent: [[f64; 2]; 2],
-    /// What happened.
+    /// The branch of the law.
     pub branch: UpdateBranch,
-    /// Energy stored at the end of the step \[J/m²\].
+    /// Energy stored per area at the end of the step \[J/m²\].
     pub stored: f64,
-    /// Energy dissipated in the step \[J/m²\].
+    /// Energy dissipated per area in the step \[J/m²\].
     pub dissipated: f64,
 }
 
 impl TractionPoint {
-    /// No traction and no stiffness: something to be overwritten.
+    /// Zero traction and zero stiffness, as initial value of a buffer.
     pub const ZERO: TractionPoint = TractionPoint {
         traction: [0.0; 2],
         tangent: [[0.0; 2]; 2],
@@ -30,30 +30,30 @@ impl TractionPoint {
     };
 }
 
-/// Traction from gap: a pure function of the gap g = (g_n, g_t) \[m\] (g_n > 0 open) and the state at
-/// the start of the step. −t·ġ is the power the joint takes up per area. Nothing is allocated; call
-/// [`respond`](InterfaceResponse::respond) once per group of points.
+/// A law that computes the traction from the gap: a pure function of the gap g = (g_n, g_t) \[m\] (g_n > 0 is open) and
+/// of the state at the start of the step. −t·ġ is the power per area that the joint absorbs. An update allocates no
+/// memory. Call [`respond`](InterfaceResponse::respond) once per group of points.
 pub trait InterfaceResponse: Debug + Send + Sync {
-    /// Numbers in the state of a point.
+    /// Returns the number of state variables of a point.
     fn state_size(&self) -> usize;
 
-    /// Writes the state of the untouched joint into a slice of [`state_size`](Self::state_size).
+    /// Writes the initial state of the joint into a slice of length [`state_size`](Self::state_size).
     fn initial_state(&self, state: &mut [f64]);
 
-    /// What each number of the state is, with its unit, such as `"damage [-]"`.
+    /// Returns the name of each state variable with its unit, such as `"damage [-]"`.
     fn state_names(&self) -> &'static [&'static str];
 
-    /// Tensile strength f_t \[Pa\] and the energy G_I that full opening dissipates \[J/m²\], where the law
-    /// softens in tension: what the spacing of contact points is compared with.
+    /// Returns the tensile strength f_t \[Pa\] and the fracture energy G_I \[J/m²\] that full opening dissipates, if
+    /// the law softens in tension. The spacing of contact points is checked against them.
     fn tensile_softening(&self) -> Option<[f64; 2]> {
         None
     }
 
-    /// The update of one point. `old` and `new` are as long as the state. With `#[inline]` on a law's own,
-    /// [`respond`](Self::respond) takes it into its loop, and the call from the registry is one a batch.
+    /// Updates one point. `old` and `new` have the length of the state. Mark an implementation `#[inline]`:
+    /// [`respond`](Self::respond) then inlines it into its loop, and there is one dynamic call per group of points.
     fn respond_point(&self, gap: [f64; 2], old: &[f64], new: &mut [f64]) -> Result<TractionPoint, UpdateFailure>;
 
-    /// Updates a group of points; one gap and result each, states one after the other.
+    /// Updates a group of points: one gap and one result per point; the states of the points follow one another.
     fn respond(
         &self,
         gaps: &[[f64; 2]],

@@ -1,39 +1,37 @@
-//! What a whole joint can carry: the facets of its law integrated over its height.
+//! Strength of a whole joint: the facets of its law integrated over its height.
 //!
-//! With forces (N_0, N_1) at the joint's ends and T along it (N = N_0 + N_1, M = (N_1 − N_0) h/2),
-//! A = h × width, tension bound F_t = f_t A and crushing bound F_c = f_c A:
+//! The forces are N_0 and N_1 at the ends of the joint and T along it (N = N_0 + N_1, M = (N_1 − N_0) h/2). With A = h
+//! × width, tensile strength F_t = f_t A and crushing strength F_c = f_c A:
 //! - opening: N_0 ≥ −F_t/2 and N_1 ≥ −F_t/2, which is |M| ≤ (N + F_t) h/2;
 //! - crushing: (N + F_t)² ≤ (F_c + F_t)(2 N_i + F_t) at both ends i, which is the rectangular stress
 //!   block |M| ≤ (N + F_t)(F_c − N) h / (2 (F_c + F_t));
 //! - sliding: a_n N + a_t T ≤ b A for each facet with a_t ≠ 0.
 //!
-//! These are exact: with b = 0 the two ends span every distribution; with b > 0 the admissible T of
-//! a distribution of t_n depends on N only as long as each sense of sliding has one facet.
-//! Source of the stress block: Livesley (1978), rectangular block; the cone form is ours.
+//! These conditions are exact. For b = 0 the two ends span every distribution of tractions. For b > 0 the admissible T
+//! of a distribution of t_n depends on N alone as long as each sense of sliding has one facet. Source of the stress
+//! block: Livesley (1978), rectangular block; the cone form is our own.
 //!
-//! Flow over the jumps dual to (N_0, N_1, T), which are the openings of the two ends and the slip:
-//! (ġ_0, ġ_1, ġ_t) = −Σ γ_i d_i, γ ≥ 0. A row's d is its facet's own; opening and crushing are
-//! associated.
+//! Flow uses the jumps that are dual to (N_0, N_1, T): the openings of the two ends and the slip, (ġ_0, ġ_1, ġ_t) = −Σ
+//! γ_i d_i, γ_i ≥ 0. The d of a sliding row is the flow of its facet; opening and crushing are associated.
 
 use super::facet::{Facet, FacetMode};
 use super::yield_polygon::{YieldPolygon, dot};
 
-/// A linear row over (N_0, N_1, T) \[N\].
+/// A linear strength condition on (N_0, N_1, T) \[N\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ForceRow {
     /// Coefficients of N_0, N_1 and T.
     pub normal: [f64; 3],
     /// Right-hand side \[N\].
     pub bound: f64,
-    /// What happens when it yields.
+    /// The way in which the joint yields.
     pub mode: FacetMode,
-    /// Flow d over the openings of both ends and the slip when it yields; its normal where
-    /// associated.
+    /// Flow direction d in the openings of both ends and the slip; equal to the normal if the flow is associated.
     pub flow: [f64; 3],
 }
 
 impl ForceRow {
-    /// A row with associated flow.
+    /// Creates a row with associated flow.
     pub fn associated(mode: FacetMode, normal: [f64; 3], bound: f64) -> Self {
         ForceRow { normal, bound, mode, flow: normal }
     }
@@ -48,17 +46,17 @@ pub struct StressBlock {
     pub total: f64,
 }
 
-/// What a joint can carry.
+/// Strength of a joint.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointStrength {
-    /// Linear rows: opening (unless a stress block is present, which implies them), sliding.
+    /// Linear rows: sliding, and opening unless there is a stress block, which implies opening.
     pub rows: Vec<ForceRow>,
-    /// Crushing, where strength is finite: applies to both ends.
+    /// Crushing, if the compressive strength is finite; it applies to both ends.
     pub block: Option<StressBlock>,
 }
 
 impl JointStrength {
-    /// Whether rows leave T free of bounds, or fix it to zero.
+    /// Returns how the rows bound T.
     pub fn tangential(&self) -> Tangential {
         let mut sliding = self.rows.iter().filter(|row| row.normal[2] != 0.0).peekable();
         if sliding.peek().is_none() {
@@ -70,7 +68,8 @@ impl JointStrength {
         }
     }
 
-    /// The same without crushing and cohesion that forces of this size never come near; `None` where it has none such.
+    /// Returns the strength without crushing and cohesion that forces of this size \[N\] cannot reach. `None` if
+    /// nothing changes.
     pub fn within_reach(&self, force: f64) -> Option<JointStrength> {
         let block = self.block.filter(|block| block.total - block.tension <= UNCRUSHED * force);
         let slides = |row: &&ForceRow| row.mode == FacetMode::Sliding && row.bound > STUCK * force;
@@ -85,47 +84,48 @@ impl JointStrength {
     }
 }
 
-/// Crushing strength over force from which it changes no digit that a certificate looks at: it enters as its inverse.
+/// Ratio of crushing strength to force above which crushing is left out: it enters by its inverse, below every
+/// tolerance of a certificate.
 const UNCRUSHED: f64 = 1e8;
-/// Cohesion over force from which a joint is not expected to slide: it does not enter where it is not reached.
+/// Ratio of cohesion to force above which sliding is left out: a bound that is not reached has no effect.
 const STUCK: f64 = 1e3;
 
-/// The rows of a joint that opens at this tension \[N\].
+/// Returns the rows of a joint that opens at this tension \[N\].
 fn opening(tension: f64) -> [ForceRow; 2] {
     [[-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]].map(|normal| ForceRow::associated(FacetMode::Opening, normal, tension / 2.0))
 }
 
-/// The three ways a joint treats T.
+/// The three kinds of bounds on T.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tangential {
-    /// T has no bound: no tangential rows.
+    /// T is unbounded: there are no tangential rows.
     Stuck,
-    /// T = 0: no tangential variable.
+    /// T = 0: there is no tangential variable.
     Free,
-    /// Bounds on T.
+    /// Rows bound T.
     Friction,
 }
 
-/// A coefficient of friction from which on a joint does not slide at all: T would be bounded only where N is
-/// less than the rounding of T.
+/// Coefficient of friction above which a joint does not slide: T would be bounded only if N were below the rounding
+/// error of T.
 const NO_SLIDING: f64 = 1e11;
 
-/// Whether a facet bounds T with a sense of its own, other than by friction too great to be told from none.
+/// Returns true if a facet bounds T in this sense with a friction that is distinguishable from unlimited friction.
 fn bounds_sliding(facet: &Facet, sense: f64) -> bool {
     facet.normal[1] * sense > 0.0 && -facet.normal[0] < NO_SLIDING * facet.normal[1].abs()
 }
 
-/// The strength of one square metre of a joint with some law, of which that of any area is a multiple.
+/// Strength of one square metre of a joint with a law. The strength of any area is a multiple of it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct UnitStrength(JointStrength);
 
 impl UnitStrength {
-    /// Integrates facets. An error says what cannot be integrated.
+    /// Integrates facets. An error names the facet form that cannot be integrated.
     pub fn of(facets: &[Facet]) -> Result<Self, String> {
         integrate(facets).map(UnitStrength)
     }
 
-    /// What a joint of an area \[m²\] carries.
+    /// Returns the strength of a joint with this area \[m²\].
     pub fn over(&self, area: f64) -> JointStrength {
         let UnitStrength(JointStrength { rows, block }) = self;
         JointStrength {
@@ -148,7 +148,7 @@ fn integrate(facets: &[Facet]) -> Result<JointStrength, String> {
     }
     for sense in [1.0, -1.0] {
         let on_side: Vec<&Facet> = facets.iter().filter(|f| bounds_sliding(f, sense)).collect();
-        // A facet counts where it bounds the polygon in more than a corner.
+        // A facet counts if it bounds the polygon along an edge, not only in a corner.
         let bounding: Vec<&Facet> = on_side
             .iter()
             .copied()
@@ -254,7 +254,7 @@ mod tests {
         }
     }
 
-    /// What never crushes opens as before; a joint that can be reached is left alone.
+    /// If crushing or cohesion is out of reach, opening and friction remain; if both are within reach, nothing changes.
     #[test]
     fn strengths_out_of_reach_leave_opening_and_friction() {
         let [left, right] = Facet::friction(0.6, 0.0, 0.6);

@@ -1,6 +1,6 @@
-//! Stresses from strains at a point.
+//! Stress updates at a point of a material.
 //!
-//! Stresses and strains are 6-vectors in the order xx, yy, zz, xy, yz, zx, tension positive; shear strains are
+//! Stresses and strains are 6-vectors in the order xx, yy, zz, xy, yz, zx, positive in tension. Shear strains are
 //! engineering strains (γ = 2 ε), so that stress · strain is work per volume.
 
 use super::branch::UpdateBranch;
@@ -10,23 +10,23 @@ use std::fmt::Debug;
 /// Stress or strain at a point: xx, yy, zz, xy, yz, zx.
 pub type Voigt = [f64; 6];
 
-/// What an update gives for one point.
+/// Result of an update at one point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StressPoint {
     /// σ \[Pa\].
     pub stress: Voigt,
-    /// ∂σ/∂ε of the update itself \[Pa\], row by row; not symmetric where flow is not associated.
+    /// Consistent tangent ∂σ/∂ε of the update \[Pa\], row by row; not symmetric if the flow is not associated.
     pub tangent: [Voigt; 6],
-    /// Where σ lies: the equations that were solved.
+    /// The branch of the law: the set of equations that was solved.
     pub branch: UpdateBranch,
     /// Energy stored per volume at the end of the step \[J/m³\].
     pub stored: f64,
-    /// Energy dissipated per volume in the step, σ · Δε^p with σ at its end \[J/m³\].
+    /// Energy dissipated per volume in the step \[J/m³\]: σ · Δε^p with σ at the end of the step.
     pub dissipated: f64,
 }
 
 impl StressPoint {
-    /// No stress and no stiffness: something to be overwritten.
+    /// Zero stress and zero stiffness, as initial value of a buffer.
     pub const ZERO: StressPoint = StressPoint {
         stress: [0.0; 6],
         tangent: [[0.0; 6]; 6],
@@ -36,21 +36,22 @@ impl StressPoint {
     };
 }
 
-/// Stress from strain: a pure function of the total strain and the state at the start of the step.
+/// A law that computes the stress from the strain: a pure function of the total strain and the state at the start of
+/// the step.
 ///
-/// Nothing is allocated. Call [`update`](StressUpdate::update) once per group of points: it is the
-/// one dynamic call, the loop inside is compiled for the law.
+/// An update allocates no memory. Call [`update`](StressUpdate::update) once per group of points: this is one dynamic
+/// call, and the loop inside is compiled for the law.
 pub trait StressUpdate: Debug + Send + Sync {
-    /// Numbers in the state of a point.
+    /// Returns the number of state variables of a point.
     fn state_size(&self) -> usize;
 
-    /// Writes the state of the undeformed material into a slice of [`state_size`](Self::state_size).
+    /// Writes the state of the undeformed material into a slice of length [`state_size`](Self::state_size).
     fn initial_state(&self, state: &mut [f64]);
 
-    /// What each number of the state is, with its unit, such as `"plastic_strain_xx [-]"`.
+    /// Returns the name of each state variable with its unit, such as `"plastic_strain_xx [-]"`.
     fn state_names(&self) -> &'static [&'static str];
 
-    /// The update of one point. `old` and `new` are as long as the state.
+    /// Updates one point. `old` and `new` have the length of the state.
     fn update_point(
         &self,
         strain: &Voigt,
@@ -59,13 +60,14 @@ pub trait StressUpdate: Debug + Send + Sync {
         new: &mut [f64],
     ) -> Result<StressPoint, UpdateFailure>;
 
-    /// The greatest characteristic length \[m\] this material can have: beyond it the softening
-    /// branch of a point would snap back, and elements are an input error.
+    /// Returns the greatest characteristic length \[m\] for which the softening branch of a point does not snap back.
+    /// Larger elements are an input error.
     fn largest_length(&self) -> f64 {
         f64::INFINITY
     }
 
-    /// Updates a group of points; one strain, context and result each, states one after the other.
+    /// Updates a group of points: one strain, context and result per point; the states of the points follow one
+    /// another.
     fn update(
         &self,
         strains: &[Voigt],

@@ -1,49 +1,49 @@
-//! What every update of a point shares: what it is told besides strain and state, and how it fails.
+//! Data that all stress updates share: the inputs besides strain and state, and the failures.
 
 use std::error::Error;
 use std::fmt;
 
-/// What an update of stresses is told besides strain and state; laws read what concerns them.
+/// Inputs of a stress update besides strain and state. A law reads the fields that it needs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UpdateContext<'a> {
-    /// Characteristic length \[m\]: the width over which an element localises; for laws that soften.
+    /// Characteristic length \[m\]: the width over which strain localises in an element; for laws that soften.
     pub length: f64,
-    /// Unit vectors of the block's axes in those of the strains; `None` where they are the same.
+    /// Unit vectors of the block's axes in the axes of the strains; `None` if both systems of axes are equal.
     pub axes: Option<&'a [[f64; 3]; 3]>,
-    /// Duration of the step \[s\]; 0 where nothing depends on time.
+    /// Duration of the step \[s\]; 0 if nothing depends on time.
     pub time_step: f64,
-    /// What else is known at the point, by name.
+    /// Further variables at the point, by name.
     pub variables: &'a [(&'a str, f64)],
 }
 
 impl UpdateContext<'static> {
-    /// A characteristic length \[m\] and nothing else.
+    /// Creates a context with a characteristic length \[m\] and no other data.
     pub const fn of_length(length: f64) -> Self {
         UpdateContext { length, axes: None, time_step: 0.0, variables: &[] }
     }
 }
 
 impl UpdateContext<'_> {
-    /// A variable by name.
+    /// Returns the value of a variable by name.
     pub fn variable(&self, name: &str) -> Option<f64> {
         self.variables.iter().find(|(own, _)| *own == name).map(|(_, value)| *value)
     }
 }
 
-/// Why an update has no result.
+/// The reason why an update has no result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum UpdateFailure {
     /// The strain or the state holds a number that is not finite.
     NotFinite,
-    /// The iteration did not meet its tolerance.
+    /// The iteration did not reach its tolerance.
     NoConvergence,
     /// The point's characteristic length is too large for the fracture energy: the softening branch
     /// would snap back inside the point.
     LengthTooLarge,
-    /// A slice is not as long as the number of points and the law's state size demand.
+    /// The length of a slice does not match the number of points and the state size of the law.
     WrongSize,
-    /// A law's own reason.
+    /// A reason that the law defines.
     Law(&'static str),
 }
 
@@ -66,7 +66,7 @@ impl Error for UpdateFailure {}
 pub struct BatchFailure {
     /// Index of the point in the batch.
     pub point: usize,
-    /// Why.
+    /// Reason of the failure.
     pub failure: UpdateFailure,
 }
 

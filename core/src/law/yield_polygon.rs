@@ -2,8 +2,7 @@
 
 use super::facet::Facet;
 
-/// The polygon of admissible tractions of a law: its vertices and the directions in which it is
-/// unbounded.
+/// The polygon of admissible tractions of a law: its vertices and the directions in which it is unbounded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct YieldPolygon {
     /// Corners \[Pa\].
@@ -17,7 +16,7 @@ pub(super) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
 }
 
 impl YieldPolygon {
-    /// The set {t : a·t ≤ b for all facets}, by intersection of all pairs of facets.
+    /// Computes the set {t : a·t ≤ b for all facets} by intersecting all pairs of facets.
     pub fn of(facets: &[Facet]) -> Self {
         let scale = facets.iter().map(|f| f.bound.abs()).fold(0.0, f64::max).max(1.0);
         let length = |a: [f64; 2]| a[0].hypot(a[1]);
@@ -50,7 +49,8 @@ impl YieldPolygon {
             }
         }
         if rays.iter().any(|a| rays.iter().any(|b| dot(*a, *b) < -1.0 + 1e-12)) {
-            // A half plane: the rays along its edge do not show that it is open inwards.
+            // Half plane: the two rays along its edge do not show on which side the set lies, so the inward direction
+            // is added.
             for (f, l) in all() {
                 let inwards = [-f.normal[0] / l, -f.normal[1] / l];
                 if all().all(|(g, length)| dot(g.normal, inwards) <= 1e-12 * length) {
@@ -59,7 +59,7 @@ impl YieldPolygon {
             }
         }
         if vertices.is_empty() {
-            // A half plane or strip has no corner: any point of its boundary stands for it.
+            // A half plane or strip has no corner: one point of its boundary is used as vertex.
             vertices.extend(facets.iter().take(1).map(|f| {
                 let l2 = dot(f.normal, f.normal);
                 [f.normal[0] * f.bound / l2, f.normal[1] * f.bound / l2]
@@ -68,16 +68,17 @@ impl YieldPolygon {
         YieldPolygon { vertices, rays }
     }
 
-    /// How far a jump \[opening, slip\] is from those that cost no more than some finite work: its distance from the polar of the cone
-    /// of recession, which is the length of what is nearest to −jump in that cone (Moreau). The greatest product with a ray is less
-    /// where the cone is wide: with friction 1e6 it calls an overlap of 1e-6 one of 1e-12.
+    /// Returns the distance of a jump \[opening, slip\] from the jumps of finite dissipation, which form the polar of
+    /// the recession cone. By Moreau's decomposition it is the length of the projection of −jump onto that cone. The
+    /// greatest product with a ray would be too small if the cone is wide: with friction 1e6 an overlap of 1e-6 would
+    /// count as 1e-12.
     pub fn impossible(&self, jump: [f64; 2]) -> f64 {
         let back = jump.map(|x| -x);
         let cross = |a: [f64; 2], b: [f64; 2]| a[0] * b[1] - a[1] * b[0];
         let inside = self.rays.iter().enumerate().any(|(i, a)| {
             self.rays[..i].iter().any(|b| {
                 let turn = cross(*a, *b).signum();
-                // Opposite ones are the edge of a half plane, whose third ray says on which side it lies.
+                // Opposite rays are the edge of a half plane; its third ray shows on which side the set lies.
                 dot(*a, *b) > -1.0 + 1e-12 && turn * cross(*a, back) > 0.0 && turn * cross(back, *b) > 0.0
             })
         });
@@ -87,7 +88,7 @@ impl YieldPolygon {
         }
     }
 
-    /// The least t_n \[Pa\], −∞ where unbounded.
+    /// Returns the least t_n \[Pa\], −∞ if unbounded.
     pub fn least_normal(&self) -> f64 {
         if self.rays.iter().any(|ray| ray[0] < -1e-12) {
             return f64::NEG_INFINITY;
@@ -95,7 +96,7 @@ impl YieldPolygon {
         self.vertices.iter().map(|v| v[0]).fold(f64::INFINITY, f64::min)
     }
 
-    /// The greatest t_n \[Pa\], ∞ where unbounded.
+    /// Returns the greatest t_n \[Pa\], ∞ if unbounded.
     pub fn greatest_normal(&self) -> f64 {
         if self.rays.iter().any(|ray| ray[0] > 1e-12) {
             return f64::INFINITY;
@@ -109,7 +110,8 @@ mod tests {
     use super::*;
     use crate::law::FacetMode;
 
-    /// The greatest power of a unit traction in the cone, of ten thousand directions.
+    /// The distance of a jump from the admissible ones is the greatest power of a unit traction in the recession cone,
+    /// here searched over ten thousand directions.
     #[test]
     fn an_impossible_jump_is_as_far_off_as_its_greatest_power() {
         for friction in [0.5, 1.0, 1e3, 1e6, 1e9] {
