@@ -1,4 +1,4 @@
-//! Limit analysis: its problem, what is asked, what is answered, and the trait of its solvers.
+//! Limit analysis: its problem, the question to a solver, the answer, and the trait of limit solvers.
 
 mod lower_proof;
 mod problem;

@@ -1,56 +1,56 @@
-//! The problem of limit analysis and its answers: what a limit solver is given and gives back.
+//! The problem of limit analysis and its results: the input and output of a limit solver.
 //!
-//! Rigid bodies b with wrenches `fixed + λ varying`, joints with strengths over (N_0, N_1, T).
-//! Static form: the greatest λ with equilibrium and strengths. Kinematic form (its dual): the least
-//! λ = D(q̇) − fixed·q̇ over motions with varying·q̇ = 1, D the power dissipated in the joints.
-//! Rows carry the flow of their facets too ([`crate::law::ForceRow::flow`]). Solvers that read
-//! it answer with [`NonAssociated`]; all others read joints with associated flow.
+//! Rigid bodies b have the wrenches `fixed + λ varying`; joints have strengths in (N_0, N_1, T). The static form is the
+//! greatest λ with equilibrium and strengths. Its dual, the kinematic form, is the least λ = D(q̇) − fixed·q̇ over
+//! motions with varying·q̇ = 1, where D is the power dissipated in the joints. Rows also have the flow of their facets
+//! ([`crate::law::ForceRow::flow`]). Solvers that use it return [`NonAssociated`]; all others treat joints with
+//! associated flow.
 
 use crate::law::{FacetMode, ForceRow, JointStrength, Tangential, UnitStrength, is_associated};
 use crate::model::geometry::{Vec2, bounding_box, cross, turned};
 use crate::model::{Assembly, Bond, StageLoads, Wrenches, add_force};
 use std::collections::BTreeMap;
 
-/// Shear over the loads that no equilibrium needs to exceed; divided by friction from which on nothing slides it is no more
-/// than the rounding of a normal force.
+/// Bound of the shear, relative to the loads. Equilibrium never needs more; divided by the friction above which nothing
+/// slides, it is below the rounding error of a normal force.
 const BOUNDED_SHEAR: f64 = 10.0;
 
-/// Forces carried by a joint: normal forces at its two ends, shear along it \[N\].
+/// Forces of a joint: normal forces at its two ends, shear along it \[N\].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct JointForce {
-    /// N_0, N_1 ≥ 0 in compression.
+    /// N_0 and N_1, positive in compression.
     pub normal: [f64; 2],
     /// T, along t on the plus body.
     pub shear: f64,
 }
 
-/// Velocity of a body as a rigid motion seen at the origin: \[v_x, v_y, ω\].
+/// Velocity of a body as a rigid motion about the origin: \[v_x, v_y, ω\].
 pub type Velocity = [f64; 3];
 
-/// A joint between two free groups, or a group and the ground (`None`); or the fill at a chord, which presses its
-/// group with N_0 along the normal.
+/// A joint between two free groups, or between a group and the ground (`None`). It can also represent the fill at a
+/// chord, whose pressure acts on the group as N_0 along the normal.
 #[derive(Debug, Clone)]
 pub struct LimitJoint {
-    /// Index of the joint in the assembly; reactions of the fill follow after all joints.
+    /// Index of the joint in the assembly; reactions of the fill have the indices after all joints.
     pub joint: usize,
-    /// Index of the reaction, for fill. N_0 is its force beyond the least one, which is a fixed load.
+    /// Index of the reaction if this is fill. N_0 is the force above the least force, which is a fixed load.
     pub fill: Option<usize>,
     /// Group on the minus side.
     pub minus: Option<usize>,
     /// Group on the plus side.
     pub plus: Option<usize>,
-    /// Its ends \[m\].
+    /// Ends of the joint \[m\].
     pub ends: [Vec2; 2],
     /// Unit normal from minus to plus.
     pub normal: Vec2,
     /// Unit tangent.
     pub tangent: Vec2,
-    /// What it can carry.
+    /// Strength of the joint.
     pub strength: JointStrength,
 }
 
 impl LimitJoint {
-    /// Number of forces among N_0, N_1, T that it has.
+    /// Returns the number of forces among N_0, N_1, T.
     pub fn components(&self) -> usize {
         match (self.fill, self.strength.tangential()) {
             (Some(_), _) => 1,
@@ -59,7 +59,7 @@ impl LimitJoint {
         }
     }
 
-    /// Wrenches about `pole` on the plus body per unit of N_0, N_1 and T; minus gets the opposite.
+    /// Returns the wrenches about `pole` on the plus body per unit of N_0, N_1 and T; the minus body gets the opposite.
     pub fn wrenches(&self, pole: Vec2) -> [[f64; 3]; 3] {
         let at = |point: Vec2, direction: Vec2| [direction.x, direction.y, cross(point - pole, direction)];
         [at(self.ends[0], self.normal), at(self.ends[1], self.normal), at(self.ends[0], self.tangent)]
@@ -69,27 +69,27 @@ impl LimitJoint {
 /// The reduced problem of one stage.
 #[derive(Debug, Clone)]
 pub struct LimitProblem {
-    /// For each body of the assembly its free group, `None` where held.
+    /// Free group of each body of the assembly; `None` if the body is held.
     pub group_of: Vec<Option<usize>>,
     /// Number of free groups.
     pub groups: usize,
-    /// Joints that remain.
+    /// Joints between different groups, or between a group and the ground.
     pub joints: Vec<LimitJoint>,
-    /// Wrench per group about `pole` \[N, N m\].
+    /// Fixed wrench of each group about `pole` \[N, N m\].
     pub fixed: Wrenches,
-    /// Wrench per group about `pole` for λ = 1.
+    /// Wrench of each group about `pole` for λ = 1 \[N, N m\].
     pub varying: Wrenches,
-    /// Middle of the scene, about which moments are taken \[m\].
+    /// Centre of the scene, the pole of all moments \[m\].
     pub pole: Vec2,
     /// Length scale \[m\].
     pub length: f64,
-    /// Whether some law's own flow is not associated.
+    /// True if the flow of a law is not associated.
     pub non_associated: bool,
 }
 
 impl LimitProblem {
-    /// Reduces an assembly: bonded bodies become one, held ones the ground, joints inside a group
-    /// vanish. An error names the law that limit analysis cannot read.
+    /// Reduces an assembly: bonded bodies form one group, held bodies are the ground, joints inside a group are left
+    /// out. An error names the law that limit analysis does not support.
     pub fn new(assembly: &Assembly, loads: &StageLoads) -> Result<Self, String> {
         let (group_of, groups) = assembly.rigid_groups();
         let points = assembly.joints.iter().flat_map(|joint| &joint.ends);
@@ -152,8 +152,8 @@ impl LimitProblem {
         })
     }
 
-    /// The same with crushing and cohesion that the loads never come near taken for unlimited: a problem of better numbers,
-    /// whose answer is one of this problem where the certificate says so. `None` where there are none such.
+    /// Returns a better conditioned problem, in which crushing and cohesion that the loads cannot reach are unlimited.
+    /// Its solution solves this problem if the certificate confirms it. `None` if nothing changes.
     pub fn within_reach(&self) -> Option<Self> {
         let force = self.magnitude(&self.fixed) + self.magnitude(&self.varying);
         let mut changed = self.clone();
@@ -167,9 +167,9 @@ impl LimitProblem {
         any.then_some(changed)
     }
 
-    /// The same with shear bounded by ten times the loads where nothing bounds it: forces that hold each other in balance then
-    /// cannot be as great as they like, which matters where a law does bound them by friction too great to slide. `None`
-    /// where every joint has bounds.
+    /// Returns a problem in which unbounded shear is limited to ten times the loads. Self-equilibrated forces then have
+    /// a bound; this matters if the law bounds them by a friction that is too great to slide. `None` if every joint
+    /// already has bounds.
     pub fn with_bounded_shear(&self) -> Option<Self> {
         let most = BOUNDED_SHEAR * (self.magnitude(&self.fixed) + self.magnitude(&self.varying));
         let stuck = |joint: &&mut LimitJoint| joint.fill.is_none() && joint.strength.tangential() == Tangential::Stuck;
@@ -183,8 +183,8 @@ impl LimitProblem {
         any.then_some(changed)
     }
 
-    /// Forces of the fill \[N\] given those of the problem's joints: one for each of its reactions, of which `bounds`
-    /// are the least and greatest.
+    /// Returns the forces of the fill \[N\], one for each reaction, from the forces of the problem's joints. `bounds`
+    /// are the least and greatest force of each reaction.
     pub fn fill_forces(&self, forces: &[JointForce], bounds: &[[f64; 2]]) -> Vec<f64> {
         let mut fill: Vec<f64> = bounds.iter().map(|bounds| bounds[0]).collect();
         for (joint, force) in self.joints.iter().zip(forces) {
@@ -195,16 +195,16 @@ impl LimitProblem {
         fill
     }
 
-    /// Sum of the sizes of some wrenches as forces \[N\], moments divided by the scene's length.
+    /// Returns the sum of the sizes of wrenches as forces \[N\]; moments are divided by the length of the scene.
     pub fn magnitude(&self, wrenches: &Wrenches) -> f64 {
-        // Most wrenches are vertical, or nothing.
+        // Most wrenches are vertical or zero: this avoids a square root.
         let force = |w: &[f64; 3]| if w[0] == 0.0 { w[1].abs() } else { w[0].hypot(w[1]) };
         wrenches.iter().map(|w| force(w).max(w[2].abs() / self.length)).sum()
     }
 }
 
-/// Adds the reactions of the fill as joints, and returns the fixed loads with the least force of each: what is left
-/// of a reaction lies between zero and what its law allows beyond.
+/// Adds the reactions of the fill as joints and returns the fixed loads plus the least force of each reaction. The
+/// remaining force of a reaction lies between zero and the rest of its range.
 fn fill_joints(
     assembly: &Assembly,
     loads: &StageLoads,

@@ -1,4 +1,4 @@
-//! What is asked of a limit solver, and what it answers.
+//! The question to a limit solver, and its answer.
 
 use super::lower_proof::{BracketPoint, LowerProof};
 use super::problem::{JointForce, LimitProblem, Velocity};
@@ -8,16 +8,16 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt::Debug;
 
-/// What is asked of a limit solver.
+/// The question to a limit solver.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LimitQuestion {
-    /// Is there an admissible field at this factor?
+    /// Does an admissible field exist at this factor?
     Admissible(f64),
-    /// From an admissible state at `start`, what is the greatest factor, searched up to `max`?
+    /// What is the greatest factor up to `max`, starting from an admissible state at `start`?
     Collapse {
-        /// Where the search starts.
+        /// Factor at which the search starts.
         start: f64,
-        /// Where it ends (may be ∞).
+        /// Factor at which the search ends; may be ∞.
         max: f64,
     },
 }
@@ -64,93 +64,97 @@ pub enum Greatest {
     Open,
 }
 
-/// Counts of work done.
+/// Counts of work done, by name.
 pub type Counters = BTreeMap<String, u64>;
 
-/// A limit solver's answer for one stage.
+/// The answer of a limit solver for one stage.
 #[derive(Debug, Clone)]
 pub struct LimitAnswer {
-    /// How it ends.
+    /// The end of the stage.
     pub status: Status,
     /// The collapse factor.
     pub factor: Option<f64>,
     /// The factor at which `field` is in equilibrium.
     pub field_factor: f64,
-    /// One entry per joint of the problem.
+    /// Forces of an admissible field, one entry per joint of the problem.
     pub field: Option<Vec<JointForce>>,
-    /// A field in equilibrium at the start of a search for collapse, one entry per joint of the problem. Without it the
-    /// solver is asked whether the start is admissible.
+    /// A field in equilibrium at the start of a search for collapse, one entry per joint of the problem. Without it a
+    /// second question asks the solver if the start is admissible.
     pub start_field: Option<Vec<JointForce>>,
-    /// One entry per group, about the problem's pole; scaled to varying·q̇ = 1, for `NoEquilibrium`
-    /// with a feasible interval to ±1, without one in any scale.
+    /// Velocities, one entry per group, about the problem's pole. They are scaled to varying·q̇ = 1; for
+    /// `NoEquilibrium` with a feasible interval to ±1, without such an interval their scale is arbitrary.
     pub motion: Option<Vec<Velocity>>,
     /// Is the motion the only one?
     pub unique: Option<bool>,
-    /// One entry per joint of the problem.
+    /// Forces of a ray, one entry per joint of the problem.
     pub ray: Option<Vec<JointForce>>,
-    /// All factors with an admissible field, where that interval leaves out the start.
+    /// All factors with an admissible field, if the start is not among them.
     pub feasible_interval: Option<[f64; 2]>,
-    /// Set where joints were read with their laws' own flow.
+    /// Set if joints have the flow of their own laws.
     pub non_associated: Option<NonAssociated>,
     /// Work done.
     pub counters: Counters,
-    /// What a user should know.
+    /// Notes for the user.
     pub notes: Vec<String>,
 }
 
-/// What comes with an answer that reads each joint with its law's own flow. With non-associated
-/// flow the factor is not unique: `factor` of the answer is one at which the law's own mechanism
-/// and field exist together.
+/// Additional results if each joint has the flow of its own law. With non-associated flow the factor is not unique:
+/// `factor` of the answer is a factor at which a mechanism with the laws' own flow and an admissible field exist
+/// together.
 #[derive(Debug, Clone, Default)]
 pub struct NonAssociated {
-    /// No such factor is less than this.
+    /// Proved lower bound of all such factors.
     pub proved_lower: Option<f64>,
-    /// What that rests on.
+    /// Proof of the lower bound.
     pub lower_proof: Option<LowerProof>,
-    /// How the bracket closed, where it did not at once.
+    /// Steps in which the bracket became narrower, if it did not close at once.
     pub bracket: Vec<BracketPoint>,
-    /// The greatest factor of associated flow, above which nothing can be.
+    /// Collapse factor of associated flow, an upper bound of all such factors.
     pub associated_factor: Option<f64>,
-    /// Its mechanism, scaled as `motion`, which bounds it from above.
+    /// Mechanism of associated flow, scaled as `motion`; it proves the upper bound.
     pub associated_motion: Option<Vec<Velocity>>,
-    /// Its field, one entry per joint of the problem, which bounds it from below.
+    /// Field of associated flow, one entry per joint of the problem; it proves the lower bound of the associated
+    /// factor.
     pub associated_field: Option<Vec<JointForce>>,
 }
 
-/// How rigid blocks follow supports that move.
+/// Result of moving the supports of rigid blocks.
 #[derive(Debug, Clone)]
 pub enum SettlementAnswer {
-    /// They do.
+    /// The blocks follow the supports.
     Follows {
-        /// One entry per joint of the problem.
+        /// Forces, one entry per joint of the problem.
         field: Vec<JointForce>,
         /// Displacement of each group, about the problem's pole \[m, rad\].
         motion: Vec<Velocity>,
-        /// Whether it is the only one.
+        /// True if the motion is the only one.
         unique: Option<bool>,
-        /// How joints were read.
+        /// Flow rule of the joints.
         flow: FlowRule,
     },
-    /// No motion goes with that of the supports: forces in balance without loads that do no work against any flow of the
-    /// joints, and do work against the supports. One entry per joint of the problem.
+    /// No motion of the blocks is compatible with the motion of the supports. The proof is a set of forces in balance
+    /// without loads, one entry per joint of the problem: they do no work on any flow of the joints, and positive work
+    /// on the supports.
     Blocked(Vec<JointForce>),
-    /// Not decided, and why.
+    /// The question is not decided, with the reason.
     Refused(String),
 }
 
-/// A way to do limit analysis, chosen by `[solver] solver = …`.
+/// A method of limit analysis, chosen by `[solver] solver = …`.
 #[typetag::serde(tag = "solver")]
 pub trait LimitSolver: Debug + Send + Sync {
-    /// Answers the question. Never panics; what cannot be proven is `Stalled` with its reason.
+    /// Answers the question without panic. If a claim cannot be proved, the status is `Stalled` and the notes give the
+    /// reason.
     fn solve(&self, problem: &LimitProblem, question: LimitQuestion) -> LimitAnswer;
 
-    /// Why this solver cannot take this problem, if so.
+    /// Returns the reason why this solver does not support this problem, or `None`.
     fn refuses(&self, problem: &LimitProblem) -> Option<String>;
 
-    /// How rigid blocks follow supports that move, small displacements: of all motions q with the given `openings` of
-    /// both ends and slip \[m\] that the supports alone would cause at each joint, those of least potential energy
-    /// −w·q + Σ bᵢγᵢ under the loads w of each group about the pole; the dual is the field. Joints are read with
-    /// associated flow; where no motion goes with that, or the solver takes laws as they are, the answer is a state of the laws' own flow.
+    /// Finds the motion of rigid blocks whose supports move, with small displacements. `openings` are the opening of
+    /// both ends and the slip \[m\] that the supports alone would cause at each joint. Of all compatible motions q the
+    /// solver returns one of least potential energy −w·q + Σ bᵢγᵢ under the loads w of each group about the pole; the
+    /// dual solution is the field. Joints have associated flow. If no such motion exists, or the solver uses the laws'
+    /// own flow, the answer is a state with that flow.
     fn settle(&self, _: &LimitProblem, _: &Wrenches, _: &[[f64; 3]]) -> SettlementAnswer {
         SettlementAnswer::Refused("this solver knows loads only, no supports that move".into())
     }

@@ -1,4 +1,4 @@
-//! Answers of limit solvers that no certificate can read: lists of a wrong length, numbers that are not finite.
+//! Checks that the certificate can read a limit solver's answer: lengths of lists, finite numbers.
 
 use super::problem::{JointForce, LimitProblem, Velocity};
 use super::solver::{LimitAnswer, SettlementAnswer};
@@ -20,7 +20,7 @@ impl LimitAnswer {
     /// Checks the length of all lists and that all numbers are finite.
     ///
     /// # Errors
-    /// The first part of the answer that is malformed, in words.
+    /// Names the first malformed part of the answer.
     pub fn check_form(&self, problem: &LimitProblem) -> Result<(), String> {
         check_finite("factor", &self.factor)?;
         check_finite("factor of the field", self.field.as_ref().map(|_| &self.field_factor))?;
@@ -42,10 +42,10 @@ impl LimitAnswer {
 }
 
 impl SettlementAnswer {
-    /// The same for the motion of blocks with their supports.
+    /// Checks the length of all lists and that all numbers are finite.
     ///
     /// # Errors
-    /// The first part of the answer that is malformed, in words.
+    /// Names the first malformed part of the answer.
     pub fn check_form(&self, problem: &LimitProblem) -> Result<(), String> {
         match self {
             SettlementAnswer::Follows { field, motion, .. } => {

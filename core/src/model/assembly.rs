@@ -1,4 +1,4 @@
-//! Bodies and joints with their materials and laws, before any solver sees them.
+//! Bodies and joints with their materials and laws: the input of all solvers.
 
 use super::bridge::{Bridge, Chord, FillReaction};
 use super::geometry::{Vec2, area_and_centroid, bounding_box};
@@ -10,19 +10,19 @@ use std::sync::Arc;
 /// The materials and interface laws of a study, by name.
 #[derive(Debug, Clone, Default)]
 pub struct Catalogue {
-    /// `[materials.NAME]`.
+    /// Materials `[materials.NAME]`.
     pub materials: Vec<(String, Arc<dyn BulkMaterial>)>,
-    /// `[joints.NAME]`.
+    /// Interface laws `[joints.NAME]`.
     pub laws: Vec<(String, Arc<dyn InterfaceLaw>)>,
 }
 
 impl Catalogue {
-    /// Index of the material called `name`.
+    /// Returns the index of the material called `name`.
     pub fn material(&self, name: &str) -> Option<usize> {
         self.materials.iter().position(|(n, _)| n == name)
     }
 
-    /// Index of the interface law called `name`.
+    /// Returns the index of the interface law called `name`.
     pub fn law(&self, name: &str) -> Option<usize> {
         self.laws.iter().position(|(n, _)| n == name)
     }
@@ -31,18 +31,18 @@ impl Catalogue {
 /// A block, or a support.
 #[derive(Debug, Clone)]
 pub struct Body {
-    /// Unique in its assembly.
+    /// Name, unique in its assembly.
     pub name: String,
-    /// Anticlockwise; empty for a support without a shape of its own.
+    /// Vertices in anticlockwise order \[m\]; empty for a support without a shape.
     pub vertices: Vec<Vec2>,
     /// Index into the catalogue's materials.
     pub material: usize,
-    /// Held by the ground.
+    /// True if the ground holds the body.
     pub fixed: bool,
 }
 
-/// What an arch knows of itself beyond bodies and joints: voussoirs are bodies `first..first + n`
-/// from left to right, joint k lies between voussoirs k−1 and k, its end 0 on the intrados.
+/// Layout of an arch. Voussoirs are the bodies `first..first + n` from left to right; joint k lies between voussoirs
+/// k−1 and k and has its end 0 on the intrados.
 #[derive(Debug, Clone)]
 pub struct ArchLayout {
     /// Index of the first voussoir.
@@ -55,43 +55,43 @@ pub struct ArchLayout {
     pub rise: f64,
 }
 
-/// Bodies and joints with their laws.
+/// Bodies and joints, with the materials and laws that they refer to.
 #[derive(Debug, Clone)]
 pub struct Assembly {
-    /// Laws and materials that bodies and joints refer to.
+    /// Materials and laws.
     pub catalogue: Catalogue,
     /// Blocks and supports.
     pub bodies: Vec<Body>,
-    /// Contacts.
+    /// Joints between bodies.
     pub joints: Vec<Joint>,
-    /// Out of plane \[m\].
+    /// Thickness out of plane \[m\].
     pub width: f64,
     /// Stress state of deformable bodies.
     pub plane: Plane,
-    /// How deformable bodies are meshed.
+    /// Density of the meshes of deformable bodies.
     pub mesh: MeshDensity,
-    /// Present for arches.
+    /// Layout of the arch; `None` for other scenes.
     pub arch: Option<ArchLayout>,
-    /// Present for bridges: road and fill.
+    /// Road and fill of the bridge; `None` for other scenes.
     pub bridge: Option<Bridge>,
 }
 
 /// Mass and centroid of a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Inertia {
-    /// \[kg\]; 0 for a support without a shape.
+    /// Mass \[kg\]; 0 for a support without a shape.
     pub mass: f64,
-    /// \[m\]; the origin for a support without a shape.
+    /// Centroid \[m\]; the origin for a support without a shape.
     pub centroid: Vec2,
 }
 
 impl Assembly {
-    /// Index of the body called `name`.
+    /// Returns the index of the body called `name`.
     pub fn body(&self, name: &str) -> Option<usize> {
         self.bodies.iter().position(|body| body.name == name)
     }
 
-    /// Mass and centroid of a body.
+    /// Returns mass and centroid of a body.
     pub fn inertia(&self, body: usize) -> Inertia {
         let body = &self.bodies[body];
         if body.vertices.is_empty() {
@@ -101,12 +101,12 @@ impl Assembly {
         Inertia { mass: self.catalogue.materials[body.material].1.density() * area * self.width, centroid }
     }
 
-    /// Centroids of all bodies \[m\].
+    /// Returns the centroids of all bodies \[m\].
     pub fn centroids(&self) -> Vec<Vec2> {
         (0..self.bodies.len()).map(|body| self.inertia(body).centroid).collect()
     }
 
-    /// The law of a joint, unless it is bonded.
+    /// Returns the law of a joint. `None` if the joint is bonded.
     pub fn law(&self, joint: &Joint) -> Option<&dyn InterfaceLaw> {
         match joint.bond {
             Bond::Bonded => None,
@@ -114,28 +114,28 @@ impl Assembly {
         }
     }
 
-    /// The material of a body.
+    /// Returns the material of a body.
     pub fn material(&self, body: usize) -> &dyn BulkMaterial {
         &*self.catalogue.materials[self.bodies[body].material].1
     }
 
-    /// Whether a body's material is rigid.
+    /// Returns true if the material of a body is rigid.
     pub fn is_rigid(&self, body: usize) -> bool {
         self.material(body).elasticity().is_none()
     }
 
-    /// Whether a body is free and its material deforms.
+    /// Returns true if a body is free and its material deforms.
     pub fn is_deformable(&self, body: usize) -> bool {
         !self.bodies[body].fixed && !self.is_rigid(body)
     }
 
-    /// Whether a body's material yields.
+    /// Returns true if the material of a body can yield.
     pub fn yields(&self, body: usize) -> bool {
         self.material(body).inelastic().is_some()
     }
 
-    /// Whether the elements of a body are small enough for its material to soften without snapping
-    /// back inside an element; the error names sizes and what to change.
+    /// Checks that the elements of a body are small enough for its softening material: larger elements would snap back.
+    /// The error gives both sizes and the change that is needed.
     pub fn fine_enough(&self, body: usize) -> Result<(), String> {
         let (name, material) = &self.catalogue.materials[self.bodies[body].material];
         let Some(update) = material.inelastic() else { return Ok(()) };
@@ -150,14 +150,14 @@ impl Assembly {
         ))
     }
 
-    /// Whether some free block deforms or some joint is compliant.
+    /// Returns true if a free block deforms or a joint is compliant.
     pub fn deforms(&self) -> bool {
         (0..self.bodies.len()).any(|body| self.is_deformable(body))
             || self.joints.iter().any(|j| self.law(j).is_some_and(|law| law.stiffness().is_some()))
     }
 
-    /// The straight upper faces on which loads and fill stand: of arches their extrados, of bridges also the tops of
-    /// piers; empty where there is none. From left to right.
+    /// Returns the straight upper faces that carry loads and fill, from left to right: the extrados of arches, for
+    /// bridges also the tops of piers. Empty for other scenes.
     pub fn extrados(&self) -> Vec<Chord> {
         if let Some(bridge) = &self.bridge {
             return bridge.extrados.clone();
@@ -171,30 +171,31 @@ impl Assembly {
         (0..arch.voussoirs).map(chord).collect()
     }
 
-    /// What the fill presses with, element by element.
+    /// Returns the horizontal reactions of the fill, element by element.
     pub fn fill_reactions(&self) -> &[FillReaction] {
         self.bridge.as_ref().map_or(&[], |bridge| &bridge.reactions)
     }
 
-    /// Width and height of the box around everything \[m\].
+    /// Returns width and height of the bounding box \[m\].
     fn extent(&self) -> Vec2 {
         let points = self.bodies.iter().flat_map(|b| &b.vertices).chain(self.joints.iter().flat_map(|j| &j.ends));
         let (low, high) = bounding_box(points);
         high - low
     }
 
-    /// Diagonal of the box around everything \[m\].
+    /// Returns the diagonal of the bounding box \[m\].
     pub fn size(&self) -> f64 {
         self.extent().norm()
     }
 
-    /// The longest clear span at the intrados springings \[m\]; of what is no arch [`size`](Self::size).
+    /// Returns the longest clear span at the intrados springings \[m\], or [`size`](Self::size) if the scene is not an
+    /// arch.
     pub fn span(&self) -> f64 {
         self.clear_span().unwrap_or_else(|| self.size())
     }
 
-    /// The displacement of a load up to which a path without a limit point is followed \[m\]: the longest clear span, or the
-    /// height of a scene that is no arch.
+    /// Returns the displacement of a load up to which a path without a limit point is followed \[m\]: the longest clear
+    /// span, or the height of a scene that is not an arch.
     pub fn search_range(&self) -> f64 {
         self.clear_span().unwrap_or_else(|| self.extent().y)
     }
@@ -204,8 +205,8 @@ impl Assembly {
         self.arch.as_ref().map(|arch| arch.span).or(bridge)
     }
 
-    /// Which bodies move as one because bonded joints hold them together: for each body the index
-    /// of its free group, or `None` where the group is held by the ground. Also the number of groups.
+    /// Returns for each body the index of its free group, and the number of groups. Bonded joints connect the bodies of
+    /// a group. The index is `None` if the ground holds the group.
     pub fn rigid_groups(&self) -> (Vec<Option<usize>>, usize) {
         let mut parent: Vec<usize> = (0..self.bodies.len()).collect();
         for joint in self.joints.iter().filter(|joint| joint.bond == Bond::Bonded) {
@@ -233,7 +234,7 @@ impl Assembly {
     }
 }
 
-/// The root of i in a forest of groups (union–find), paths halved on the way.
+/// Returns the root of i in a forest of groups (union–find) and halves the paths on the way.
 pub fn root(parent: &mut [usize], mut i: usize) -> usize {
     while parent[i] != i {
         parent[i] = parent[parent[i]];

@@ -1,5 +1,5 @@
-//! What a bridge has besides blocks and joints: the faces on which fill and loads stand, its road, and its fill as
-//! masses on blocks and as horizontal reactions at the chords of the extrados.
+//! Data of a bridge besides blocks and joints: the faces that carry fill and loads, the road, and the fill, as masses
+//! on blocks and as horizontal reactions at the chords of the extrados.
 
 use super::geometry::Vec2;
 use crate::law::{FillResistance, FillState};
@@ -10,31 +10,31 @@ use std::sync::Arc;
 pub struct Chord {
     /// Index of the body.
     pub body: usize,
-    /// Its ends \[m\].
+    /// Ends of the face \[m\].
     pub ends: [Vec2; 2],
-    /// How far the voussoir stands from the middle of its ring: |2k + 1 − n| for voussoir k of n; of what is no
-    /// voussoir [`Chord::NO_RING`].
+    /// Distance of the voussoir from the middle of its ring: |2k + 1 − n| for voussoir k of n; [`Chord::NO_RING`] if
+    /// the face is not part of a ring.
     pub from_middle: usize,
 }
 
 impl Chord {
-    /// `from_middle` of faces that belong to no ring.
+    /// `from_middle` of faces that are not part of a ring.
     pub const NO_RING: usize = usize::MAX;
 
-    /// Least x \[m\].
+    /// Returns the least x \[m\].
     pub fn left(&self) -> f64 {
         self.ends[0].x.min(self.ends[1].x)
     }
 
-    /// Greatest x \[m\].
+    /// Returns the greatest x \[m\].
     pub fn right(&self) -> f64 {
         self.ends[0].x.max(self.ends[1].x)
     }
 
-    /// Its point at x, or the nearest one; of an upright chord the upper end.
+    /// Returns the point of the chord at x, or the nearest one; the upper end if the chord is vertical.
     pub fn at(&self, x: f64) -> Vec2 {
         let [a, b] = self.ends;
-        // An end is returned as it is, so that a load at a vertex acts at that vertex.
+        // An end is returned unchanged, so that a load at a vertex acts at that vertex.
         if a.x == b.x {
             return if a.y > b.y { a } else { b };
         }
@@ -49,18 +49,18 @@ impl Chord {
     }
 }
 
-/// The upper chords between two x, each with the part of it that lies there; an end within `rounding` of a vertex is
-/// that vertex.
+/// Returns the upper chords between two x, each with its part of the interval. An end within `rounding` of a vertex is
+/// moved to that vertex.
 pub fn carried(chords: &[Chord], [start, end]: [f64; 2], rounding: f64) -> Vec<(Chord, f64, f64)> {
     let mut cuts: Vec<f64> = chords.iter().flat_map(|chord| chord.ends.map(|p| p.x)).collect();
-    // An end that is a vertex but for rounding is that vertex: no sliver on the next voussoir.
+    // Move an end to a vertex within rounding: this avoids a sliver on the next voussoir.
     let vertex = |x: f64| cuts.iter().copied().find(|cut| (cut - x).abs() <= rounding).unwrap_or(x);
     let (start, end) = (vertex(start), vertex(end));
     cuts.extend([start, end]);
     cuts.retain(|&x| start <= x && x <= end);
     cuts.sort_by(f64::total_cmp);
-    // Between two cuts one chord is the upper one all along. Its parts are joined again, so that
-    // each chord gets one force at the middle of what it carries.
+    // Between two cuts one chord is the upper one. Its parts are joined again, so that each chord gets one force at the
+    // middle of its loaded length.
     let mut parts: Vec<(Chord, f64, f64)> = Vec::new();
     for pair in cuts.windows(2).filter(|pair| pair[0] < pair[1]) {
         let middle = (pair[0] + pair[1]) / 2.0;
@@ -76,29 +76,29 @@ pub fn carried(chords: &[Chord], [start, end]: [f64; 2], rounding: f64) -> Vec<(
     parts
 }
 
-/// Fill that stands on a block: gravity acts on it, accelerations of blocks do not.
+/// Fill above a block. Gravity acts on it; accelerations of blocks do not.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FillMass {
     /// Index of the body.
     pub body: usize,
-    /// On its upper face, under the centroid of the fill \[m\].
+    /// Point of action on the upper face, under the centroid of the fill \[m\].
     pub point: Vec2,
-    /// \[kg\].
+    /// Mass \[kg\].
     pub mass: f64,
 }
 
-/// Fill of one kind beside a chord.
+/// Fill of one material beside a chord.
 #[derive(Debug, Clone)]
 pub struct FillPart {
     /// Height of the part × width \[m²\].
     pub area: f64,
-    /// Mean of the fill's mass above a point of the part \[kg/m²\].
+    /// Mean mass of the fill above a point of the part \[kg/m²\].
     pub overburden: f64,
     /// Angle of internal friction \[rad\].
     pub friction_angle: f64,
     /// Cohesion \[Pa\].
     pub cohesion: f64,
-    /// How it resists.
+    /// Law of its resistance.
     pub law: Arc<dyn FillResistance>,
 }
 
@@ -107,7 +107,7 @@ pub struct FillPart {
 pub struct FillReaction {
     /// Index of the body.
     pub body: usize,
-    /// Where it acts: at the height of the centroid of the vertical stress along the chord \[m\].
+    /// Point of action: at the height of the centroid of the vertical stress along the chord \[m\].
     pub point: Vec2,
     /// Unit vector towards the ring.
     pub direction: Vec2,
@@ -116,7 +116,7 @@ pub struct FillReaction {
 }
 
 impl FillReaction {
-    /// Least and greatest H \[N\] under a gravity \[m/s²\].
+    /// Returns the least and greatest H \[N\] under a gravity \[m/s²\].
     pub fn bounds(&self, gravity: f64) -> [f64; 2] {
         let mut sum = [0.0; 2];
         for part in &self.parts {
@@ -130,18 +130,18 @@ impl FillReaction {
         sum
     }
 
-    /// Area on which it acts \[m²\].
+    /// Returns the area on which the fill acts \[m²\].
     pub fn area(&self) -> f64 {
         self.parts.iter().map(|part| part.area).sum()
     }
 
-    /// H by displacement into the fill before it yields \[N/m\]; `None` where some part is rigid.
+    /// Returns H per displacement into the fill before it yields \[N/m\]. `None` if a part is rigid.
     pub fn stiffness(&self) -> Option<f64> {
         self.parts.iter().map(|part| Some(part.law.stiffness()? * part.area)).sum()
     }
 }
 
-/// What a bridge knows of itself beyond bodies and joints.
+/// Data of a bridge besides bodies and joints.
 #[derive(Debug, Clone, Default)]
 pub struct Bridge {
     /// Upper faces from left to right: chords of the outermost rings, and tops of piers between them.
@@ -150,22 +150,22 @@ pub struct Bridge {
     pub springings: [f64; 2],
     /// The longest clear span at the intrados springings \[m\].
     pub longest_span: f64,
-    /// Joints `0..radial` lie across rings, with end 0 towards the intrados.
+    /// Number of joints across rings: joints `0..radial`, with end 0 towards the intrados.
     pub radial: usize,
-    /// The road from left to right \[m\], level beyond its ends; empty where there is no fill: loads stand on the
+    /// The road from left to right \[m\], level beyond its ends. Empty if there is no fill: loads then act on the
     /// extrados.
     pub road: Vec<Vec2>,
-    /// Layers of the fill that spread loads, from the lowest: upper level \[m\] and the angle of spread \[rad\] where
-    /// the layer has one of its own.
+    /// Layers of the fill that spread loads, from bottom to top: upper level \[m\], and the angle of spread \[rad\] if
+    /// the layer defines one.
     pub layers: Vec<(f64, Option<f64>)>,
-    /// The fill's masses.
+    /// Masses of the fill.
     pub masses: Vec<FillMass>,
-    /// The fill's reactions.
+    /// Reactions of the fill.
     pub reactions: Vec<FillReaction>,
 }
 
 impl Bridge {
-    /// Level of the road at x \[m\]; `None` where there is no road.
+    /// Returns the level of the road at x \[m\]. `None` if there is no road.
     pub fn road_at(&self, x: f64) -> Option<f64> {
         let first = self.road.first()?;
         let after = self.road.partition_point(|point| point.x <= x);

@@ -1,22 +1,22 @@
-//! Finding the joints of an assembly of polygons: overlaps of edges, not given by hand.
+//! Finds the joints of an assembly of polygons from overlapping edges.
 
 use super::assembly::Body;
 use super::geometry::{Vec2, bounding_box, edges, overlap_depth};
 use super::joints::{Bond, Gap, Joint};
 
-/// Tolerance for overlap, gap and interpenetration, as a share of the scene's size.
+/// Tolerance of overlap, gap and interpenetration, relative to the size of the scene.
 pub const CONTACT_TOLERANCE: f64 = 1e-9;
 
-/// Two bodies that overlap.
+/// Two bodies whose areas overlap.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interpenetration {
     /// Indices of the two bodies.
     pub bodies: [usize; 2],
-    /// How deep \[m\].
+    /// Depth of the overlap \[m\].
     pub depth: f64,
 }
 
-/// Pairs of bodies whose boxes, grown by `tolerance`, meet; sorted.
+/// Returns the pairs of bodies whose bounding boxes, enlarged by `tolerance`, meet; sorted.
 fn neighbours(bodies: &[Body], tolerance: f64) -> Vec<(usize, usize)> {
     let grow = Vec2::repeat(tolerance);
     let mut boxes: Vec<_> = bodies
@@ -41,9 +41,9 @@ fn neighbours(bodies: &[Body], tolerance: f64) -> Vec<(usize, usize)> {
     pairs
 }
 
-/// The overlap of edge a → b of the minus body with edge c → d of the plus body (both bodies
-/// anticlockwise), as joint ends with n pointing out of minus. `None` where they do not lie on one
-/// line, face the same way, or touch at a point only.
+/// Returns the overlap of edge a → b of the minus body with edge c → d of the plus body (both bodies anticlockwise) as
+/// joint ends, with n pointing out of minus. `None` if the edges are not on one line, face the same way, or share only
+/// a point.
 fn edge_overlap(a: Vec2, b: Vec2, c: Vec2, d: Vec2, tolerance: f64) -> Option<[Vec2; 2]> {
     let along = b - a;
     let length = along.norm();
@@ -53,15 +53,15 @@ fn edge_overlap(a: Vec2, b: Vec2, c: Vec2, d: Vec2, tolerance: f64) -> Option<[V
         return None;
     }
     let place = |p: Vec2| (p - a).dot(&along);
-    // Ends are vertices of the bodies themselves, so that congruent joints stay congruent.
+    // Use vertices of the bodies as ends, so that congruent joints stay congruent.
     let (start, first) = if place(d) > 0.0 { (place(d), d) } else { (0.0, a) };
     let (end, last) = if place(c) < length { (place(c), c) } else { (length, b) };
     (end - start > tolerance).then_some([first, last])
 }
 
-/// Joints between bodies wherever an edge of one overlaps an edge of another, in the order of the
-/// bodies (the smaller index is minus), and the pairs that overlap in area. `law` gives the law and
-/// initial gap of a pair; joints between two fixed bodies are left out.
+/// Returns a joint for every overlap of an edge of one body with an edge of another, in the order of the bodies (the
+/// smaller index is minus), and the pairs of bodies whose areas overlap. `law` gives the law and initial gap of a pair;
+/// joints between two fixed bodies are left out.
 pub fn find_joints(
     bodies: &[Body],
     size: f64,

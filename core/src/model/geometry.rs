@@ -5,18 +5,18 @@ use nalgebra::Vector2;
 /// A point or vector \[m\].
 pub type Vec2 = Vector2<f64>;
 
-/// z component of a × b.
+/// Returns the z component of a × b.
 pub fn cross(a: Vec2, b: Vec2) -> f64 {
     a.x * b.y - a.y * b.x
 }
 
-/// `a` turned by +90°.
+/// Returns `a` rotated by +90°.
 pub fn turned(a: Vec2) -> Vec2 {
     Vec2::new(-a.y, a.x)
 }
 
-/// Signed area \[m²\], positive anticlockwise, and centroid \[m\] of a polygon. Computed relative to
-/// the first vertex, so that a polygon far from the origin loses no digits.
+/// Returns the signed area \[m²\] of a polygon, positive anticlockwise, and its centroid \[m\]. The sums are relative
+/// to the first vertex, so that a polygon far from the origin loses no digits.
 pub fn area_and_centroid(vertices: &[Vec2]) -> (f64, Vec2) {
     let origin = vertices[0];
     let (mut twice_area, mut moment) = (0.0, Vec2::zeros());
@@ -29,25 +29,25 @@ pub fn area_and_centroid(vertices: &[Vec2]) -> (f64, Vec2) {
     (twice_area / 2.0, origin + moment / twice_area)
 }
 
-/// The edges of a polygon in order; edge i starts at vertex i.
+/// Iterates over the edges of a polygon; edge i starts at vertex i.
 pub fn edges(vertices: &[Vec2]) -> impl Iterator<Item = (Vec2, Vec2)> + '_ {
     (0..vertices.len()).map(move |i| (vertices[i], vertices[(i + 1) % vertices.len()]))
 }
 
-/// Lower left and upper right corner of the box around some points.
+/// Returns the lower left and upper right corner of the bounding box of points.
 pub fn bounding_box<'a>(points: impl IntoIterator<Item = &'a Vec2>) -> (Vec2, Vec2) {
     let infinite = Vec2::repeat(f64::INFINITY);
     points.into_iter().fold((infinite, -infinite), |(low, high), p| (low.inf(p), high.sup(p)))
 }
 
-/// Distance of `p` from the segment from `a` to `b`.
+/// Returns the distance of `p` from the segment from `a` to `b`.
 pub fn distance_to_segment(p: Vec2, a: Vec2, b: Vec2) -> f64 {
     let along = b - a;
     let s = ((p - a).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
     (p - a - along * s).norm()
 }
 
-/// Whether `p` is inside the polygon or within `tolerance` of its boundary.
+/// Returns true if `p` is inside the polygon or within `tolerance` of its boundary.
 pub fn contains(vertices: &[Vec2], p: Vec2, tolerance: f64) -> bool {
     if edges(vertices).any(|(a, b)| distance_to_segment(p, a, b) <= tolerance) {
         return true;
@@ -59,7 +59,7 @@ pub fn contains(vertices: &[Vec2], p: Vec2, tolerance: f64) -> bool {
         == 1
 }
 
-/// Whether an anticlockwise polygon turns left, or not at all, at every vertex.
+/// Returns true if an anticlockwise polygon never turns right at a vertex.
 pub fn is_convex(vertices: &[Vec2]) -> bool {
     let n = vertices.len();
     (0..n).all(|i| {
@@ -86,8 +86,7 @@ fn convex_parts(vertices: &[Vec2]) -> Vec<Vec<Vec2>> {
         .collect()
 }
 
-/// Sutherland and Hodgman's clip of the convex polygon `subject` by the convex polygon `window`,
-/// both anticlockwise.
+/// Clips the convex polygon `subject` by the convex polygon `window` (Sutherland and Hodgman), both anticlockwise.
 fn clipped(subject: &[Vec2], window: &[Vec2]) -> Vec<Vec2> {
     let mut kept = subject.to_vec();
     for (a, b) in edges(window) {
@@ -110,8 +109,8 @@ fn clipped(subject: &[Vec2], window: &[Vec2]) -> Vec<Vec2> {
     kept
 }
 
-/// How deep two simple anticlockwise polygons overlap \[m\]: the greatest mean width of the overlap
-/// of their convex parts (twice its area over its perimeter), 0 where they only touch.
+/// Returns the depth of the overlap of two simple anticlockwise polygons \[m\]: the greatest mean width of the overlaps
+/// of their convex parts (twice the area over the perimeter), 0 if they only touch.
 pub fn overlap_depth(a: &[Vec2], b: &[Vec2]) -> f64 {
     let ((low_a, high_a), (low_b, high_b)) = (bounding_box(a), bounding_box(b));
     if (0..2).any(|i| high_a[i] <= low_b[i] || high_b[i] <= low_a[i]) {

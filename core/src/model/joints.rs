@@ -1,25 +1,25 @@
-//! Straight joints between two bodies: how they meet, their frame, their initial opening.
+//! Straight joints between two bodies: their bond, their frame, their initial opening.
 
 use super::geometry::{Vec2, turned};
 use serde::{Deserialize, Serialize};
 
-/// How two bodies meet.
+/// The connection of two bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Bond {
-    /// As one piece.
+    /// The bodies are one piece.
     Bonded,
-    /// By the interface law with this index in the catalogue.
+    /// The interface law with this index in the catalogue.
     Law(usize),
 }
 
-/// Initial opening of a joint: a number, or a table along it.
+/// Initial opening of a joint: a number, or a table along the joint.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Gap {
-    /// The same everywhere \[m\].
+    /// The same opening everywhere \[m\].
     Uniform(f64),
-    /// Pairs \[s, gap\] \[m\], s ascending from the joint's end 0; linear between them, constant
-    /// before the first and after the last.
+    /// Pairs \[s, gap\] \[m\], s ascending from end 0 of the joint; linear between pairs, constant before the first and
+    /// after the last.
     Table(Vec<[f64; 2]>),
 }
 
@@ -30,7 +30,7 @@ impl Default for Gap {
 }
 
 impl Gap {
-    /// The opening at the distance s \[m\] from the joint's end 0 \[m\].
+    /// Returns the opening \[m\] at the distance s \[m\] from end 0 of the joint.
     pub fn at(&self, s: f64) -> f64 {
         let table = match self {
             Gap::Uniform(gap) => return *gap,
@@ -52,27 +52,26 @@ pub struct Joint {
     pub minus: usize,
     /// Index of the body on the plus side.
     pub plus: usize,
-    /// Ends at s = −h/2 and s = +h/2; t points from the first to the second, n = t turned by −90°
-    /// points into plus.
+    /// Ends at s = −h/2 and s = +h/2. t points from the first to the second; n = t rotated by −90° points into plus.
     pub ends: [Vec2; 2],
-    /// How the bodies meet.
+    /// Connection of the bodies.
     pub bond: Bond,
     /// Initial opening, along s from end 0.
     pub gap: Gap,
 }
 
 impl Joint {
-    /// h \[m\].
+    /// Returns the height h \[m\].
     pub fn height(&self) -> f64 {
         (self.ends[1] - self.ends[0]).norm()
     }
 
-    /// s = 0.
+    /// Returns the point at s = 0.
     pub fn middle(&self) -> Vec2 {
         (self.ends[0] + self.ends[1]) / 2.0
     }
 
-    /// Unit vectors (n, t).
+    /// Returns the unit vectors (n, t).
     pub fn frame(&self) -> (Vec2, Vec2) {
         let t = (self.ends[1] - self.ends[0]).normalize();
         (-turned(t), t)
@@ -83,7 +82,7 @@ impl Joint {
 mod tests {
     use super::*;
 
-    /// A table is linear between its rows and constant outside.
+    /// A table of gaps is linear between its rows and constant outside.
     #[test]
     fn gaps_along_a_joint() {
         let gap = Gap::Table(vec![[0.0, 0.1], [1.0, 0.3], [2.0, 0.0]]);

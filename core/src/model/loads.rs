@@ -1,4 +1,4 @@
-//! Loads and the stages in which they come, and the resultants of each stage.
+//! Loads, the stages in which they are applied, and the resultants of each stage.
 
 use super::assembly::Assembly;
 use super::geometry::Vec2;
@@ -9,18 +9,18 @@ use super::wrench::{Wrenches, add_force};
 pub struct PointForce {
     /// Index of the body.
     pub body: usize,
-    /// Where it acts \[m\].
+    /// Point of action \[m\].
     pub point: Vec2,
-    /// \[N\].
+    /// Force \[N\].
     pub force: Vec2,
 }
 
-/// How a load on the road of a bridge reaches the extrados; for drawings, no force.
+/// The spread of a load from the road of a bridge to the extrados; drawings use it, it is not a force.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LoadSpread {
     /// Ends of the patch on the road \[m\].
     pub on_road: [Vec2; 2],
-    /// Ends of what it loads, on the level at which the spread is taken \[m\].
+    /// Ends of the loaded length, on the level at which the spread is computed \[m\].
     pub below: [Vec2; 2],
 }
 
@@ -29,9 +29,9 @@ pub struct LoadSpread {
 pub struct Settlement {
     /// Index of the held body.
     pub body: usize,
-    /// \[m\].
+    /// Displacement \[m\].
     pub displacement: Vec2,
-    /// About `about` \[rad\].
+    /// Rotation about `about` \[rad\].
     pub rotation: f64,
     /// Pole of the rotation \[m\].
     pub about: Vec2,
@@ -40,60 +40,61 @@ pub struct Settlement {
 /// One stage of loading.
 #[derive(Debug, Clone)]
 pub struct Stage {
-    /// Its name.
+    /// Name of the stage.
     pub name: String,
-    /// Gravity from this stage on \[m/s²\]; `None` leaves it as it was. Not multiplied by the factor.
+    /// Gravity from this stage on \[m/s²\]; `None` keeps the previous gravity. The factor of the stage does not
+    /// multiply it.
     pub gravity: Option<Vec2>,
     /// Forces, multiplied by the stage's factor.
     pub forces: Vec<PointForce>,
     /// Accelerations (× mass) on every free body, multiplied by the stage's factor \[m/s²\].
     pub accelerations: Vec<Vec2>,
-    /// How those of the forces that come from a road have spread.
+    /// Spreads of the forces that come from a road.
     pub spreads: Vec<LoadSpread>,
     /// Movements of supports, multiplied by the stage's factor.
     pub settlements: Vec<Settlement>,
-    /// How far it goes.
+    /// End of the stage.
     pub target: Target,
-    /// Least factor searched; 0 where it is not given.
+    /// Least factor of the search; 0 if not given.
     pub factor_min: f64,
-    /// Greatest factor searched.
+    /// Greatest factor of the search.
     pub factor_max: f64,
 }
 
-/// How far a stage goes.
+/// The end of a stage.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Target {
-    /// To this factor.
+    /// The stage ends at this factor.
     Factor(f64),
-    /// Until it collapses.
+    /// The stage ends at collapse.
     Collapse,
 }
 
-/// What a stage applies: `fixed + factor × varying`.
+/// The loads of a stage: `fixed + factor × varying`.
 #[derive(Debug, Clone)]
 pub struct StageLoads {
-    /// Wrench per body, about the origin.
+    /// Fixed wrench per body, about the origin.
     pub fixed: Wrenches,
-    /// Wrench per body, about the origin, for factor 1.
+    /// Wrench per body for factor 1, about the origin.
     pub varying: Wrenches,
-    /// Least and greatest force of each element of the fill under the gravity of the stage \[N\].
+    /// Least and greatest force of each reaction of the fill under the gravity of the stage \[N\].
     pub fill_bounds: Vec<[f64; 2]>,
 }
 
-/// Weight of the fill on the blocks under it; accelerations of blocks do not move it.
+/// Returns the weight of the fill on the blocks under it. Accelerations of blocks do not act on the fill.
 pub fn fill_weights(assembly: &Assembly, gravity: Vec2) -> Vec<PointForce> {
     let masses = assembly.bridge.iter().flat_map(|bridge| &bridge.masses);
     masses.map(|fill| PointForce { body: fill.body, point: fill.point, force: gravity * fill.mass }).collect()
 }
 
-/// Least and greatest force of each element of the fill \[N\]; only the downward part of gravity presses fill.
+/// Returns the least and greatest force of each reaction of the fill \[N\]. Only downward gravity presses the fill.
 pub fn fill_bounds(assembly: &Assembly, gravity: Vec2) -> Vec<[f64; 2]> {
     let down = (-gravity.y).max(0.0);
     assembly.fill_reactions().iter().map(|reaction| reaction.bounds(down)).collect()
 }
 
-/// The loads of each stage, those of earlier stages at the factors they reached included.
-/// The gravity in force at each stage acts on all bodies.
+/// Returns the loads of each stage, with the loads of earlier stages at the factors that they reached. The gravity of a
+/// stage acts on all bodies.
 pub fn stage_loads(assembly: &Assembly, stages: &[Stage]) -> Vec<StageLoads> {
     let count = assembly.bodies.len();
     let inertia: Vec<_> = (0..count).map(|body| assembly.inertia(body)).collect();

@@ -1,4 +1,4 @@
-//! The model: bodies, joints, loads and stages, before any solver sees them.
+//! The model: bodies, joints, loads and stages. It is independent of solvers.
 
 mod assembly;
 mod bridge;

@@ -1,12 +1,12 @@
-//! Scenes: geometry that becomes an [`Assembly`].
+//! Scenes: descriptions of geometry that are converted into an [`Assembly`].
 
 use super::assembly::{Assembly, Catalogue};
 use crate::plugin::Diagnostic;
 use std::fmt::Debug;
 
-/// A kind of geometry, chosen by `[scene] scene = …`.
+/// A kind of scene, chosen by `[scene] scene = …`.
 #[typetag::serde(tag = "scene")]
 pub trait Scene: Debug + Send + Sync {
-    /// Bodies and joints. Paths of diagnostics start at the study's root (`scene.…`).
+    /// Builds bodies and joints. Paths of diagnostics start at the root of the study (`scene.…`).
     fn build(&self, catalogue: &Catalogue) -> Result<Assembly, Vec<Diagnostic>>;
 }

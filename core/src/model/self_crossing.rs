@@ -1,12 +1,12 @@
-//! Whether a polygon crosses itself, by a hierarchy of boxes: n log n for boundaries that do not.
+//! Test for polygons that cross themselves, with a hierarchy of boxes: n log n for boundaries without a crossing.
 
 use super::geometry::Vec2;
 
 /// A box: lower left and upper right corner.
 type Bounds = (Vec2, Vec2);
 
-/// The edges of a closed polygon in a binary tree over their places, each node with the box around its edges.
-/// Node 1 is the root, node k has the children 2k and 2k + 1, edge i is node `first + i`.
+/// The edges of a closed polygon in a binary tree; each node has the box around its edges. Node 1 is the root, node k
+/// has the children 2k and 2k + 1, edge i is node `first + i`.
 struct EdgeTree<'a> {
     vertices: &'a [Vec2],
     boxes: Vec<Bounds>,
@@ -37,7 +37,7 @@ impl<'a> EdgeTree<'a> {
         self.crosses_within(left) || self.crosses_within(right) || self.crosses_between(left, right)
     }
 
-    /// Of two nodes of one level, so that both are edges or neither.
+    /// Both nodes are on one level of the tree, so that both are edges or neither is.
     fn crosses_between(&self, one: usize, other: usize) -> bool {
         let ((low, high), (other_low, other_high)) = (self.boxes[one], self.boxes[other]);
         if (0..2).any(|k| high[k] < other_low[k] || other_high[k] < low[k]) {
@@ -54,7 +54,7 @@ impl<'a> EdgeTree<'a> {
     }
 }
 
-/// Whether edges i < j, whose boxes meet, touch or cross; neighbours do not count.
+/// Returns true if edges i < j, whose boxes meet, touch or cross. Neighbours do not count.
 fn edges_cross(vertices: &[Vec2], i: usize, j: usize) -> bool {
     let n = vertices.len();
     if j == i + 1 || (j + 1) % n == i {
@@ -66,10 +66,10 @@ fn edges_cross(vertices: &[Vec2], i: usize, j: usize) -> bool {
     side(a, b, c) * side(a, b, d) <= 0.0 && side(c, d, a) * side(c, d, b) <= 0.0
 }
 
-/// Edges up to which every pair is looked at: a tree takes longer to grow.
+/// Number of edges up to which every pair is tested: building the tree would take longer.
 const FEW: usize = 64;
 
-/// Every pair of at most `MOST` edges, one by one.
+/// Tests every pair of at most `MOST` edges.
 fn crosses_by_pairs<const MOST: usize>(vertices: &[Vec2]) -> bool {
     let n = vertices.len();
     let mut boxes = [(Vec2::zeros(), Vec2::zeros()); MOST];
@@ -83,7 +83,7 @@ fn crosses_by_pairs<const MOST: usize>(vertices: &[Vec2]) -> bool {
     (0..n).any(|i| (i + 1..n).any(|j| !apart(&boxes[i], &boxes[j]) && edges_cross(vertices, i, j)))
 }
 
-/// Whether two edges of the polygon that are no neighbours touch or cross.
+/// Returns true if two edges of the polygon that are not neighbours touch or cross.
 pub fn crosses_itself(vertices: &[Vec2]) -> bool {
     match vertices.len() {
         ..4 => false,
@@ -120,7 +120,7 @@ mod tests {
         let mut crossing = 0;
         for case in 0..400_u32 {
             let n = 4 + case % 24;
-            // A circle with a ripple; every second one with two vertices exchanged.
+            // A circle with a ripple; in every second case two vertices are exchanged.
             let mut vertices: Vec<Vec2> = (0..n)
                 .map(|i| {
                     let angle = std::f64::consts::TAU * f64::from(i) / f64::from(n);

@@ -2,7 +2,7 @@
 
 use super::geometry::{Vec2, cross};
 
-/// Force resultants on bodies, each \[F_x, F_y, moment about the origin\] \[N, N m\].
+/// Force resultants on bodies, each \[F_x, F_y, moment about the origin\] in \[N, N m\].
 pub type Wrenches = Vec<[f64; 3]>;
 
 /// Adds a force at a point to a wrench about the origin.
