@@ -1,9 +1,11 @@
-//! L Lᵀ of symmetric positive definite sparse matrices of 3 × 3 blocks, of one pattern that is analysed once.
+//! Factorisation L Lᵀ of symmetric positive definite sparse matrices of 3 × 3 blocks. Matrices with the same pattern
+//! share one analysis.
 //!
-//! Nodes, of three unknowns each, are eliminated by supernodes, whose columns are dense panels over the rows that they reach
-//! ([`supernodes`]). A panel is factorised three columns at a time; then what it takes off later panels is computed and taken off, three
-//! columns of theirs at a time, which stay in the nearest cache in between: no front is stored or passed on. Panels are a few nodes
-//! wide where bodies touch few others, which is why the work is laid out for three columns and not for large blocks.
+//! Nodes have three unknowns each. They are eliminated by supernodes ([`supernodes`]), whose columns are a dense panel
+//! over the rows that they reach. A panel is factorised three columns at a time. Then its updates of later panels are
+//! computed and subtracted, also three columns at a time, so that they stay in the fastest cache; no front is stored.
+//! Panels are a few nodes wide if bodies touch few others. The work is therefore arranged by three columns and not by
+//! large blocks.
 //!
 //! Source: Ng and Peyton 1993, SIAM J. Sci. Comput. 14, 1034–1056 (block sparse Cholesky algorithms).
 
@@ -13,44 +15,44 @@ use super::vectors::Simd;
 use crate::with_vectors;
 use std::ops::Range;
 
-/// Pivots that are no greater have vanished to rounding, and what is put in their place.
+/// Greatest pivot that counts as zero but for rounding, and the value that replaces it.
 const VANISHED: f64 = 1e-30;
 const HUGE: f64 = 1e128;
 
 /// The columns of a supernode.
 #[derive(Debug, Clone)]
 struct Panel {
-    /// First of its unknowns, and their number.
+    /// First unknown, and number of unknowns.
     first: usize,
     width: usize,
-    /// Number of rows, those of its unknowns first.
+    /// Number of rows; the rows of its own unknowns come first.
     height: usize,
-    /// Where it begins in the factor: column by column.
+    /// Start in the factor, which is stored column by column.
     start: usize,
-    /// Its rows below, among those of all panels.
+    /// Range of its rows below, in the list of all panels.
     below: Range<usize>,
-    /// What it takes off others, among the updates of all.
+    /// Range of its updates of other panels, in the list of all updates.
     updates: Range<usize>,
 }
 
-/// What a panel takes off three columns of another one.
+/// The update of three columns of another panel by a panel.
 #[derive(Debug, Clone)]
 struct Update {
-    /// Its first row that has a part in it: that of the first of the three columns.
+    /// First row of the panel that contributes: the row of the first of the three columns.
     row: usize,
-    /// Where the three columns begin in the factor, and how long they are.
+    /// Start of the three columns in the factor, and their length.
     column: usize,
     height: usize,
-    /// Where the rows from that on stand in these columns, by nodes: from here on among the places of all updates.
+    /// Start, in the list of all places, of the positions of the panel's rows in these columns, by node.
     places: usize,
 }
 
-/// Factors of matrices that share a pattern, in the order in which their nodes come. No factorisation allocates.
+/// Factors of matrices with one pattern, with nodes in the given order. A factorisation allocates no memory.
 pub struct BlockCholesky {
     panels: Vec<Panel>,
     /// The panel of each node.
     panel_of: Vec<usize>,
-    /// First unknowns of the nodes below, panel after panel.
+    /// First unknowns of the nodes below, panel by panel.
     below: Vec<usize>,
     updates: Vec<Update>,
     places: Vec<usize>,
@@ -60,7 +62,7 @@ pub struct BlockCholesky {
 }
 
 impl BlockCholesky {
-    /// Analyses a pattern: for each node the later ones that it is coupled with.
+    /// Analyses a pattern. `columns` lists for each node the later nodes that are coupled with it.
     pub fn new(columns: Vec<Vec<usize>>) -> Self {
         let nodes = columns.len();
         let supernodes = supernodes(columns);
@@ -95,7 +97,7 @@ impl BlockCholesky {
         cholesky
     }
 
-    /// Adds what a supernode takes off others; `places` is of no use outside.
+    /// Adds the updates of other panels by a supernode. `places` is a work array.
     fn plan(&mut self, own: &Supernode, supernodes: &[Supernode], places: &mut [usize]) {
         let (width, below) = (NODE * own.nodes.len(), &own.below);
         let mut done = 0;
@@ -117,8 +119,8 @@ impl BlockCholesky {
         }
     }
 
-    /// Where the block of a node's rows and of the columns of one not after it begins in [`BlockCholesky::values`], and how far apart its columns
-    /// are. The pattern must have it.
+    /// Returns the start of the block (row node, column node) in [`BlockCholesky::values`] and the distance between its
+    /// columns. The column node must not be after the row node. `None` if the pattern does not have the block.
     pub fn place(&self, row: usize, column: usize) -> Option<(usize, usize)> {
         let (row, column) = (NODE * row, NODE * column);
         let panel = self.panels.get(*self.panel_of.get(column / NODE)?)?;
@@ -129,38 +131,38 @@ impl BlockCholesky {
         Some((panel.start + (column - panel.first) * panel.height + place, panel.height))
     }
 
-    /// The entries of the next matrix to factorise: blocks on and below the diagonal, of those on it what is not above. All others are to be
-    /// zeros.
+    /// Returns the entries of the next matrix: blocks below the diagonal and the lower triangles of diagonal blocks.
+    /// Set all other entries to zero.
     pub fn values(&mut self) -> &mut [f64] {
         &mut self.factor
     }
 
-    /// Factorises the present entries. Pivots that vanish to rounding are replaced by huge ones, which fixes their
-    /// unknowns at zero. Whether it went well.
+    /// Factorises the present entries. Pivots that are zero but for rounding are replaced by large ones, which sets
+    /// their unknowns to zero. Returns true if all pivots are finite.
     pub fn factorise(&mut self) -> bool {
         let all = self;
         with_vectors!('a, factorise(all: &'a mut BlockCholesky) -> bool)
     }
 
-    /// Solves for any number of right-hand sides, one after the other in `right`, by the last factorisation.
+    /// Solves for any number of right-hand sides, stored one after the other in `right`, with the last factorisation.
     pub fn solve(&mut self, right: &mut [f64]) {
         let all = self;
         with_vectors!('a, solve(all: &'a mut BlockCholesky, right: &'a mut [f64]) -> ());
     }
 }
 
-/// One over the root of a pivot.
+/// Returns one over the square root of a pivot.
 fn reciprocal(pivot: f64) -> f64 {
     (if pivot <= VANISHED { HUGE } else { pivot }).sqrt().recip()
 }
 
-/// Three columns of `height` numbers, from `first` of each on.
+/// Returns three columns of `height` numbers, each from row `first`.
 #[inline(always)]
 fn three(columns: &[f64], height: usize, first: usize) -> [&[f64]; NODE] {
     [0, 1, 2].map(|j| &columns[j * height + first..(j + 1) * height])
 }
 
-/// The same to write.
+/// Returns three mutable columns of `height` numbers, each from row `first`.
 #[inline(always)]
 fn three_mut(columns: &mut [f64], height: usize, first: usize) -> [&mut [f64]; NODE] {
     let (a, rest) = columns.split_at_mut(height);
@@ -202,7 +204,7 @@ fn factorise<S: Simd>(simd: S, all: &mut BlockCholesky) -> bool {
     true
 }
 
-/// Takes numbers off by nodes at their places.
+/// Subtracts numbers, three per node, at the places of the nodes.
 #[inline(always)]
 fn subtract_at(out: &mut [f64], places: &[usize], off: &[f64]) {
     for (place, off) in places.iter().zip(off.as_chunks::<NODE>().0) {
@@ -228,7 +230,7 @@ fn solve<S: Simd>(simd: S, all: &mut BlockCholesky, right: &mut [f64]) {
     }
 }
 
-/// The part of a panel in the solution of L y = b, in place.
+/// Solves the part of a panel in L y = b, in place.
 #[inline(always)]
 fn forwards<S: Simd>(simd: S, panel: &Panel, below: &[usize], factor: &[f64], gathered: &mut [f64], right: &mut [f64]) {
     let Panel { first, width, height, start, .. } = *panel;
@@ -253,7 +255,7 @@ fn forwards<S: Simd>(simd: S, panel: &Panel, below: &[usize], factor: &[f64], ga
     }
 }
 
-/// The part of a panel in the solution of Lᵀ x = y, in place.
+/// Solves the part of a panel in Lᵀ x = y, in place.
 #[inline(always)]
 fn backwards<S: Simd>(
     simd: S,
@@ -286,7 +288,8 @@ mod tests {
     use super::super::elimination_order;
     use super::*;
 
-    /// A matrix of springs between nodes, three numbers of both ends each in three directions, and 0.3 on the diagonal.
+    /// A stiffness matrix of springs between nodes (three components of both ends in three directions), plus 0.3 on the
+    /// diagonal.
     struct Springs {
         nodes: usize,
         pairs: Vec<(usize, usize)>,
@@ -294,7 +297,7 @@ mod tests {
     }
 
     impl Springs {
-        /// In the order that keeps the factor sparse.
+        /// Numbers the nodes in an order that keeps the factor sparse.
         fn ordered(nodes: usize, edges: &[(usize, usize)], stretch: f64) -> Self {
             let order = elimination_order(nodes, edges).unwrap();
             let mut place = vec![usize::MAX; nodes];
@@ -310,7 +313,7 @@ mod tests {
             columns
         }
 
-        /// Calls with every 3 × 3 block on and below the diagonal.
+        /// Calls `each` with every 3 × 3 block on and below the diagonal.
         fn blocks(&self, mut each: impl FnMut(usize, usize, [[f64; 3]; 3])) {
             let diagonal = [0, 1, 2].map(|i| [0, 1, 2].map(|j| if i == j { 0.3 } else { 0.0 }));
             (0..self.nodes).for_each(|node| each(node, node, diagonal));
@@ -356,8 +359,8 @@ mod tests {
         lines.flat_map(|(x, y)| [(node(x, y - 1), node(x, y)), (node(y, x), node(y - 1, x))]).collect()
     }
 
-    /// Grids, rings, stars, full graphs, and nodes without any coupling: factorised in the order found, they solve for two right-hand sides;
-    /// others of the same pattern do too.
+    /// Matrices of one pattern are factorised with one analysis and solve for two right-hand sides: grids, rings,
+    /// stars, full graphs, and nodes without coupling.
     #[test]
     fn matrices_of_one_pattern_are_analysed_once() {
         let ring: Vec<_> = (0..50).map(|node| (node, (node + 1) % 50)).collect();
@@ -379,7 +382,8 @@ mod tests {
         }
     }
 
-    /// Directions without any stiffness stay at zero and leave the others as they are; numbers that are none are told.
+    /// Unknowns without stiffness are set to zero and leave the others unchanged; values that are not finite are
+    /// reported.
     #[test]
     fn vanished_pivots_fix_their_unknowns() {
         let mut cholesky = BlockCholesky::new(vec![vec![1], vec![]]);

@@ -1,4 +1,4 @@
-//! Sparse matrices as they are assembled.
+//! Sparse matrices as lists of entries.
 
-/// Entries (row, column, value); repeated ones add up.
+/// Entries (row, column, value); repeated entries are added.
 pub type Entries = Vec<(usize, usize, f64)>;

@@ -1,9 +1,9 @@
-//! L U of unsymmetric matrices whose unknowns stand in a given order of elimination: the frontal method.
+//! Factorisation L U of unsymmetric matrices with a given order of elimination: the frontal method.
 //!
 //! Unknowns of one rank are eliminated together. A row joins the front when the first of its unknowns is eliminated;
-//! what elimination leaves of the rows is handed on to the next rank. Every row that holds an unknown stands in the
-//! front when that is eliminated, so that pivots are those of partial pivoting. Along a chain of bodies the front is as
-//! wide as a few joints, whatever the length of the chain; all work is on dense columns.
+//! the remaining rows are passed to the next rank. When an unknown is eliminated, all rows that contain it are in the
+//! front, so that partial pivoting chooses among all of them. Along a chain of bodies the front is as wide as a few
+//! joints, whatever the length of the chain; all work is on dense columns.
 //!
 //! Sources: Irons 1970, Int. J. Numer. Meth. Engng 2, 5-32; Hood 1976, Int. J. Numer. Meth. Engng 10, 379-399.
 
@@ -13,30 +13,30 @@ use crate::with_vectors;
 
 /// The elimination of the unknowns of one rank.
 struct Front {
-    /// Rows that join, after those that the front before has left over.
+    /// Rows that join, after the rows left by the previous front.
     joining: Vec<usize>,
     /// Unknowns that are eliminated.
     columns: Vec<usize>,
-    /// Rows with which those of the pivots were exchanged, one after the other.
+    /// Row exchanges of the pivots, in order.
     exchanged: Vec<usize>,
     /// Number of rows.
     height: usize,
-    /// Columns of the unknowns that are eliminated: L below, U on and above the diagonal.
+    /// Columns of the eliminated unknowns: L below the diagonal, U on and above it.
     eliminated: Vec<f64>,
-    /// Other unknowns in rows of the pivots, and these columns of the rows.
+    /// Other unknowns in the pivot rows, and their columns in these rows.
     upper: (Vec<usize>, Vec<f64>),
 }
 
-/// L U by fronts.
+/// L U factors, front by front.
 pub struct FrontalLu {
     fronts: Vec<Front>,
     size: usize,
 }
 
-/// Unknowns that a front eliminates at least, those of several ranks where these have few.
+/// Least number of unknowns that a front eliminates; ranks with fewer unknowns are combined.
 const LEAST: usize = 6;
 
-/// What elimination leaves of the rows of a front: its columns, and their values one after the other.
+/// The rows that remain after a front: their columns, and the values column by column.
 #[derive(Default)]
 struct Left {
     rows: usize,
@@ -44,8 +44,8 @@ struct Left {
     values: Vec<f64>,
 }
 
-/// Takes L times the first `pivots` entries of columns out of the others, in place; before `first` they are zero. L stands
-/// column by column, as high as the columns, and is read once for all of them.
+/// Subtracts L times the first `pivots` entries of columns from their other entries, in place; entries before `first`
+/// are zero. L is stored column by column, with the height of the columns, and is read once for all of them.
 #[inline(always)]
 fn substitute<S: Simd, const N: usize>(
     simd: S,
@@ -76,12 +76,12 @@ fn substitute<S: Simd, const N: usize>(
     }
 }
 
-/// The first row of a column, of those of the pivots, that is no zero.
+/// Returns the first pivot row in which a column is not zero.
 fn first_row(column: &[f64], pivots: usize) -> usize {
     column[..pivots].iter().position(|v| *v != 0.0).unwrap_or(pivots)
 }
 
-/// out −= A x, A column by column, four columns at a time.
+/// Computes out −= A x with A stored column by column, four columns at a time.
 #[inline(always)]
 fn subtract_product<S: Simd>(simd: S, out: &mut [f64], a: &[f64], x: &[f64]) {
     let height = out.len();
@@ -101,15 +101,15 @@ fn subtract_product<S: Simd>(simd: S, out: &mut [f64], a: &[f64], x: &[f64]) {
     }
 }
 
-/// A column with its rows exchanged as they were.
+/// Applies the row exchanges to a column.
 fn exchange(column: &mut [f64], exchanged: &[usize]) {
     for (k, other) in exchanged.iter().enumerate() {
         column.swap(k, *other);
     }
 }
 
-/// Eliminates the first columns of a front with partial pivoting; the rows that were exchanged. A pivot of zero leaves no
-/// numbers, which solutions tell.
+/// Eliminates the first columns of a front with partial pivoting and returns the row exchanges. A pivot of zero gives
+/// numbers that are not finite; the solution reports it.
 #[inline(always)]
 fn eliminate<S: Simd>(simd: S, values: &mut [f64], height: usize, pivots: usize) -> Vec<usize> {
     let mut exchanged = Vec::with_capacity(pivots);
@@ -142,7 +142,7 @@ fn eliminate<S: Simd>(simd: S, values: &mut [f64], height: usize, pivots: usize)
     exchanged
 }
 
-/// Unknowns by fronts in the order of their ranks, and the front of every unknown.
+/// Returns the unknowns of each front in the order of their ranks, and the front of every unknown.
 fn grouped(rank: &[usize]) -> (Vec<Vec<usize>>, Vec<usize>) {
     let ranks = rank.iter().max().map_or(0, |most| most + 1);
     let mut count = vec![0; ranks];
@@ -160,16 +160,16 @@ fn grouped(rank: &[usize]) -> (Vec<Vec<usize>>, Vec<usize>) {
     (unknowns, front)
 }
 
-/// The rows of a square matrix as fronts take them in.
+/// Access to the rows of a square matrix for the assembly of fronts.
 pub trait FrontRows {
-    /// Calls with unknowns of a row, among them all of those that have the least rank.
+    /// Calls `each` with unknowns of a row, among them all unknowns of least rank.
     fn candidates(&self, row: usize, each: &mut dyn FnMut(usize));
 
-    /// Calls with every unknown of some rows, at least once.
+    /// Calls `each` with every unknown of some rows, at least once.
     fn unknowns(&self, rows: &[usize], each: &mut dyn FnMut(usize));
 
-    /// Adds rows to the columns of a front: a value of the k-th row of unknown j to number
-    /// `place[j] * height + first + k`.
+    /// Adds rows to the columns of a front: the value of the k-th row for unknown j goes to index `place[j] * height +
+    /// first + k`.
     fn add(&self, rows: &[usize], place: &[usize], values: &mut [f64], height: usize, first: usize);
 }
 
@@ -209,13 +209,13 @@ impl FrontRows for ByRows<'_> {
 }
 
 impl FrontalLu {
-    /// Factorises a matrix whose entries stand row by row; `rank` of every unknown says when it is eliminated. `None`
-    /// where it is singular in its pattern.
+    /// Factorises a matrix whose entries are sorted by row. `rank` gives the place of every unknown in the order of
+    /// elimination. `None` if the pattern is singular.
     pub fn new(size: usize, entries: &Entries, rank: &[usize]) -> Option<Self> {
         FrontalLu::of(size, &ByRows::new(size, entries), rank)
     }
 
-    /// The same of rows that put themselves into fronts.
+    /// Factorises a matrix whose rows are assembled by [`FrontRows`].
     pub fn of(size: usize, rows: &impl FrontRows, rank: &[usize]) -> Option<Self> {
         let (unknowns, rank) = grouped(rank);
         let mut joining: Vec<Vec<usize>> = vec![Vec::new(); unknowns.len()];
@@ -235,7 +235,7 @@ impl FrontalLu {
         (left.rows == 0).then_some(FrontalLu { fronts, size })
     }
 
-    /// Solves for several right-hand sides. `None` where the matrix is singular to rounding.
+    /// Solves for several right-hand sides. `None` if the matrix is singular within rounding.
     pub fn solve(&self, right: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
         let (fronts, size) = (self.fronts.as_slice(), self.size);
         let all =
@@ -244,7 +244,7 @@ impl FrontalLu {
     }
 }
 
-/// All right-hand sides through one front after the other.
+/// Passes all right-hand sides through one front after the other.
 #[inline(always)]
 fn solve_all<S: Simd>(simd: S, fronts: &[Front], size: usize, right: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let mut pivotal: Vec<Vec<f64>> = right.iter().map(|_| Vec::with_capacity(size)).collect();
@@ -282,8 +282,7 @@ fn solve_all<S: Simd>(simd: S, fronts: &[Front], size: usize, right: &[Vec<f64>]
 }
 
 impl Front {
-    /// Puts what is left over and the joining rows together and eliminates the `unknowns`; `place` is of no use
-    /// outside.
+    /// Assembles the remaining and the joining rows and eliminates the `unknowns`. `place` is a work array.
     fn new(
         unknowns: Vec<usize>,
         joining: Vec<usize>,
@@ -320,7 +319,7 @@ impl Front {
         let mut upper = (Vec::with_capacity(others.len()), Vec::with_capacity(pivots * others.len()));
         let mut below = Vec::with_capacity(rest * others.len());
         for (j, column) in others.iter().zip(values[pivots * height..].chunks_exact(height.max(1))) {
-            // Unknowns two joints away stand in rows that are no pivots yet.
+            // Unknowns two joints away occur only in rows that are not pivots yet.
             if column[..pivots].iter().any(|v| *v != 0.0) {
                 upper.0.push(*j);
                 upper.1.extend_from_slice(&column[..pivots]);
@@ -338,8 +337,8 @@ mod tests {
     use super::super::lu::SparseLu;
     use super::*;
 
-    /// A chain of blocks with a border in the last row and column, some pivots zero: as partial pivoting on the whole
-    /// matrix solves it.
+    /// A chain of blocks with a border in the last row and column, and some zero pivots, has the same solution as by
+    /// partial pivoting on the whole matrix.
     #[test]
     fn a_chain_with_a_border_is_solved_as_by_the_whole_matrix() {
         let (blocks, width): (usize, usize) = (7, 6);

@@ -1,4 +1,4 @@
-//! L D Lᵀ of symmetric quasi-definite sparse matrices.
+//! Factorisation L D Lᵀ of symmetric quasi-definite sparse matrices.
 
 use super::entries::Entries;
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -10,9 +10,8 @@ use faer::sparse::{SparseColMat, Triplet};
 use faer::{Conj, Mat, MatMut, MatRef, Par, Side};
 use nalgebra::DMatrix;
 
-/// L D Lᵀ of a symmetric quasi-definite matrix, with the matrix itself. Such matrices have a
-/// factorisation in any order, so the order that keeps it sparse is free to choose, also where a
-/// variable occurs in every equation.
+/// L D Lᵀ of a symmetric quasi-definite matrix, with the matrix itself. Such a matrix can be factorised in any order,
+/// so the order is chosen to keep the factors sparse, also if a variable occurs in every equation.
 pub struct SparseLdlt {
     matrix: SparseColMat<usize, f64>,
     symbolic: SymbolicCholesky<usize>,
@@ -20,8 +19,8 @@ pub struct SparseLdlt {
 }
 
 impl SparseLdlt {
-    /// Factorises \[A, Bᵀ; B, −C\], A and C positive definite, A of size `positive`. `entries` hold
-    /// both triangles. `None` where it fails.
+    /// Factorises \[A, Bᵀ; B, −C\] with A and C positive definite and A of size `positive`. `entries` contain both
+    /// triangles. `None` if the factorisation fails.
     pub fn new(size: usize, positive: usize, entries: &Entries) -> Option<Self> {
         let triplets: Vec<_> = entries.iter().map(|&(i, j, v)| Triplet::new(i, j, v)).collect();
         let matrix = SparseColMat::try_new_from_triplets(size, size, &triplets).ok()?;
@@ -62,7 +61,7 @@ impl SparseLdlt {
         Some(())
     }
 
-    /// Solves with iterative refinement.
+    /// Solves with iterative refinement. `None` if the solution is not finite.
     pub fn solve(&self, right: &[f64]) -> Option<Vec<f64>> {
         let target = Mat::from_fn(right.len(), 1, |i, _| right[i]);
         let mut x = target.clone();
@@ -76,14 +75,14 @@ impl SparseLdlt {
         x.iter().all(|v| v.is_finite()).then_some(x)
     }
 
-    /// Solves for every column at once, without refinement. `None` where a solution is not finite.
+    /// Solves for all columns at once, without refinement. `None` if the solution is not finite.
     pub fn solve_columns(&self, mut right: DMatrix<f64>) -> Option<DMatrix<f64>> {
         let (rows, columns) = right.shape();
         self.solve_once(MatMut::from_column_major_slice_mut(right.as_mut_slice(), rows, columns))?;
         right.iter().all(|v| v.is_finite()).then_some(right)
     }
 
-    /// The matrix times columns.
+    /// Returns the matrix times columns.
     pub fn times(&self, columns: &DMatrix<f64>) -> DMatrix<f64> {
         let (rows, count) = columns.shape();
         let product = &self.matrix * MatRef::from_column_major_slice(columns.as_slice(), rows, count);

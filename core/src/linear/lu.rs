@@ -1,4 +1,4 @@
-//! L U of unsymmetric sparse matrices.
+//! Factorisation L U of unsymmetric sparse matrices.
 
 use super::entries::Entries;
 use faer::linalg::solvers::Solve;
@@ -12,8 +12,8 @@ pub struct SparseLu {
     factors: Lu<usize, f64>,
 }
 
-/// Which entries a matrix has, and the order of elimination that keeps its factors sparse: the same for
-/// all matrices with the same entries, whatever their values.
+/// The pattern of a matrix and the order of elimination that keeps its factors sparse. Matrices with the same pattern
+/// share it, whatever their values.
 #[derive(Default)]
 pub struct Analysis(Option<Known>);
 
@@ -24,7 +24,7 @@ struct Known {
 }
 
 impl Analysis {
-    /// Of a matrix; that of the last one where that had the same entries.
+    /// Returns the analysis of a matrix; the stored one if the pattern is the same.
     fn of(&mut self, matrix: &SparseColMat<usize, f64>) -> Option<SymbolicLu<usize>> {
         let pattern = matrix.symbolic();
         if let Some(known) = &self.0
@@ -40,7 +40,7 @@ impl Analysis {
     }
 }
 
-/// Entries by columns, in each by rows, repeated ones added up: sorted by counting, rows first.
+/// Sorts entries by columns, within a column by rows, by counting (rows first), and adds repeated entries.
 fn by_columns(size: usize, entries: &[(usize, usize, f64)]) -> SparseColMat<usize, f64> {
     let starts = |of: fn(&(usize, usize, f64)) -> usize| {
         let mut start = vec![0; size + 1];
@@ -73,7 +73,7 @@ fn by_columns(size: usize, entries: &[(usize, usize, f64)]) -> SparseColMat<usiz
             end[j] += 1;
         }
     }
-    // Close the gaps that repeated entries leave.
+    // Close the gaps of repeated entries.
     let mut columns = vec![0; size + 1];
     let mut at = 0;
     for j in 0..size {
@@ -89,29 +89,29 @@ fn by_columns(size: usize, entries: &[(usize, usize, f64)]) -> SparseColMat<usiz
 }
 
 impl SparseLu {
-    /// Factorises a matrix. `None` where it is singular in its pattern.
+    /// Factorises a matrix. `None` if its pattern is singular.
     pub fn new(size: usize, entries: &Entries) -> Option<Self> {
         SparseLu::analysed(size, entries, &mut Analysis::default())
     }
 
-    /// Factorises a matrix by the analysis of one with the same entries, which is made anew where they
-    /// differ. `None` as for [`SparseLu::new`].
+    /// Factorises a matrix with the analysis of one of the same pattern; if the pattern differs, the analysis is
+    /// replaced. `None` as for [`SparseLu::new`].
     pub fn analysed(size: usize, entries: &Entries, analysis: &mut Analysis) -> Option<Self> {
         let matrix = by_columns(size, entries);
         let factors = Lu::try_new_with_symbolic(analysis.of(&matrix)?, matrix.as_ref()).ok()?;
         Some(SparseLu { matrix, factors })
     }
 
-    /// Factorises a matrix with something added, which refinement takes out again: where the matrix
-    /// itself is singular but its right-hand sides are consistent. `None` as for [`SparseLu::new`].
+    /// Factorises a matrix plus a shift that refinement removes again, for singular matrices with consistent right-hand
+    /// sides. `None` as for [`SparseLu::new`].
     pub fn shifted(size: usize, entries: &Entries, shift: &Entries) -> Option<Self> {
         let all: Entries = entries.iter().chain(shift).copied().collect();
         let factors = SparseLu::new(size, &all)?.factors;
         Some(SparseLu { matrix: by_columns(size, entries), factors })
     }
 
-    /// Solves for several right-hand sides (columns), each with `refinements` steps of iterative
-    /// refinement. `None` where the matrix is singular to rounding.
+    /// Solves for several right-hand sides (columns), each with `refinements` steps of iterative refinement. `None` if
+    /// the matrix is singular within rounding.
     pub fn solve(&self, right: &[Vec<f64>], refinements: usize) -> Option<Vec<Vec<f64>>> {
         let size = self.matrix.nrows();
         let target = Mat::from_fn(size, right.len(), |i, j| right[j][i]);
@@ -135,7 +135,7 @@ impl SparseLu {
 mod tests {
     use super::*;
 
-    /// Repeated entries in any order add up, and matrices of one pattern share its analysis.
+    /// Repeated entries in any order are added, and matrices with one pattern share its analysis.
     #[test]
     fn entries_add_up_and_a_pattern_is_analysed_once() {
         let entries = |scale: f64| -> Entries {

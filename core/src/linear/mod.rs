@@ -1,4 +1,5 @@
-//! Sparse factorisations: faer's (the only files that know it), and two of our own, along a chain of bodies and by blocks of 3 × 3.
+//! Sparse factorisations: wrappers of faer (only these files use it), and two of our own, for chains of bodies and for
+//! 3 × 3 blocks.
 
 mod cholesky;
 mod entries;

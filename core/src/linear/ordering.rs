@@ -1,11 +1,11 @@
-//! Orders of elimination, by faer.
+//! Orders of elimination, computed by faer.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SymbolicSparseColMat;
 use faer::sparse::linalg::amd;
 
-/// An order of elimination that keeps the factors of a graph's matrices sparse (approximate minimum degree):
-/// which node comes first, second and so on. `edges` join different nodes and may be repeated. `None` where memory is short.
+/// Returns an order of elimination that keeps the factors of a graph's matrices sparse (approximate minimum degree):
+/// the first node, the second, and so on. `edges` join different nodes and may be repeated. `None` if memory is short.
 pub fn elimination_order(nodes: usize, edges: &[(usize, usize)]) -> Option<Vec<usize>> {
     let mut columns: Vec<Vec<usize>> = (0..nodes).map(|node| vec![node]).collect();
     edges.iter().for_each(|&(a, b)| columns[a.max(b)].push(a.min(b)));

@@ -1,16 +1,16 @@
-//! Dense work on three columns at a time, for code with the vectors of the processor.
+//! Dense operations on three columns at a time, with vector instructions of the processor.
 //!
-//! Columns of a panel stand one after the other, each as long as the panel is high.
+//! Columns of a panel are stored one after the other; each has the height of the panel.
 
 use super::vectors::Simd;
 
-/// Unknowns of a node.
+/// Number of unknowns of a node.
 pub const NODE: usize = 3;
-/// Numbers that [`outer_products`] may read and write beyond those asked for: one vector less one.
+/// Numbers that [`outer_products`] may read and write beyond `count`: the length of a vector minus one.
 pub const SPARE: usize = 7;
 
-/// Σ over the columns of a panel, each `height` numbers behind the one before, of the `count` numbers from the first of `panel` on times
-/// the three numbers there: into three columns of `count` and [`SPARE`] numbers.
+/// For each of the first three rows of a panel, sums over its columns the entry in that row times `count` rows of the
+/// column. Columns are `height` numbers apart. The result is three columns of `count` + [`SPARE`] numbers.
 #[inline(always)]
 pub fn outer_products<S: Simd>(
     simd: S,
@@ -32,7 +32,7 @@ pub fn outer_products<S: Simd>(
     }
 }
 
-/// The same of so many vectors of rows.
+/// The same for a number of vectors of rows.
 #[inline(always)]
 fn products_of_rows<S: Simd, const VECTORS: usize>(
     simd: S,
@@ -57,8 +57,8 @@ fn products_of_rows<S: Simd, const VECTORS: usize>(
     }
 }
 
-/// L of three columns from their diagonal on, which is left as its reciprocal, by the root that `pivot` makes of what it is. Whether all
-/// numbers on the diagonal are finite.
+/// Computes L of three columns from their diagonal on. The diagonal of the result holds reciprocals, computed by
+/// `reciprocal` from the pivots. Returns true if all of them are finite and positive.
 #[inline(always)]
 pub fn eliminate<S: Simd>(simd: S, columns: [&mut [f64]; NODE], reciprocal: impl Fn(f64) -> f64) -> bool {
     let [a, b, c] = columns;
@@ -85,7 +85,7 @@ pub fn eliminate<S: Simd>(simd: S, columns: [&mut [f64]; NODE], reciprocal: impl
     [r0, r1, r2].iter().all(|r| r.is_finite() && *r > 0.0)
 }
 
-/// out −= a x + b y + c z.
+/// Computes out −= a x + b y + c z.
 #[inline(always)]
 pub fn subtract<S: Simd>(simd: S, out: &mut [f64], columns: [&[f64]; NODE], by: [f64; NODE]) {
     let count = out.len();
@@ -102,7 +102,7 @@ pub fn subtract<S: Simd>(simd: S, out: &mut [f64], columns: [&[f64]; NODE], by: 
     }
 }
 
-/// a · x, b · x and c · x.
+/// Returns a · x, b · x and c · x.
 #[inline(always)]
 pub fn inner_products<S: Simd>(simd: S, x: &[f64], columns: [&[f64]; NODE]) -> [f64; NODE] {
     let count = x.len();

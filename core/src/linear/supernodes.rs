@@ -1,36 +1,37 @@
-//! Which nodes of a graph are eliminated together, and which later ones their rows reach.
+//! Supernodes: nodes of a graph that are eliminated together, and the later nodes in their rows.
 //!
-//! The factor's column of a node has the rows of the matrix and those of its children in the elimination tree (Liu 1990,
-//! SIAM J. Matrix Anal. Appl. 11, 134–172). Neighbours with the same rows are a supernode; two are merged where the zeros that this
-//! stores cost less than one more supernode would (Ashcraft and Grimes 1989, ACM Trans. Math. Softw. 15, 291–309).
+//! The column of a node in the factor has the rows of the matrix and the rows of its children in the elimination tree
+//! (Liu 1990, SIAM J. Matrix Anal. Appl. 11, 134–172). Neighbours with the same rows form a supernode. Two supernodes
+//! are merged if the stored zeros cost less than another supernode (Ashcraft and Grimes 1989, ACM Trans. Math. Softw.
+//! 15, 291–309).
 
 use std::ops::Range;
 
 /// Nodes that are eliminated together.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Supernode {
-    /// The nodes.
+    /// Range of the nodes.
     pub nodes: Range<usize>,
     /// Later nodes in their rows, ascending.
     pub below: Vec<usize>,
 }
 
-/// Share of zeros up to which supernodes are merged, by the nodes that they have together at the most.
+/// Greatest share of zeros for merging two supernodes, by the greatest number of nodes in the result.
 const MERGED: [(usize, f64); 4] = [(2, 1.0), (5, 0.8), (16, 0.1), (usize::MAX, 0.05)];
 
 impl Supernode {
-    /// Nodes of its rows, its own first.
+    /// Iterates over the nodes of its rows, its own first.
     pub fn rows(&self) -> impl Iterator<Item = usize> + '_ {
         self.nodes.clone().chain(self.below.iter().copied())
     }
 
-    /// Blocks of its columns on and below the diagonal, with so many rows below.
+    /// Returns the number of blocks of its columns on and below the diagonal, with this number of rows below.
     fn blocks(&self, below: usize) -> usize {
         let width = self.nodes.len();
         width * (width + 1) / 2 + width * below
     }
 
-    /// This supernode and the one before it as one, and how many blocks of it are zeros that neither has stored so far.
+    /// Returns the nodes of this supernode merged with the one before, and the number of additional zero blocks.
     fn merged(&self, before: &Supernode) -> (Range<usize>, usize) {
         let both = Supernode { nodes: before.nodes.start..self.nodes.end, below: Vec::new() };
         let apart = self.blocks(self.below.len()) + before.blocks(before.below.len());
@@ -39,9 +40,9 @@ impl Supernode {
     }
 }
 
-/// Supernodes in order of elimination, given for each node the later ones that it is coupled with.
+/// Returns the supernodes in order of elimination. `columns` lists for each node the later nodes coupled with it.
 pub fn supernodes(columns: Vec<Vec<usize>>) -> Vec<Supernode> {
-    // With the zeros that each stores.
+    // Each supernode with the number of zeros that it stores.
     let mut found: Vec<(Supernode, usize)> = Vec::new();
     for (node, below) in filled(columns).into_iter().enumerate() {
         let mut last = Supernode { nodes: node..node + 1, below };
@@ -66,7 +67,7 @@ pub fn supernodes(columns: Vec<Vec<usize>>) -> Vec<Supernode> {
     found.into_iter().map(|(supernode, _)| supernode).collect()
 }
 
-/// The rows of the factor below the diagonal, by columns.
+/// Returns the rows of the factor below the diagonal, by columns.
 fn filled(mut columns: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
     let mut seen = vec![usize::MAX; columns.len()];
     let mut children: Vec<Vec<usize>> = vec![Vec::new(); columns.len()];
@@ -89,13 +90,13 @@ fn filled(mut columns: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
 mod tests {
     use super::*;
 
-    /// Fill of a ring of six: its last nodes are coupled with both neighbours; the chain before stays apart.
+    /// The rows of the factor of a ring of six nodes include its fill: later nodes are coupled with node 5 too.
     #[test]
     fn rows_are_those_of_the_factor() {
         let ring = vec![vec![1, 5], vec![2], vec![3], vec![4], vec![5], vec![]];
         let rows = filled(ring.clone());
         assert_eq!(rows, [vec![1, 5], vec![2, 5], vec![3, 5], vec![4, 5], vec![5], vec![]]);
-        // Repeated couplings are one.
+        // A coupling that is repeated counts once.
         let mut twice = ring.clone();
         twice[0] = vec![5, 1, 5];
         assert_eq!(filled(twice), rows);
@@ -108,7 +109,7 @@ mod tests {
         }
     }
 
-    /// Nodes that nothing couples are supernodes of their own; all of a complete graph are one.
+    /// Nodes without coupling are separate supernodes; a complete graph is one supernode.
     #[test]
     fn full_parts_are_one_and_parts_without_coupling_are_apart() {
         let full: Vec<Vec<usize>> = (0..9).map(|node| (node + 1..9).collect()).collect();

@@ -1,11 +1,12 @@
-//! Functions with the vectors of the processor.
+//! Functions that use the vector instructions of the processor.
 //!
-//! A closure does not do: it is compiled by itself, for any processor, wherever it is not taken into its caller.
+//! A closure is not enough: unless it is inlined, it is compiled for the baseline processor.
 
 pub use faer::traits::pulp::{Arch, Simd, WithSimd};
 
-/// `with_vectors!('a, function(name: type, …) -> type)`: calls a function marked `#[inline(always)]` with the vectors of
-/// the processor at hand and local variables of these names. The order of operations does not depend on them.
+/// `with_vectors!('a, function(name: type, …) -> type)` calls a function marked `#[inline(always)]` with the vector
+/// instructions of the present processor. Its arguments are local variables of these names. The order of operations
+/// does not depend on the processor.
 #[macro_export]
 macro_rules! with_vectors {
     ($life:lifetime, $function:ident($($name:ident: $kind:ty),+) -> $output:ty) => {{
@@ -23,7 +24,7 @@ macro_rules! with_vectors {
     }};
 }
 
-/// out += (a w + b x) + (c y + d z).
+/// Computes out += (a w + b x) + (c y + d z).
 #[inline(always)]
 pub fn add_four<S: Simd>(simd: S, out: &mut [f64], columns: [&[f64]; 4], factors: [f64; 4]) {
     let n = out.len();
@@ -41,8 +42,8 @@ pub fn add_four<S: Simd>(simd: S, out: &mut [f64], columns: [&[f64]; 4], factors
     }
 }
 
-/// out += A x, A column by column, over the first `out.len()` of `rows` rows and as many columns as x has entries, for
-/// code with the vectors of the processor; zeros of x cost nothing.
+/// Computes out += A x with A stored column by column, over the first `out.len()` of `rows` rows and as many columns as
+/// x has entries, within vectorised code. Zeros of x are skipped.
 #[inline(always)]
 pub fn add_columns<S: Simd>(simd: S, out: &mut [f64], rows: usize, a: &[f64], x: &[f64]) {
     let (a4, x4) = (a.chunks_exact(4 * rows), x.chunks_exact(4));
@@ -58,7 +59,7 @@ pub fn add_columns<S: Simd>(simd: S, out: &mut [f64], rows: usize, a: &[f64], x:
     }
 }
 
-/// The same, called from anywhere.
+/// Calls [`add_columns`] from code that is not vectorised.
 pub fn add_product(out: &mut [f64], rows: usize, a: &[f64], x: &[f64]) {
     if !out.is_empty() {
         with_vectors!('a, add_columns(out: &'a mut [f64], rows: usize, a: &'a [f64], x: &'a [f64]) -> ());

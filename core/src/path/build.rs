@@ -1,4 +1,4 @@
-//! Building the path problem: groups of bodies, contact points, flexibilities, load steps.
+//! Builds the path problem: groups of bodies, contact points, flexibilities, load steps.
 
 use super::fill::{add_fill, least_forces};
 use super::point_law::PointLaw;
@@ -13,12 +13,12 @@ use crate::model::{Assembly, Bond, Joint, PointForce, Stage, Target, fill_weight
 use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 
-/// Stiffness of the springs between meshes that do not match, relative to that of a block as high as
-/// the joint.
+/// Stiffness of the springs between meshes that do not match, relative to the stiffness of a block as high as the
+/// joint.
 const REGULARISATION: f64 = 1e5;
 
 impl PathProblem {
-    /// Builds the problem. An error says what cannot be followed.
+    /// Builds the problem. An error names the feature that paths do not support.
     pub fn new(assembly: &Assembly, stages: &[Stage]) -> Result<Self, String> {
         let (bodies, body_of) = bodies(assembly);
         let mut problem = PathProblem {
@@ -33,8 +33,8 @@ impl PathProblem {
         let nonmatching = contact_points(&mut problem, assembly)?;
         regularise_nonmatching_joints(&mut problem, assembly, nonmatching);
         add_fill(&mut problem, assembly, stages)?;
-        // What turns about a point has its pole there, so that the point's displacement is the pole's
-        // however far the body turns.
+        // A body that rotates about a point has its pole there: the displacement of this point is then the displacement
+        // of the pole, whatever the rotation.
         for settlement in stages.iter().flat_map(|stage| &stage.settlements).rev() {
             problem.bodies[problem.body_of[settlement.body]].pole = settlement.about;
         }
@@ -44,7 +44,7 @@ impl PathProblem {
     }
 }
 
-/// Blocks that move as one because rigid ones are bonded, and for each block its body.
+/// Returns the bodies (rigid blocks that are bonded form one), and the body of each block.
 fn bodies(assembly: &Assembly) -> (Vec<PathBody>, Vec<usize>) {
     let count = assembly.bodies.len();
     let mut parent: Vec<usize> = (0..count).collect();
@@ -77,7 +77,7 @@ fn bodies(assembly: &Assembly) -> (Vec<PathBody>, Vec<usize>) {
     (bodies, body_of)
 }
 
-/// Contact points of a joint as shares of its height, their shares of its area, and whether the meshes of
+/// Returns the contact points of a joint as shares of its height, their shares of its area, and true if the meshes of
 /// both sides match.
 fn points_of_joint(assembly: &Assembly, joint: &Joint) -> Result<(Vec<f64>, Vec<f64>, bool), String> {
     let compliant = assembly.law(joint).is_some_and(|law| law.stiffness().is_some());
@@ -92,7 +92,7 @@ fn points_of_joint(assembly: &Assembly, joint: &Joint) -> Result<(Vec<f64>, Vec<
         let across = assembly.mesh.elements[1];
         breaks = (0..=across).map(|i| i as f64 / across as f64).collect();
     }
-    // A rigid joint without compliance: its two ends span every resultant.
+    // A rigid joint without compliance has its two ends as points: they represent every resultant.
     let order = match (meshes.is_empty(), compliant) {
         (false, _) => assembly.mesh.order,
         (true, true) => assembly.mesh.order.max(2),
@@ -103,7 +103,7 @@ fn points_of_joint(assembly: &Assembly, joint: &Joint) -> Result<(Vec<f64>, Vec<
     Ok((positions, weights, matching))
 }
 
-/// Contact points of all joints between bodies; the joints on which meshes do not match.
+/// Adds the contact points of all joints between bodies. Returns the joints on which meshes do not match.
 fn contact_points(problem: &mut PathProblem, assembly: &Assembly) -> Result<BTreeSet<usize>, String> {
     let laws: Vec<Option<PointLaw>> = assembly.catalogue.laws.iter().map(|(_, law)| PointLaw::of(&**law)).collect();
     let mut nonmatching = BTreeSet::new();
@@ -162,9 +162,9 @@ fn contact_points(problem: &mut PathProblem, assembly: &Assembly) -> Result<BTre
     Ok(nonmatching)
 }
 
-/// Where two meshes do not match, or joints meet at a corner, more points than nodes meet and the
-/// flexibility is singular: springs far stiffer than the blocks share the forces. They are part of
-/// the model, proportional to area (a uniform pressure stays uniform), and move no limit load.
+/// If two meshes do not match, or joints meet at a corner, there are more contact points than nodes and the flexibility
+/// is singular. Springs much stiffer than the blocks then distribute the forces. They are part of the model, their
+/// stiffness is proportional to area (a uniform pressure stays uniform), and they do not change limit loads.
 fn regularise_nonmatching_joints(problem: &mut PathProblem, assembly: &Assembly, mut nonmatching: BTreeSet<usize>) {
     let grid = 1e-7 * problem.length;
     let mut met: HashMap<[i64; 2], usize> = HashMap::new();
@@ -187,7 +187,7 @@ fn regularise_nonmatching_joints(problem: &mut PathProblem, assembly: &Assembly,
     }
 }
 
-/// What grows in a stage besides gravity; points of deformable blocks at which it acts become points of bodies.
+/// Returns the loads of a stage without gravity. Their points on deformable blocks become points of bodies.
 fn loading(problem: &mut PathProblem, assembly: &Assembly, stage: &Stage) -> Loading {
     let mut loading = Loading { acceleration: stage.accelerations.iter().sum(), ..Loading::default() };
     add_forces(problem, assembly, &stage.forces, &mut loading);
@@ -200,7 +200,7 @@ fn loading(problem: &mut PathProblem, assembly: &Assembly, stage: &Stage) -> Loa
     loading
 }
 
-/// Forces at points, which become points of bodies where these deform.
+/// Adds forces at points. Their points on deformable blocks become points of bodies.
 fn add_forces(problem: &mut PathProblem, assembly: &Assembly, forces: &[PointForce], loading: &mut Loading) {
     for force in forces {
         let body = problem.body_of[force.body];
@@ -215,7 +215,7 @@ fn add_forces(problem: &mut PathProblem, assembly: &Assembly, forces: &[PointFor
     }
 }
 
-/// Load steps in order: of each stage its change of gravity, then its loads.
+/// Returns the load steps in order: for each stage the change of gravity, then the loads.
 fn load_steps(problem: &mut PathProblem, assembly: &Assembly, stages: &[Stage]) -> Result<Vec<LoadStep>, String> {
     let mut steps = Vec::new();
     let mut gravity = Vec2::zeros();
@@ -251,7 +251,7 @@ fn load_steps(problem: &mut PathProblem, assembly: &Assembly, stages: &[Stage]) 
     if steps.is_empty() { Err("no stage has a load".into()) } else { Ok(steps) }
 }
 
-/// Flexibilities of deformable bodies, seen from their points.
+/// Computes the flexibilities of deformable bodies at their points.
 fn condense(problem: &mut PathProblem, assembly: &Assembly) -> Result<(), String> {
     let mut condenser = Condenser::new(assembly.plane, assembly.width);
     let mut updates: HashMap<usize, Arc<PlanarUpdate>> = HashMap::new();

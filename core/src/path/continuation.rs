@@ -1,26 +1,26 @@
-//! How the next point of a path is chosen.
+//! Continuation strategies: the choice of the next point of a path.
 
 use std::any::Any;
 use std::fmt::{self, Debug};
 
-/// Monitors that a strategy may have.
+/// Greatest number of monitors of a strategy.
 pub const MOST_MONITORS: usize = 4;
 
-/// A quantity by name that a strategy sees besides the size of a step.
+/// A quantity that a strategy uses besides the size of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Monitor {
-    /// Opening of a joint, its mean or at a share (0 to 1) of its length from its first end.
+    /// Opening of a joint: its mean, or at a share (0 to 1) of its length from its first end.
     Opening {
         /// Index of the joint.
         joint: usize,
-        /// Share of its length.
+        /// Share of the length of the joint.
         at: Option<f64>,
     },
     /// Displacement of a point by the rigid motion of its block, along a unit vector.
     Displacement {
         /// Index of the block.
         block: usize,
-        /// Where it is, undeformed \[m\].
+        /// Position in the undeformed structure \[m\].
         point: [f64; 2],
         /// Unit vector.
         direction: [f64; 2],
@@ -39,17 +39,18 @@ impl fmt::Display for Monitor {
     }
 }
 
-/// The increment of a step as a continuation strategy sees it: all zero at the last converged state.
-/// Units: force F, the size of the loads; displacement U = F × mean compliance; factor Λ, with which
+/// The increment of a step in the units of continuation strategies, which do not depend on the unit system. All entries
+/// are zero at the last converged state. Units: force F, the size of the loads; displacement U = F × mean compliance;
+/// factor Λ, at which the growing load has the size F; energy F U.
 /// the load that grows has the size F; energy F U. So nothing here depends on the unit system.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Increment {
-    /// Δλ in its unit Λ.
+    /// Δλ in the unit Λ.
     pub factor: f64,
     /// Increment of the work-conjugate displacement of the load, in the unit of displacement.
     pub displacement: f64,
-    /// Root mean square of the increments of all rigid motions and gaps, in the unit of displacement
-    /// (gaps, so that a body that the ground holds but that deforms counts too).
+    /// Root mean square of the increments of all rigid motions and gaps, in the unit of displacement. Gaps are included
+    /// for bodies that are held but deform.
     pub motion: f64,
     /// Increment of dissipated energy, in the unit of energy.
     pub dissipation: f64,
@@ -60,38 +61,37 @@ pub struct Increment {
 /// Value and derivatives of a constraint c(increment) = length.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Constraint {
-    /// c.
+    /// Value c.
     pub value: f64,
-    /// ∂c by each entry of the increment.
+    /// Derivatives of c with respect to each entry of the increment.
     pub derivative: Increment,
 }
 
-/// How the next point of a path is chosen, by `[solver] continuation = { strategy = … }`. Pure: the
-/// solver keeps the length of the step and lets it grow and shrink.
+/// A strategy that chooses the next point of a path, set by `[solver] continuation = { strategy = … }`. It has no
+/// state: the solver stores and adapts the length of the step.
 #[typetag::serde(tag = "strategy")]
 pub trait Continuation: Any + Debug + Send + Sync {
-    /// What it watches besides the size of the step: at most [`MOST_MONITORS`], in the order of
-    /// [`Increment::monitored`]. A solver refuses what the problem does not have, by its name.
+    /// Returns the quantities that it uses besides the size of the step: at most [`MOST_MONITORS`], in the order of
+    /// [`Increment::monitored`]. A solver refuses quantities that the problem does not have, with their name.
     fn monitors(&self) -> Vec<Monitor> {
         Vec::new()
     }
 
-    /// The constraint of a step. `previous` is the increment of the last converged step of this
-    /// load step, `None` before the first: a strategy may change what it measures between two steps,
-    /// never within one.
+    /// Returns the constraint of a step. `previous` is the increment of the last converged step of this load step,
+    /// `None` before the first. A strategy may change its measure between two steps but not within one.
     fn constraint(&self, increment: &Increment, previous: Option<&Increment>) -> Constraint;
 
-    /// Whether λ may fall during a step.
+    /// Returns true if λ may fall during a step.
     fn passes_limit_points(&self) -> bool;
 
-    /// Length of a load step's first step: the share of the unit load (of size F) that an elastic
-    /// structure would take up during it.
+    /// Returns the length of the first step of a load step: the share of the unit load (of size F) that an elastic
+    /// structure would carry in it.
     fn first_step(&self) -> f64 {
         0.1
     }
 
-    /// Greatest increment of a step in its `motion`, as a share of the scene's length; infinite
-    /// where only the solver bounds it.
+    /// Returns the greatest increment of a step in its `motion`, as a share of the length of the scene. It is infinite
+    /// if only the solver bounds it.
     fn largest_step(&self) -> f64 {
         f64::INFINITY
     }

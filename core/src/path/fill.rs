@@ -1,8 +1,9 @@
 //! Fill on paths: each of its reactions is a contact point between a block and ground that never moves.
 //!
-//! The force beyond the least one is a normal force r_n between 0 and what the law allows beyond, without friction; the
-//! least force comes with gravity as a load. Its strength is that of the stage's gravity all along: while gravity grows
-//! the fill may be mobilised as it is when all of it acts. Associated flow makes the collapse load independent of that.
+//! The force above the least force is a normal force r_n between 0 and the greatest force minus the least, without
+//! friction. The least force is a load that grows with gravity. The strength is always the strength at the gravity of
+//! the stage: while gravity grows, the full strength of the fill is available. With associated flow the collapse load
+//! does not depend on this.
 
 use super::point_law::PointLaw;
 use super::problem::{Attachment, Contact, PathBody, PathProblem};
@@ -11,7 +12,10 @@ use crate::law::Facet;
 use crate::model::geometry::{Vec2, turned};
 use crate::model::{Assembly, PointForce, Stage, fill_bounds};
 
-/// The gravity that the strength of the fill is for. An error where it changes while loads act.
+/// Returns the gravity that determines the strength of the fill.
+///
+/// # Errors
+/// If gravity changes between stages.
 pub fn fill_gravity(stages: &[Stage]) -> Result<Vec2, String> {
     let mut set = stages.iter().filter_map(|stage| stage.gravity);
     let first = set.next().unwrap_or_default();
@@ -23,7 +27,7 @@ pub fn fill_gravity(stages: &[Stage]) -> Result<Vec2, String> {
     }
 }
 
-/// The least forces of the fill, which act as loads once gravity does.
+/// Returns the least forces of the fill, which act as loads together with gravity.
 pub fn least_forces(assembly: &Assembly, gravity: Vec2) -> Vec<PointForce> {
     let reactions = assembly.fill_reactions().iter().zip(fill_bounds(assembly, gravity));
     let force = |(reaction, bounds): (&crate::model::FillReaction, [f64; 2])| PointForce {
@@ -34,7 +38,7 @@ pub fn least_forces(assembly: &Assembly, gravity: Vec2) -> Vec<PointForce> {
     reactions.map(force).filter(|f| f.force != Vec2::zeros()).collect()
 }
 
-/// Adds the reactions of the fill as contact points with ground of their own.
+/// Adds the reactions of the fill as contact points with a separate ground.
 pub(super) fn add_fill(problem: &mut PathProblem, assembly: &Assembly, stages: &[Stage]) -> Result<(), String> {
     if assembly.fill_reactions().is_empty() {
         return Ok(());
@@ -66,7 +70,8 @@ pub(super) fn add_fill(problem: &mut PathProblem, assembly: &Assembly, stages: &
             gap: 0.0,
             law: PointLaw::Facets(facets.into()),
             compliance: [compliance; 2],
-            // The force stays horizontal, at the point of the block; where the block deforms it turns with half of it.
+            // The force stays horizontal at the point of the block; on a block that deforms it rotates with half of its
+            // rotation.
             sliding: match slot {
                 None => Sliding::fixed(0.0),
                 Some(_) => Sliding::middle(0.0),

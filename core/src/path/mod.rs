@@ -1,7 +1,8 @@
-//! The path problem: bodies with their flexibility, contact points, loads in the order in which
-//! they come; the question to a path solver and its answer.
+//! The path problem: bodies with their flexibility, contact points and loads in their order; the question to a path
+//! solver and its answer.
 //!
-//! One system for everything (small displacements; Gq exactly with finite ones):
+//! One system of equations describes all of it (for small displacements; with finite displacements G q is replaced by
+//! the exact kinematics):
 //!
 //! ```text
 //! equilibrium   Gqᵀ r + w + λ p = 0

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 pub struct ProvenPeak {
     /// Index of the load step.
     pub load_step: usize,
-    /// λ there.
+    /// λ at the peak.
     pub factor: f64,
     /// Work-conjugate displacement of the load \[m\].
     pub displacement: f64,
@@ -15,32 +15,33 @@ pub struct ProvenPeak {
     pub lowest: f64,
 }
 
-/// Stability of the state at the end of a stage; `None` where it is not decided.
+/// Stability of the state at the end of a stage. A field is `None` if it is not decided.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StageStability {
     /// Index of the stage.
     pub stage: usize,
-    /// Positive second-order work with all loads and settlements fixed.
+    /// True if second-order work is positive with all loads and settlements fixed.
     pub under_load: Option<bool>,
-    /// The same with the load point, or the settlement, held.
+    /// True if it is positive with the load point, or the settlement, held.
     pub under_control: Option<bool>,
-    /// Whether some point slides without associated flow: second-order work is then sufficient, not necessary.
+    /// True if a point slides without associated flow: positive second-order work is then sufficient for stability, not
+    /// necessary.
     pub sufficient_only: bool,
 }
 
-/// A place where the path left an equilibrium that became unstable for another one, by damped descent under fixed
+/// A state at which the path left an equilibrium that became unstable for another one, by damped descent under fixed
 /// loads and settlements.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Branching {
     /// Index of the load step.
     pub load_step: usize,
-    /// λ there.
+    /// λ at this state.
     pub factor: f64,
-    /// Whether no equilibrium was near: the structure snapped at a limit point.
+    /// True if no equilibrium was near: the structure snapped at a limit point.
     pub snaps: bool,
-    /// Energy set free \[J\].
+    /// Released energy \[J\].
     pub released: f64,
-    /// Whether the branch in the other sense has the same energy: twins.
+    /// True if the branch in the opposite direction has the same energy.
     pub twins: bool,
 }
 
@@ -52,10 +53,10 @@ pub enum LimitPointEnd {
     Target,
     /// The stage ends at its first limit point: `until = "first_limit_point"`.
     Requested,
-    /// With finite displacements load control passes no limit point.
+    /// With finite displacements load control cannot pass a limit point.
     LoadControl,
-    /// A corner leaves its face there.
+    /// A corner leaves its face at the limit point.
     JointLost,
-    /// No admissible rate leaves it, rising or falling.
+    /// No admissible rate continues the path, with rising or falling load.
     None,
 }

@@ -1,9 +1,9 @@
-//! The law of a contact point: what it can carry and how it moves.
+//! The law of a contact point: its strength and its flow.
 
 use crate::law::{Facet, InterfaceLaw, InterfaceResponse};
 use std::sync::Arc;
 
-/// The law of a contact point. Points of one law share it.
+/// The law of a contact point. Points with the same law share it.
 #[derive(Debug, Clone)]
 pub enum PointLaw {
     /// g = 0.
@@ -15,12 +15,12 @@ pub enum PointLaw {
 }
 
 impl PointLaw {
-    /// The first form that a law has, in the order in which path solvers ask for them.
+    /// Returns the first form that a law offers, in the order of preference of path solvers.
     pub fn of(law: &dyn InterfaceLaw) -> Option<Self> {
         law.facets().map(|facets| PointLaw::Facets(facets.into())).or_else(|| law.response().map(PointLaw::Response))
     }
 
-    /// Its facets, where it has that form.
+    /// Returns the facets. `None` if the law has another form.
     pub fn facets(&self) -> Option<&[Facet]> {
         match self {
             PointLaw::Facets(facets) => Some(facets),
@@ -28,7 +28,7 @@ impl PointLaw {
         }
     }
 
-    /// The tractions from gaps, where it has that form.
+    /// Returns the response. `None` if the law has another form.
     pub fn response(&self) -> Option<&Arc<dyn InterfaceResponse>> {
         match self {
             PointLaw::Response(response) => Some(response),
@@ -36,7 +36,7 @@ impl PointLaw {
         }
     }
 
-    /// Whether the bodies are one there.
+    /// Returns true if the bodies are bonded at the point.
     pub fn is_bonded(&self) -> bool {
         matches!(self, PointLaw::Bonded)
     }

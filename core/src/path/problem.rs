@@ -1,4 +1,5 @@
-//! The path problem as data: bodies with their flexibility, contact points, load steps, and what they give directly.
+//! The path problem as data: bodies with their flexibility, contact points, load steps, and quantities derived from
+//! them.
 
 use super::point_law::PointLaw;
 use super::sliding::Sliding;
@@ -13,21 +14,21 @@ use std::sync::Arc;
 /// A body of the path problem: one block, or several rigid ones bonded together.
 #[derive(Debug, Clone, Default)]
 pub struct PathBody {
-    /// Blocks of the assembly.
+    /// Indices of its blocks in the assembly.
     pub members: Vec<usize>,
-    /// Its centroid; the origin where it has no shape; the point about which a support settles \[m\].
+    /// Pole of its motion \[m\]: its centroid, the point about which a support settles, or the origin if the body has
+    /// no shape.
     pub pole: Vec2,
-    /// Held by the ground: moves by settlement only.
+    /// True if the ground holds it: it moves by settlement only.
     pub held: bool,
-    /// \[kg\].
+    /// Mass \[kg\].
     pub mass: f64,
-    /// Points that something acts on, with a flexibility: contact points first, then loads.
+    /// Points at which forces act on a flexible body: contact points first, then loads.
     pub points: Vec<Vec2>,
-    /// Displacements (x, y per point) by forces (x, y per point) relative to the mean rigid motion
-    /// \[m/N\]; `None` for rigid bodies.
+    /// Displacements (x, y per point) per force (x, y per point), relative to the mean rigid motion \[m/N\]; `None` for
+    /// rigid bodies.
     pub flexibility: Option<Arc<DMatrix<f64>>>,
-    /// Where the material yields: the body with its mesh. `flexibility` is then that of the body
-    /// before anything has yielded.
+    /// The body with its mesh, if its material can yield. `flexibility` is then the flexibility before yielding.
     pub inelastic: Option<Arc<InelasticBody>>,
 }
 
@@ -36,7 +37,7 @@ pub struct PathBody {
 pub struct Attachment {
     /// Index of the body.
     pub body: usize,
-    /// Index of the point among the body's, where the body has a flexibility.
+    /// Index of the point in the list of the body, if the body has a flexibility.
     pub slot: Option<usize>,
 }
 
@@ -45,33 +46,32 @@ pub struct Attachment {
 pub struct Contact {
     /// Index of the joint in the assembly.
     pub joint: usize,
-    /// Where it is \[m\].
+    /// Position \[m\].
     pub position: Vec2,
     /// Unit normal from minus to plus.
     pub normal: Vec2,
     /// Unit tangent.
     pub tangent: Vec2,
-    /// On the minus body.
+    /// Attachment to the minus body.
     pub minus: Attachment,
-    /// On the plus body.
+    /// Attachment to the plus body.
     pub plus: Attachment,
     /// Tributary area \[m²\].
     pub area: f64,
     /// Initial gap \[m\].
     pub gap: f64,
-    /// Its law. Where that gives tractions from gaps, the gap holds the compliance of the joint too: it
-    /// is part of the law.
+    /// Its law. If this is a response, the gap includes the compliance of the joint, which is part of the law.
     pub law: PointLaw,
     /// Compliance of the joint at this point, normal and tangential \[m/N\].
     pub compliance: [f64; 2],
-    /// How it slides with finite displacements.
+    /// Rule of sliding with finite displacements.
     pub sliding: Sliding,
 }
 
 /// Loads that grow together.
 #[derive(Debug, Clone, Default)]
 pub struct Loading {
-    /// (body, slot of the point in the body where it is elastic, point, force \[N\]).
+    /// (body, index of the point in a flexible body, point, force \[N\]).
     pub forces: Vec<(usize, Option<usize>, Vec2, Vec2)>,
     /// Acceleration of all bodies \[m/s²\].
     pub acceleration: Vec2,
@@ -79,51 +79,51 @@ pub struct Loading {
     pub settlements: Vec<(usize, [f64; 3])>,
 }
 
-/// How far a load step goes.
+/// The end of a load step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LoadStepEnd {
-    /// To this factor.
+    /// The load step ends at this factor.
     Factor(f64),
-    /// Until no more can be carried, up to this factor (may be ∞).
+    /// The load step ends at collapse, or at this factor (may be ∞).
     Collapse(f64),
 }
 
-/// One load history in the sequence: `λ × loading` on top of all earlier ones.
+/// One part of the load history: `λ × loading` in addition to all earlier load steps.
 #[derive(Debug, Clone)]
 pub struct LoadStep {
     /// Index of the stage.
     pub stage: usize,
-    /// Whether it is the stage's change of gravity (factor from 0 to 1) or its loads.
+    /// True for the change of gravity of the stage (factor from 0 to 1), false for its loads.
     pub gravity: bool,
-    /// What grows.
+    /// The loads that grow.
     pub loading: Loading,
-    /// λ at its start.
+    /// λ at the start.
     pub start: f64,
-    /// Where it ends.
+    /// The end of the load step.
     pub end: LoadStepEnd,
 }
 
-/// Everything a path solver needs.
+/// The input of a path solver.
 #[derive(Debug, Clone)]
 pub struct PathProblem {
     /// Bodies.
     pub bodies: Vec<PathBody>,
-    /// For each block of the assembly its body.
+    /// The body of each block of the assembly.
     pub body_of: Vec<usize>,
-    /// Contact points, those of a joint next to each other and in order along it.
+    /// Contact points, joint by joint and in order along each joint.
     pub contacts: Vec<Contact>,
-    /// Load histories in order.
+    /// Load steps in order.
     pub load_steps: Vec<LoadStep>,
     /// Length scale \[m\].
     pub length: f64,
-    /// What the movement of the load's point after a peak is measured by \[m\]: [`Assembly::span`](crate::model::Assembly::span).
+    /// Length for the displacement of the load after a peak \[m\]: [`Assembly::span`](crate::model::Assembly::span).
     pub span: f64,
-    /// Work done to build it.
+    /// Counts of the work to build the problem.
     pub counters: Counters,
 }
 
 impl PathProblem {
-    /// Laws of facets, each once in the order of the contact points, and for each point the index of its own.
+    /// Returns the different laws of facets in the order of the contact points, and the index of the law of each point.
     pub fn shared_facets(&self) -> (Vec<&[Facet]>, Vec<Option<usize>>) {
         let mut laws: Vec<&[Facet]> = Vec::new();
         let of = self.contacts.iter().map(|contact| {
@@ -137,24 +137,24 @@ impl PathProblem {
         (laws, of)
     }
 
-    /// Whether some body's material yields.
+    /// Returns true if the material of a body can yield.
     pub fn yields(&self) -> bool {
         self.bodies.iter().any(|body| body.inelastic.is_some())
     }
 
-    /// Whether anything can deform: a scene of rigid bodies without joint compliance has no path
+    /// Returns true if a body or a joint can deform. A scene of rigid bodies without joint compliance has no path
     /// before its collapse.
     pub fn deforms(&self) -> bool {
         self.bodies.iter().any(|body| body.flexibility.is_some())
             || self.contacts.iter().any(|c| c.compliance[0] > 0.0 || c.law.response().is_some())
     }
 
-    /// The law of a contact point, where it gives tractions from gaps.
+    /// Returns the law of a contact point if it is a response.
     pub fn response(&self, contact: usize) -> Option<&dyn InterfaceResponse> {
         self.contacts[contact].law.response().map(|law| &**law)
     }
 
-    /// How much of each load step's loading is applied at a factor of one of them.
+    /// Returns the applied share of each load step at a factor of one of them.
     pub fn applied(&self, load_step: usize, factor: f64) -> Vec<f64> {
         let reached = |(index, d): (usize, &LoadStep)| match (index.cmp(&load_step), d.end) {
             (std::cmp::Ordering::Less, LoadStepEnd::Factor(end) | LoadStepEnd::Collapse(end)) => end - d.start,
@@ -164,7 +164,7 @@ impl PathProblem {
         self.load_steps.iter().enumerate().map(reached).collect()
     }
 
-    /// Wrench of a loading on each body about its pole, undeformed positions \[N, N m\].
+    /// Returns the wrench of a loading on each body about its pole, at undeformed positions \[N, N m\].
     pub fn wrenches(&self, loading: &Loading) -> Vec<[f64; 3]> {
         let mut wrenches: Vec<[f64; 3]> = self
             .bodies
@@ -180,7 +180,7 @@ impl PathProblem {
         wrenches
     }
 
-    /// Displacement (x, y) of point `slot` of a body by the deformation that a loading causes, small
+    /// Returns the displacement (x, y) of point `slot` of a body from the deformation that a loading causes, with small
     /// displacements \[m\].
     pub fn deformation(&self, loading: &Loading, body: usize, slot: usize) -> Vec2 {
         let mut u = Vec2::zeros();
@@ -196,8 +196,8 @@ impl PathProblem {
         u
     }
 
-    /// Gap (n, t) that a loading opens at each contact point with all bodies' motions and contact
-    /// forces zero: deformation and settlements, small displacements \[m\].
+    /// Returns the gap (n, t) that a loading opens at each contact point if motions of bodies and contact forces are
+    /// zero: deformation and settlements, with small displacements \[m\].
     pub fn loading_gaps(&self, loading: &Loading) -> Vec<[f64; 2]> {
         let settled = |body: usize, point: Vec2| {
             let mut u = Vec2::zeros();
@@ -222,17 +222,16 @@ impl PathProblem {
             .collect()
     }
 
-    /// Rows of G at a contact point for one side: (n, t) of the displacement of the point per
-    /// (u_x, u_y, θ) of the body about its pole, with the side's sign.
+    /// Returns the rows of G at a contact point for one side: (n, t) of the displacement of the point per (u_x, u_y, θ)
+    /// of the body about its pole, with the sign of the side.
     pub fn kinematics(&self, contact: &Contact, plus: bool) -> [[f64; 3]; 2] {
         let (body, sign) = if plus { (contact.plus.body, 1.0) } else { (contact.minus.body, -1.0) };
         let arm = contact.position - self.bodies[body].pole;
         [contact.normal, contact.tangent].map(|e| [sign * e.x, sign * e.y, sign * cross(arm, e)])
     }
 
-    /// Contact forces and loads of a state on the points of every body, in axes that turn with the
-    /// body where displacements are `finite` \[N\]: there a contact's frame has the mean rotation of
-    /// its two bodies.
+    /// Returns the contact forces and loads of a state on the points of every body \[N\]. With `finite` displacements
+    /// the axes rotate with the body, and the frame of a contact has the mean rotation of its two bodies.
     pub fn forces_on_points(&self, state: &PathState, finite: bool) -> Vec<Vec<Vec2>> {
         let mut forces: Vec<Vec<Vec2>> = self.bodies.iter().map(|b| vec![Vec2::zeros(); b.points.len()]).collect();
         let turn = |angle: f64, v: Vec2| if finite { v * angle.cos() + turned(v) * angle.sin() } else { v };
@@ -257,12 +256,12 @@ impl PathProblem {
         forces
     }
 
-    /// Numbers in the states of all laws of tractions from gaps.
+    /// Returns the number of state variables of all responses.
     pub fn memory_size(&self) -> usize {
         (0..self.contacts.len()).filter_map(|c| self.response(c)).map(|law| law.state_size()).sum()
     }
 
-    /// States of untouched joints, contact point after contact point.
+    /// Returns the initial states of all responses, contact point by contact point.
     pub fn untouched(&self) -> Vec<f64> {
         let mut memory = vec![0.0; self.memory_size()];
         let mut at = 0;

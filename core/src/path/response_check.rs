@@ -1,14 +1,14 @@
-//! The contract of a law of tractions from gaps, checked where its problem is built: at the untouched joint tractions
-//! and their tangent are finite, and the tangent is stiff.
+//! Checks the initial response of a law when its problem is built: at zero gap tractions and their tangent must be
+//! finite, and the tangent must be stiff.
 
 use crate::law::{InterfaceLaw, InterfaceResponse, TractionPoint};
 use crate::model::geometry::Vec2;
 
-/// Determinant of a tangent below this share of the product of its rows counts as none.
+/// Determinant of a tangent, relative to the product of its row sums, below which it counts as singular.
 const SINGULAR: f64 = 1e-12;
 
-/// Checks a law at a contact point of a joint that nothing has touched yet. An error names the law with its parameters,
-/// the joint, the point, the gap, and what is wrong.
+/// Checks a law at a contact point in its initial state. An error names the law with its parameters, the joint, the
+/// point, the gap and the reason.
 pub(super) fn check_response(
     (name, law): (&str, &dyn InterfaceLaw),
     response: &dyn InterfaceResponse,
@@ -26,7 +26,7 @@ pub(super) fn check_response(
     ))
 }
 
-/// What is wrong with what a law says of the untouched joint.
+/// Returns an error if the response in the initial state is not finite or not stiff.
 fn untouched(said: &TractionPoint, after: &[f64]) -> Result<(), String> {
     let TractionPoint { traction, tangent, stored, dissipated, .. } = said;
     let finite = traction.iter().chain(tangent.as_flattened()).chain([stored, dissipated]).chain(after);

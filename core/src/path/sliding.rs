@@ -1,73 +1,72 @@
-//! On which body's face a contact point slides with finite displacements, and how far.
+//! Sliding of a contact point with finite displacements: the body on whose face it slides, and its range.
 //!
-//! A contact point is a material point x⁺ of one body and x⁻ of the other, together at first. Its axes
-//! turn by θ⁻ + β (θ⁺ − θ⁻), its gaps are x⁺ − x⁻ in them, and the force whose virtual work is r·δg then
-//! acts on both bodies at (1 − β) x⁺ + β x⁻:
+//! A contact point consists of a material point x⁺ of one body and x⁻ of the other, which coincide at first. Its axes
+//! rotate by θ⁻ + β (θ⁺ − θ⁻) and its gaps are x⁺ − x⁻ in these axes. The force with the virtual work r·δg then acts on
+//! both bodies at (1 − β) x⁺ + β x⁻:
 //!
 //! ```text
 //! r·δg = P·(δx⁺ − δx⁻) + (δθ⁻ + β (δθ⁺ − δθ⁻)) P × (x⁻ − x⁺)     P = r_n n + r_t t
 //! ```
 //!
-//! - β = 0: the gap of x⁺ from the *line* of minus's face, the force at x⁺. Exact for any slip and any
-//!   rotation while x⁺ is a corner of plus that minus's flat face reaches, and for a whole face of plus
-//!   that lies within minus's. β = 1: the same the other way round.
-//! - β = ½: the mean of the two, and all that can be said where the corners of both bodies coincide. As soon as they
-//!   slip by s, one of the two lies beyond the other's face, and the mean is wrong by s/2: the point becomes that of the
-//!   corner that stays on the other's face. At one end of the joint that is plus's where s > 0 and minus's where s < 0,
-//!   at the other end the other way round. β follows the slip s = t_m·(x⁺ − x⁻), t_m in the mean axes,
+//! - β = 0: the gap is the distance of x⁺ from the *line* of the face of minus, and the force acts at x⁺. This is exact for
+//!   any slip and rotation while x⁺ is a corner of plus on the flat face of minus, and for a whole face of plus within
+//!   the face of minus. β = 1 is the same with both bodies exchanged.
+//! - β = ½: the mean of the two, used if corners of both bodies coincide. When they slip by s, one of them lies beyond the
+//!   face of the other, and the mean is wrong by s/2. The point therefore changes to the corner that stays on the other
+//!   face. At one end of the joint this is the corner of plus for s > 0 and of minus for s < 0, at the other end the
+//!   reverse. β depends on the slip s = t_m·(x⁺ − x⁻) with t_m in the mean axes:
 //!
 //! ```text
 //! β(s) = ½ + (β± − ½) ψ((|s| − w/10)/(w − w/10))     w = h/20, β+ for s > 0, β− for s < 0
 //! ψ(ξ) = ξ³ (10 − 15 ξ + 6 ξ²)     0 for ξ < 0, 1 for ξ > 1
 //! ```
 //!
-//! twice continuously differentiable, so that forces and stiffness are continuous: corners are rounded by w. What is
-//! conjugate to r is r·δg with this β, in which g depends on s through β as well: beside P acts
+//! It is twice continuously differentiable, so that forces and stiffness are continuous: corners are rounded by w. The
+//! work of r is r·δg with this β, in which g also depends on s through β. In addition to P there is a force
 //! (turned(P)·(x⁺ − x⁻)) (θ⁺ − θ⁻) β'(s) along t_m in the middle between x⁺ and x⁻.
-//! - Where bodies are elastic, s and x⁺ − x⁻ in this are those of their rigid motions, and what their deformation adds to
-//!   the gaps is read in the mean axes (wrong by its product with (β − ½)(θ⁺ − θ⁻)), with the forces that are conjugate to
-//!   that. Without slip deformation matters and β = ½ is right for it; a point whose corner is one body's passes to that
-//!   corner with either sign of s, β+ = β−.
+//! - If bodies are elastic, s and x⁺ − x⁻ here are those of the rigid motions. The part of the gaps from deformation is
+//!   measured in the mean axes (wrong by its product with (β − ½)(θ⁺ − θ⁻)), with the conjugate forces. Without slip
+//!   deformation matters and β = ½ is right for it; a point whose corner belongs to one body changes to that corner for
+//!   either sign of s, β+ = β−.
 //!
-//! Areas, and so the compliances of single points, are those of the undeformed joint: where it loses
-//! or gains overlap a share s/h of the joint's compliance is wrong, its equilibrium is not. A joint whose corners
-//! coincide loses overlap as it slips: half of its height is the most. A point at which neither body has a corner keeps
-//! β = ½, up to w.
-//! Source: the gap function of node-to-segment contact (Wriggers 2006, Computational Contact Mechanics,
-//! ch. 4), of which β = 0 and 1 are the two passes.
+//! Areas, and so the compliances of points, are those of the undeformed joint. If the joint loses or gains overlap, a
+//! share s/h of its compliance is wrong, but its equilibrium is not. A joint with coinciding corners loses overlap as
+//! it slips, at most half of its height. A point at which neither body has a corner keeps β = ½, up to a slip of w.
+//! Source: the gap function of node-to-segment contact (Wriggers 2006, Computational Contact Mechanics, ch. 4); β = 0
+//! and β = 1 are its two passes.
 
 use crate::model::geometry::Vec2;
 use crate::model::{Assembly, Joint};
 
-/// Slip at which a point has passed from the middle to a corner, and up to which it holds in the middle, as a share of
-/// its joint.
+/// Slip at which a point has changed from the middle to a corner, as a share of the height of its joint. It also bounds
+/// the slip of points in the middle.
 const PASSING_SLIP: f64 = 0.05;
 
-/// Share of that slip at which it begins to pass.
+/// Share of this slip at which the change begins.
 const BEGINS: f64 = 0.1;
 
-/// Places of points this near to half of their joint are its middle.
+/// Distance from half of the joint within which a point is its middle, as a share of the joint.
 const MIDDLE: f64 = 1e-9;
 
-/// Most slip of a joint whose corners coincide, as a share of it: what it has lost of its overlap.
+/// Greatest slip of a joint with coinciding corners, as a share of its height: the lost overlap.
 const LARGEST_SLIP: f64 = 0.5;
 
-/// How a contact point slides with finite displacements.
+/// The rule by which a contact point slides with finite displacements.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sliding {
-    /// β without slip: its axes turn by θ⁻ + β (θ⁺ − θ⁻), its force acts at (1 − β) x⁺ + β x⁻.
+    /// β without slip: axes rotate by θ⁻ + β (θ⁺ − θ⁻), the force acts at (1 − β) x⁺ + β x⁻.
     pub share: f64,
-    /// β after slip of either sense, negative and positive.
+    /// β after negative and after positive slip.
     pub corners: [f64; 2],
-    /// Slip at which β has passed to a corner's \[m\]; zero where it does not depend on slip.
+    /// Slip at which β reaches the value of a corner \[m\]; zero if β does not depend on slip.
     pub passing: f64,
-    /// Least and greatest tangential gap that this holds for \[m\].
+    /// Least and greatest tangential gap for which the rule holds \[m\].
     pub slip: [f64; 2],
 }
 
 impl Sliding {
-    /// Of the point at a share `position` of a joint; corners of bodies that its ends hit to within `tolerance`
-    /// \[m\] are ends of the joint.
+    /// Returns the rule of the point at a share `position` of a joint. Corners of bodies within `tolerance` \[m\] of
+    /// the ends of the joint count as its ends.
     pub fn of(assembly: &Assembly, joint: &Joint, position: f64, tolerance: f64) -> Self {
         let sides = [joint.minus, joint.plus];
         // An abutment without a polygon has the face of its joint.
@@ -80,12 +79,12 @@ impl Sliding {
         if elastic { found.begun_midway(joint.height()) } else { found }
     }
 
-    /// With one β \[-\], whatever the slip.
+    /// Returns a rule with constant β, for any slip.
     pub fn fixed(share: f64) -> Self {
         Sliding { share, corners: [share; 2], passing: 0.0, slip: [f64::NEG_INFINITY, f64::INFINITY] }
     }
 
-    /// What two ends of a joint have in common: midway where each has its own corners, as long as both hold.
+    /// Combines the rules of two ends of a joint: β = ½ if they differ, within the slip that both allow.
     fn in_common(self, other: Sliding, height: f64) -> Self {
         if self.corners == other.corners && self.share == other.share {
             return self;
@@ -94,23 +93,24 @@ impl Sliding {
         Sliding { slip, passing: PASSING_SLIP * height, ..Sliding::fixed(0.5) }
     }
 
-    /// Midway between the bodies at first, and with its own β once it has slipped, in a joint of this height \[m\].
+    /// Returns the rule that begins with β = ½ and changes to its own β with slip, in a joint of this height \[m\].
     fn begun_midway(self, height: f64) -> Self {
         if self.share == 0.5 { self } else { Sliding { share: 0.5, passing: PASSING_SLIP * height, ..self } }
     }
 
-    /// Midway between the bodies, in a joint of this height \[m\]; without bounds where it has none.
+    /// Returns the rule with β = ½ in a joint of this height \[m\]; without bounds if the height is zero.
     pub fn middle(height: f64) -> Self {
         let most = if height > 0.0 { PASSING_SLIP * height } else { f64::INFINITY };
         Sliding { slip: [-most, most], ..Sliding::fixed(0.5) }
     }
 
-    /// Returns true if the blocks come apart at the bounds: a point away from all corners is only paired for less.
+    /// Returns true if the blocks separate at the bounds. A point away from all corners only reaches the end of its
+    /// rule.
     pub fn parts_at_bound(&self) -> bool {
         self.corners != [0.5; 2] || self.passing > 0.0
     }
 
-    /// β and its first and second derivatives at a slip \[-, 1/m, 1/m²\].
+    /// Returns β and its first and second derivative at a slip \[-, 1/m, 1/m²\].
     pub fn share_at(&self, slip: f64) -> [f64; 3] {
         if self.passing == 0.0 {
             return [self.share, 0.0, 0.0];
@@ -125,9 +125,8 @@ impl Sliding {
     }
 }
 
-/// Where the edge of a polygon on which a joint lies begins and ends, along the joint from its first
-/// end \[m\], with corners that the joint's ends hit to within `tolerance` set to them. `None` where no
-/// edge does.
+/// Returns the start and end of the polygon edge that contains a joint, along the joint from its first end \[m\].
+/// Corners within `tolerance` of the ends of the joint are moved to them. `None` if no edge contains the joint.
 fn face(vertices: &[Vec2], ends: [Vec2; 2], tolerance: f64) -> Option<[f64; 2]> {
     let height = (ends[1] - ends[0]).norm();
     let along = (ends[1] - ends[0]) / height;
@@ -144,8 +143,9 @@ fn face(vertices: &[Vec2], ends: [Vec2; 2], tolerance: f64) -> Option<[f64; 2]> 
     })
 }
 
-/// How a point of rigid bodies at a share `position` of a joint slides; `faces` of (minus, plus). An end belongs to the
-/// body whose corner it is, a point between to the nearer end, the very middle to what both ends have in common.
+/// Returns the rule of a point of rigid bodies at a share `position` of a joint; `faces` of (minus, plus). An end
+/// belongs to the body whose corner it is, a point in between to the nearer end, and the middle combines the rules of
+/// both ends.
 fn sliding(faces: [Option<[f64; 2]>; 2], height: f64, position: f64) -> Sliding {
     let of = |end: usize| at_end(faces, height, position, end);
     match position - 0.5 {
@@ -154,7 +154,7 @@ fn sliding(faces: [Option<[f64; 2]>; 2], height: f64, position: f64) -> Sliding 
     }
 }
 
-/// The same of a point that goes with an end of its joint.
+/// Returns the rule of a point that belongs to one end of its joint.
 fn at_end(faces: [Option<[f64; 2]>; 2], height: f64, position: f64, end: usize) -> Sliding {
     let [Some(minus), Some(plus)] = faces else { return Sliding::middle(height) };
     let own = [0.0, height][end];
@@ -167,7 +167,7 @@ fn at_end(faces: [Option<[f64; 2]>; 2], height: f64, position: f64, end: usize) 
     }
 }
 
-/// Where the corners of both bodies coincide at an end of a joint: midway, and at a corner once that has slipped.
+/// Returns the rule at an end with coinciding corners: β = ½, and the β of a corner after slip.
 fn coinciding(height: f64, end: usize) -> Sliding {
     let corners = [[1.0, 0.0], [0.0, 1.0]][end];
     let most = LARGEST_SLIP * height;
@@ -182,7 +182,7 @@ mod tests {
         [[0.0, 0.0], [width, 0.0], [width, 1.0], [0.0, 1.0]].map(|[a, b]| Vec2::new(x + a, y + b)).to_vec()
     }
 
-    /// A point belongs to the body whose corner is nearer, and may slide as far as the other's face goes.
+    /// A point belongs to the body with the nearer corner and slides up to the end of the other face.
     #[test]
     fn a_point_belongs_to_the_body_whose_corner_it_is() {
         // A block on a wider one, the joint read from right to left.
@@ -192,22 +192,22 @@ mod tests {
         assert_eq!(faces, [Some([-1.0, 3.0]), Some([0.0, 2.0])]);
         assert_eq!(sliding(faces, 2.0, 0.0), Sliding { slip: [-1.0, 3.0], ..Sliding::fixed(0.0) });
         assert_eq!(sliding(faces, 2.0, 0.75), Sliding { slip: [-2.5, 1.5], ..Sliding::fixed(0.0) });
-        // The other way up: the point belongs to minus, which slides by −g_t on plus.
+        // With both bodies exchanged the point belongs to minus, which slides by −g_t on plus.
         let swapped = [faces[1], faces[0]];
         assert_eq!(sliding(swapped, 2.0, 0.75), Sliding { slip: [-1.5, 2.5], ..Sliding::fixed(1.0) });
-        // Half over: each end has its own corner.
+        // A block that overlaps half of the other: each body has its corner at one end.
         let half = [Some([0.0, 3.0]), Some([-1.0, 2.0])];
         assert_eq!([0.25, 0.75].map(|p| sliding(half, 2.0, p).share), [1.0, 0.0]);
-        // Corners that coincide pass from the middle to the corner that stays on a face; without faces points stay midway.
+        // Coinciding corners change from the middle to the corner that stays on a face; without faces β stays ½.
         let same = [Some([0.0, 2.0]); 2];
         let passing = |corners| Sliding { share: 0.5, corners, passing: 0.1, slip: [-1.0, 1.0] };
         assert_eq!(sliding(same, 2.0, 0.0), passing([1.0, 0.0]));
         assert_eq!(sliding(same, 2.0, 1.0), passing([0.0, 1.0]));
-        // Of elastic bodies all begin in the middle.
+        // On elastic bodies all points begin with β = ½.
         let own = sliding(half, 2.0, 0.25).begun_midway(2.0);
         assert_eq!([-0.2, 0.0, 0.2].map(|slip| own.share_at(slip)[0]), [1.0, 0.5, 1.0]);
         assert_eq!(sliding([None; 2], 2.0, 0.0), Sliding::middle(2.0));
-        // In the middle of a joint no end goes before the other, wherever rounding puts it.
+        // In the middle of a joint both ends count equally, whatever the rounding.
         for (faces, slip) in [(same, [-1.0, 1.0]), (half, [-1.0, 2.0])] {
             for position in [0.5 - 1e-16, 0.5, 0.5 + 2e-16] {
                 let midway = sliding(faces, 2.0, position);
@@ -219,7 +219,7 @@ mod tests {
         assert_eq!(face(&below, [Vec2::new(3.0, 0.5), Vec2::new(1.0, 0.5)], 1e-9), None);
     }
 
-    /// β passes from ½ to the corner's, with the derivatives that it says.
+    /// β changes from ½ to the value of the corner, and its derivatives are those of the function.
     #[test]
     fn a_coinciding_corner_passes_to_the_one_that_stays_on_a_face() {
         for corners in [[0.0, 1.0], [1.0, 0.0], [1.0, 1.0]] {

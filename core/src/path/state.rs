@@ -3,12 +3,12 @@
 use crate::elastic::InelasticState;
 use std::sync::Arc;
 
-/// A body whose material has yielded, in a state.
+/// The state of a body whose material has yielded.
 #[derive(Debug, Clone)]
 pub struct Yielded {
-    /// Displacements (x, y) of the nodes in the shape's frame, in units of its size.
+    /// Displacements (x, y) of the nodes in the frame of the shape, in units of its size.
     pub displacement: Arc<Vec<f64>>,
-    /// What its Gauss points remember.
+    /// State of its Gauss points.
     pub state: Arc<InelasticState>,
 }
 
@@ -17,7 +17,7 @@ pub struct Yielded {
 pub struct PathState {
     /// Index of the load step.
     pub load_step: usize,
-    /// λ of that load step.
+    /// Factor λ of that load step.
     pub factor: f64,
     /// (r_n, r_t) of every contact point \[N\].
     pub force: Vec<[f64; 2]>,
@@ -33,11 +33,10 @@ pub struct PathState {
     pub work: f64,
     /// Work-conjugate displacement of the present loads by the rigid motion of their blocks \[m\].
     pub displacement: f64,
-    /// State of the laws of tractions from gaps at the start of the step that ends here, contact point
-    /// after contact point: the update from it at the gap gives the force.
+    /// State of the responses at the start of the step that ends in this state, contact point by contact point. The
+    /// update from it at the gap gives the force.
     pub memory: Vec<f64>,
-    /// For each body: what it remembers, where its material has yielded. A list that is too short
-    /// stands for bodies that have not.
+    /// For each body its state, if its material has yielded. Bodies beyond the end of the list have not yielded.
     pub yielded: Vec<Option<Yielded>>,
     /// True if second-order work is positive with all loads and settlements fixed, false if it is not. `None` if the solver
     /// has not examined or not decided it.
@@ -45,31 +44,31 @@ pub struct PathState {
 }
 
 impl PathState {
-    /// What a body remembers, where its material has yielded.
+    /// Returns the state of a body whose material has yielded.
     pub fn inelastic(&self, body: usize) -> Option<&Yielded> {
         self.yielded.get(body).and_then(Option::as_ref)
     }
 }
 
-/// What happened at a contact point.
+/// An event at a contact point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ContactEvent {
-    /// It opened.
+    /// The point opened.
     Opens,
-    /// It closed.
+    /// The point closed.
     Closes,
-    /// It stopped sliding.
+    /// The point stopped sliding.
     Sticks,
-    /// It started to slide, with t on the plus body.
+    /// The point started to slide, with t on the plus body.
     SlipsForward,
-    /// It started to slide against t.
+    /// The point started to slide against t.
     SlipsBackward,
-    /// It started to crush.
+    /// The point started to crush.
     Crushes,
-    /// It stopped crushing, softening or yielding in tension.
+    /// The point stopped crushing, softening or yielding in tension.
     Unloads,
-    /// Its bond began to soften.
+    /// The bond of the point began to soften.
     Softens,
 }
 
@@ -78,10 +77,10 @@ pub enum ContactEvent {
 pub struct PathEvent {
     /// Index of the load step.
     pub load_step: usize,
-    /// λ.
+    /// Factor λ.
     pub factor: f64,
     /// Index of the contact point.
     pub contact: usize,
-    /// What happened.
+    /// The event.
     pub what: ContactEvent,
 }

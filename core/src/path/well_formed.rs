@@ -1,5 +1,5 @@
-//! States and answers of path solvers that no certificate can read: lists of a wrong length, indices of nothing, numbers
-//! that are not finite.
+//! Checks that the certificate can read the states and answers of path solvers: lengths of lists, indices, finite
+//! numbers.
 
 use super::problem::PathProblem;
 use super::solver::PathAnswer;
@@ -11,7 +11,7 @@ impl PathState {
     /// Checks the length of all lists and that all numbers are finite.
     ///
     /// # Errors
-    /// The first part of the state that is malformed, in words.
+    /// Names the first malformed part of the state.
     pub fn check_form(&self, problem: &PathProblem) -> Result<(), String> {
         check_index("load step", self.load_step, problem.load_steps.len())?;
         check_length("contact forces", self.force.len(), problem.contacts.len())?;
@@ -33,7 +33,7 @@ impl PathAnswer {
     /// empty.
     ///
     /// # Errors
-    /// The first part of the answer that is malformed, in words.
+    /// Names the first malformed part of the answer.
     pub fn check_form(&self, problem: &PathProblem) -> Result<(), String> {
         let steps = problem.load_steps.len();
         if self.status != Status::Stalled {

@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 /// A statement about the rates at a state of a path.
 #[derive(Debug, Clone)]
 pub struct Witness {
-    /// The state; one of those that the observer has seen.
+    /// The state, one that the observer has received.
     pub state: PathState,
     /// The statement.
     pub claim: RateClaim,
@@ -41,14 +41,14 @@ pub struct NoneContinues {
     pub rises: ModeTree,
     /// No rate has λ̇ = 0 and a load that does work.
     pub stands: ModeTree,
-    /// No rate has λ̇ < 0, but those in modes that the path had before.
+    /// No rate has λ̇ < 0, except rates in modes that the path had before.
     pub falls: ModeTree,
 }
 
 /// Rates of everything at a state.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PathRate {
-    /// λ̇.
+    /// Rate λ̇.
     pub factor: f64,
     /// (ṙ_n, ṙ_t) of every contact point, in axes that turn with it \[N\].
     pub force: Vec<[f64; 2]>,
@@ -62,7 +62,7 @@ pub struct PathRate {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PointMode {
-    /// ġ = 0, and no active facet is left outwards.
+    /// ġ = 0, and ṙ leaves no active facet outwards.
     Stick,
     /// The force stays on this facet, and the gap flows along it.
     Facet(usize),
@@ -82,10 +82,10 @@ pub enum ModeTree {
     Split {
         /// Index of the contact point.
         contact: usize,
-        /// Its modes, each with what refutes it.
+        /// Its modes, each with the subtree that refutes it.
         branches: Vec<(PointMode, ModeTree)>,
     },
-    /// All points could have these modes just before the state: their rates existed there and continue nothing.
+    /// All points could have these modes just before the state: their rates existed there and do not continue the path.
     Before,
 }
 
@@ -102,7 +102,7 @@ pub enum ModeTree {
 /// W = p·q̇ + g_p·ṙ is the work of the load. If the left side is ≥ 0 in all modes that are left, the load does no work.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct FarkasVector {
-    /// y of every body (those of held bodies are not read).
+    /// y of every body; the entries of held bodies are not read.
     pub equilibrium: Vec<[f64; 3]>,
     /// β of every contact point.
     pub gap: Vec<[f64; 2]>,

@@ -1,4 +1,4 @@
-//! The work between two states of a path, load by load: what residuals of energy are compared with.
+//! The work between two states of a path, load by load, as scale of energy residuals.
 
 use super::problem::{Loading, PathProblem};
 use super::state::PathState;
@@ -6,15 +6,15 @@ use crate::model::geometry::{Vec2, turned};
 use nalgebra::Rotation2;
 
 impl PathProblem {
-    /// Σ|F| of a loading, weights of accelerated free bodies included \[N\]. Times the displacement of a state it is the work
-    /// of the loading at factor 1, by rigid motions.
+    /// Returns Σ|F| of a loading, with the weights of accelerated free bodies \[N\]. This times the displacement of a
+    /// state is the work of the loading at factor 1 on rigid motions.
     pub fn load_size(&self, loading: &Loading) -> f64 {
         let forces: f64 = loading.forces.iter().map(|f| f.3.norm()).sum();
         let masses: f64 = self.bodies.iter().filter(|b| !b.held).map(|b| b.mass).sum();
         forces + masses * loading.acceleration.norm()
     }
 
-    /// By how much a loading moves the contact points of supports, at most, per unit of its factor \[m\].
+    /// Returns the greatest displacement of the contact points of supports per unit of the factor of a loading \[m\].
     pub fn settlement_size(&self, loading: &Loading) -> f64 {
         let moves = |&(body, [x, y, theta]): &(usize, [f64; 3])| {
             let pole = self.bodies[body].pole;
@@ -24,7 +24,7 @@ impl PathProblem {
         loading.settlements.iter().map(moves).fold(0.0, f64::max)
     }
 
-    /// Motions of all bodies by the settlements up to a factor of a load step.
+    /// Returns the motions of all bodies from the settlements up to a factor of a load step.
     pub fn settled(&self, load_step: usize, factor: f64) -> Vec<[f64; 3]> {
         let mut settled = vec![[0.0; 3]; self.bodies.len()];
         for (step, applied) in self.load_steps.iter().zip(self.applied(load_step, factor)) {
@@ -35,8 +35,8 @@ impl PathProblem {
         settled
     }
 
-    /// Work-conjugate displacement of a loading by rigid motions: Σ F·u / Σ|F| \[m\], u by `rigid` of (body, point). If a loading
-    /// only moves supports, the distance by which it has moved them at its factor.
+    /// Returns the work-conjugate displacement of a loading on rigid motions: Σ F·u / Σ|F| \[m\], with u by `rigid` of
+    /// (body, point). If a loading only moves supports, it is the distance by which it has moved them at its factor.
     pub fn load_displacement(
         &self,
         (loading, factor): (&Loading, f64),
@@ -53,15 +53,15 @@ impl PathProblem {
         (forces + masses) / size
     }
 
-    /// Displacement of a point of a body by the rigid motion of a state \[m\].
+    /// Returns the displacement of a point of a body by the rigid motion of a state \[m\].
     pub fn rigid_displacement(&self, motion: &[[f64; 3]], body: usize, point: Vec2, finite: bool) -> Vec2 {
         let ([x, y, theta], arm) = (motion[body], point - self.bodies[body].pole);
         Vec2::new(x, y) + if finite { Rotation2::new(theta) * arm - arm } else { turned(arm) * theta }
     }
 
-    /// Σ|work| between two states \[J\]: that of the loads of earlier steps, which stand and act on the bodies' rigid
-    /// motions, and that of all else, the load that changes and the supports that move. Where a mechanism moves the two
-    /// cancel: their sum would say that nothing was done.
+    /// Returns Σ|work| between two states \[J\]: the work of the loads of earlier steps, which are constant and act on
+    /// the rigid motions of bodies, and the work of the changing load and the moving supports. The two are added
+    /// without sign, because they cancel along a mechanism.
     pub fn gross_work(&self, from: &PathState, to: &PathState, finite: bool) -> f64 {
         let moved =
             |state: &PathState, body: usize, point: Vec2| self.rigid_displacement(&state.motion, body, point, finite);
