@@ -1,11 +1,10 @@
-//! Certificates: what proves an answer, recomputed from the assembly alone.
+//! Certificates of limit analysis: the proof of an answer, recomputed from the assembly alone.
 //!
-//! Nothing here is shared with solvers: equilibrium is summed body by body from forces at points,
-//! strengths are checked as the rectangular stress block, dissipation is the integral of the support
-//! function of the law's own polygon along each joint. Laws are read with associated flow, unless
-//! the claim is that a field and a mechanism obey the laws' own flow: then the jumps must be
-//! combinations of the facets' flow directions and their power with the field's distance from the
-//! yield surface must vanish, joint by joint.
+//! This code shares nothing with solvers. Equilibrium is summed body by body from forces at points. Strengths are
+//! checked with the rectangular stress block. Dissipation is the integral of the support function of the law's polygon
+//! along each joint. Laws have associated flow, unless the claim is that a field and a mechanism obey the laws' own
+//! flow. In this case the jumps must be combinations of the flow directions of the facets, and their power on the
+//! distance of the field from the yield surface must vanish, joint by joint.
 
 use super::mechanism::{CentroidVelocity, Jump, jumps_about, velocity_at};
 use super::products::proved;
@@ -20,11 +19,11 @@ use std::collections::BTreeMap;
 /// Named residuals, all relative, and the verdict.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Certificate {
-    /// Whether every residual is within its tolerance.
+    /// True if every residual is within its tolerance.
     pub passed: bool,
-    /// Name → value.
+    /// Values of the residuals by name.
     pub residuals: BTreeMap<String, f64>,
-    /// What failed, in words; empty when passed.
+    /// Descriptions of the failures; empty if passed.
     pub failures: Vec<String>,
 }
 
@@ -33,7 +32,7 @@ pub struct Certificate {
 pub struct ContactForce {
     /// Index of the joint.
     pub joint: usize,
-    /// Where it acts \[m\].
+    /// Point of action \[m\].
     pub point: Vec2,
     /// (r_n, r_t) \[N\].
     pub force: [f64; 2],
@@ -67,7 +66,7 @@ pub struct Claim<'a> {
     pub supports: Option<&'a [Option<CentroidVelocity>]>,
     /// All feasible factors, if the start is not among them.
     pub feasible_interval: Option<[f64; 2]>,
-    /// Given if field and motion are claimed to obey the laws' own flow.
+    /// Set if field and motion are claimed to obey the laws' own flow.
     pub non_associated: Option<NonAssociatedClaim<'a>>,
 }
 
@@ -87,50 +86,50 @@ pub struct Verdict {
     pub start_is_carried: bool,
 }
 
-/// What is claimed besides where joints flow as their laws say.
+/// Additional claims if joints have the flow of their own laws.
 #[derive(Debug, Clone, Copy)]
 pub struct NonAssociatedClaim<'a> {
-    /// No such factor is less.
+    /// The claimed lower bound of all such factors.
     pub proved_lower: Option<f64>,
-    /// The proof of it. Multipliers of products are checked. An exhaustive search leaves nothing that could be checked.
+    /// The proof of the lower bound. Multipliers of products are checked. An exhaustive search leaves no data to check.
     pub lower_proof: Option<&'a LowerProof>,
-    /// Set if the solver belongs to this project, so that its exhaustive search is believed.
+    /// True if the solver is part of this project, so that its exhaustive search is trusted.
     pub search_is_trusted: bool,
-    /// The greatest factor of associated flow.
+    /// The collapse factor of associated flow.
     pub associated_factor: Option<f64>,
-    /// The motion that bounds it from above.
+    /// The motion that proves its upper bound.
     pub associated_motion: Option<&'a [CentroidVelocity]>,
-    /// The field that bounds it from below and the forces of the fill that belong to it; results do not store it.
+    /// The field that proves its lower bound and the forces of the fill that belong to it; results do not store it.
     pub associated_field: Option<(&'a [ContactForce], &'a [f64])>,
 }
 
-/// Tolerance of residuals that should be rounding.
+/// Tolerance of residuals that are zero except for rounding.
 pub const ROUNDING: f64 = 1e-10;
 
-/// Relative distance from the target of a stage up to which a field counts as being at the target.
+/// Greatest relative distance between the factor of a field and the target of its stage.
 const REACHED: f64 = 1e-12;
 
-/// A lower bound by products may lose so much of the factor to rounding.
+/// Greatest loss of a lower bound by products to rounding, relative to the factor.
 const PRODUCTS: f64 = 1e-6;
 
-/// Least excess of power over dissipation, relative to load times greatest jump, that is no rounding.
+/// Least excess of power over dissipation, relative to load times greatest jump, that is significant.
 const EXCESS: f64 = 1e-13;
 
-/// Errors of a ray that refutes a settlement, relative to its work on the settlement: about the settlement over the least
-/// motion that might go with it after all.
+/// Greatest error of a ray that refutes a settlement, relative to its work on the settlement. This is about the ratio
+/// of the settlement to the least motion that could be compatible with it.
 const REFUTED: f64 = 1e-6;
 
-/// Relative width up to which the two ends of a least load count as one.
+/// Relative width below which the two ends of a least load count as equal.
 const CLOSED: f64 = 1e-6;
 
-/// Which forces of a joint count as admitted.
+/// The forces of a joint that are admitted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Admitted {
-    /// Those within the strengths.
+    /// Forces within the strengths.
     Strength,
-    /// Those that may grow without bound.
+    /// Forces that may grow without bound.
     Recession,
-    /// Those that do no positive work against any flow of the law, associated or not.
+    /// Forces that do no positive work on any flow of the law, associated or not.
     NoWorkOnFlow,
 }
 
@@ -139,8 +138,8 @@ pub fn largest_jump(jumps: &[Jump]) -> f64 {
     jumps.iter().map(Jump::size).fold(0.0, f64::max)
 }
 
-/// The size of a motion: its greatest jump, or its greatest speed where it has none to speak of, as where blocks move that
-/// nothing touches.
+/// Returns the size of a motion: its greatest jump, or its greatest speed if jumps are negligible, for example if
+/// blocks without contact move.
 pub fn motion_size(jumps: &[Jump], motion: &[CentroidVelocity]) -> f64 {
     let speed = motion.iter().map(|v| v[0].hypot(v[1])).fold(0.0, f64::max);
     let jump = largest_jump(jumps);
@@ -153,7 +152,7 @@ struct Check<'a> {
     groups: Vec<Option<usize>>,
     facets: Vec<Vec<Facet>>,
     polygons: Vec<YieldPolygon>,
-    /// Of every body.
+    /// Centroid of every body.
     centroids: Vec<Vec2>,
     size: f64,
     /// Sum of the sizes of the fixed and of the varying loads on free bodies \[N\].
@@ -222,14 +221,14 @@ impl Verdict {
 }
 
 impl Certificate {
-    /// No residual and no failure yet.
+    /// Creates a certificate without residuals and failures.
     fn blank() -> Self {
         Certificate { passed: true, residuals: BTreeMap::new(), failures: Vec::new() }
     }
 }
 
 impl Claim<'_> {
-    /// The reason why the evidence does not fit the assembly.
+    /// Returns the reason why the evidence does not match the assembly.
     fn misfit(&self, assembly: &Assembly) -> Option<String> {
         if !self.in_range() {
             return Some("a force or velocity is not finite, or too great to be checked".into());
@@ -310,7 +309,7 @@ impl Check<'_> {
                     self.fail(format!("the collapse lies beyond the target {} of the stage", claim.target));
                 }
                 let met = factor - lower <= CLOSED * factor.abs().max(self.factor_scale());
-                // An end at the start proves nothing, unless the ends meet there.
+                // A lower end at the start proves nothing, unless both ends are equal.
                 let lower = Some(lower).filter(|lower| met || *lower > claim.start);
                 let greatest = match lower {
                     Some(_) if met => Greatest::ProvedOptimal,
@@ -354,9 +353,9 @@ impl Check<'_> {
         }
     }
 
-    /// The ends of the load factor that field and motion prove by themselves with associated flow. An end at the
-    /// start of the stage proves nothing and is left out. The laws' own flow only has an upper end: no state lies above the
-    /// associated load.
+    /// Returns the ends of the load factor that field and motion prove by themselves with associated flow. An end at
+    /// the start of the stage proves nothing and is left out. With the laws' own flow there is only an upper end: no
+    /// state is above the associated load.
     fn proved_ends(&mut self, claim: &Claim) -> [Option<f64>; 2] {
         if claim.supports.is_some() {
             return [None; 2];
@@ -388,12 +387,12 @@ impl Check<'_> {
         fine
     }
 
-    /// Size of the loads in force units.
+    /// Returns the size of the loads at a factor, in force units.
     fn load_scale(&self, factor: f64) -> f64 {
         self.sizes[0] + factor.abs() * self.sizes[1]
     }
 
-    /// Scale of residuals at a factor [N]: the loads there, or the varying load where there is no
+    /// Returns the scale of residuals at a factor [N]: the loads at the factor, or the varying load if there is no
     /// other.
     fn residual_scale(&self, factor: f64) -> f64 {
         let dead = self.load_scale(0.0);
@@ -401,8 +400,9 @@ impl Check<'_> {
         (if dead > 0.0 { at } else { at.max(self.load_scale(1.0)) }).max(f64::MIN_POSITIVE)
     }
 
-    /// A thousandth of the loads that are there anyway: differences of factors are compared with it where the factor itself
-    /// is less. A gap of 1e-9 is then 1e-12 of these loads; the equilibrium of a field is only asked for to 1e-10 of them.
+    /// Returns a scale for differences of factors: a thousandth of the fixed loads, used if the factor itself is
+    /// smaller. A gap of 1e-9 is then 1e-12 of the fixed loads, while the equilibrium of a field is required only to
+    /// 1e-10 of them.
     fn factor_scale(&self) -> f64 {
         let (dead, both) = (self.load_scale(0.0), self.load_scale(1.0));
         if dead == 0.0 {
@@ -418,8 +418,9 @@ impl Check<'_> {
         (0..self.groups.len()).filter(|&body| self.groups[body].is_some())
     }
 
-    /// Greatest resultant left on any free group by contact forces, forces of the fill and `fixed × dead + factor ×
-    /// varying`, moments about the group's first body and divided by the scene's size \[N\].
+    /// Returns the greatest unbalanced resultant on any free group \[N\] from contact forces, forces of the fill and
+    /// `fixed × dead + factor × varying`. Moments are about the first body of the group and divided by the size of the
+    /// scene.
     fn imbalance(&self, forces: &[ContactForce], fill: &[f64], dead: f64, factor: f64) -> f64 {
         let count = self.groups.iter().flatten().max().map_or(0, |g| g + 1);
         let mut pole: Vec<Option<Vec2>> = vec![None; count];
@@ -458,7 +459,7 @@ impl Check<'_> {
         sums.iter().map(|s| s[0].abs().max(s[1].abs()).max(s[2].abs() / self.size)).fold(0.0, f64::max)
     }
 
-    /// Greatest violation \[N\] of what the joints admit, of sliding as the distance from its facet.
+    /// Returns the greatest violation of the strengths of joints \[N\]; for sliding it is the distance from the facet.
     fn violation(&self, forces: &[ContactForce], admitted: Admitted) -> f64 {
         let strengths = admitted == Admitted::Strength;
         let mut resultants: Vec<Option<[f64; 3]>> = vec![None; self.assembly.joints.len()];
@@ -485,7 +486,7 @@ impl Check<'_> {
             if greatest.is_infinite() {
                 worst = worst.max(arm - (n - least));
             } else {
-                // The compressed depth d of a rectangular block of stress must fit beside |M|/N.
+                // The compressed depth d of a rectangular stress block must fit beside |M|/N.
                 let full = (greatest * scale - least).max(0.0);
                 let block = n - least;
                 worst = worst.max(-block).max(block - full);
@@ -512,7 +513,7 @@ impl Check<'_> {
         self.residual("strength", self.violation(field, Admitted::Strength) / scale, ROUNDING) && balanced && pressed
     }
 
-    /// Whether the forces of the fill lie between their least and greatest values.
+    /// Returns true if the forces of the fill lie between their least and greatest values.
     fn fill(&mut self, claim: &Claim, scale: f64) -> bool {
         let bounds = &self.loads.fill_bounds;
         if claim.fill.len() != bounds.len() {
@@ -523,7 +524,7 @@ impl Check<'_> {
             return true;
         }
         let beyond = |(force, [least, greatest]): (&f64, &[f64; 2])| (least - force).max(force - greatest);
-        // NaN counts as beyond.
+        // NaN counts as a violation.
         let worse = |worst: f64, x: f64| if x <= worst { worst } else { x };
         let worst = claim.fill.iter().zip(bounds).map(beyond).fold(0.0, worse);
         self.residual("fill", worst / scale, ROUNDING)
@@ -540,9 +541,9 @@ impl Check<'_> {
         self.residual("ray_strength", self.violation(ray, Admitted::Recession) / scale, ROUNDING);
     }
 
-    /// No motion of the free blocks goes with that of the supports: Farkas' lemma. The ray is in balance without loads and
-    /// does no work against any flow of the joints, so that its work on the gaps of every motion is ≥ 0, and that work is
-    /// what it does on the gaps that the supports alone make: < 0.
+    /// Checks by Farkas' lemma that no motion of the free blocks is compatible with the motion of the supports. The ray
+    /// is in balance without loads and does no positive work on any flow of the joints, so its work on the gaps of
+    /// every motion is ≥ 0. But this work equals its work on the gaps that the supports alone cause, which is < 0.
     fn blocked(&mut self, claim: &Claim, supports: &[Option<CentroidVelocity>]) {
         let Some(ray) = claim.ray else {
             return self.fail("no ray that refutes the motion of the supports");
@@ -552,7 +553,7 @@ impl Check<'_> {
         let (mut work, mut forces, mut greatest) = (0.0, 0.0, 0.0f64);
         for contact in ray {
             let joint = &self.assembly.joints[contact.joint];
-            // Supports may move into each other: what they meet is the ground.
+            // Supports may overlap each other: their joint is part of the ground.
             if supports[joint.minus].is_some() && supports[joint.plus].is_some() {
                 continue;
             }
@@ -615,12 +616,12 @@ impl Check<'_> {
         Powers { fixed, varying, dissipated, uncertain, impossible: impossible / largest }
     }
 
-    /// Velocity of the point where the fill presses, towards the ring.
+    /// Returns the velocity of the point of action of the fill, towards the ring.
     fn fill_speed(&self, reaction: &FillReaction, motion: &[CentroidVelocity]) -> f64 {
         velocity_at(self.centroids[reaction.body], motion[reaction.body], reaction.point).dot(&reaction.direction)
     }
 
-    /// Σ |H u + dissipation| over the forces H of the fill: zero where each flows only on its bound.
+    /// Returns Σ |H u + dissipation| over the forces H of the fill: zero if the fill flows only on its bounds.
     fn idle_fill(&self, fill: &[f64], motion: &[CentroidVelocity]) -> f64 {
         let reactions = self.assembly.fill_reactions().iter().zip(&self.loads.fill_bounds).zip(fill);
         let idle = reactions.map(|((reaction, bounds), force)| {
@@ -630,8 +631,8 @@ impl Check<'_> {
         idle.sum()
     }
 
-    /// Field and mechanism with the laws' own flow: both exist at one factor, each joint moves only
-    /// where it yields, and no associated bound is exceeded. The bounds \[claimed lower, factor\].
+    /// Checks field and mechanism with the laws' own flow: both exist at one factor, each joint moves only if it
+    /// yields, and no associated bound is exceeded. Returns the bounds \[claimed lower, factor\].
     fn non_associated(&mut self, claim: &Claim, gap: f64) -> Option<[f64; 2]> {
         let own = claim.non_associated?;
         let (Some(factor), Some(motion), Some(field)) = (claim.factor, claim.motion, claim.field) else {
@@ -683,7 +684,7 @@ impl Check<'_> {
                 LowerProofKind::Search if own.search_is_trusted => Ok((f64::INFINITY, 0.0)),
                 LowerProofKind::Search => Err("an exhaustive search leaves nothing that could be checked".into()),
                 LowerProofKind::Start => Ok((claim.start, 0.0)),
-                // The state itself is then one of associated flow: its factor is the greatest and the only one.
+                // The state then has associated flow: its factor is the only one and the greatest.
                 LowerProofKind::Associated if self.associated => Ok((factor, 0.0)),
                 LowerProofKind::Associated => Err("the flow of some law is not associated".into()),
                 LowerProofKind::Products => {
@@ -691,8 +692,8 @@ impl Check<'_> {
                 }
             };
             match shown {
-                // What rounding of the multipliers may cost is taken off, and once more, so that other
-                // rounding confirms it.
+                // Subtract the possible rounding error of the multipliers, and subtract it twice, so that a computation
+                // with different rounding confirms the bound.
                 Ok((shown, rounding)) if lower > shown && lower - shown <= PRODUCTS * unit => {
                     lower = (shown - rounding).max(claim.start);
                 }
@@ -704,15 +705,15 @@ impl Check<'_> {
         (admissible && scaled && flows && complementary).then_some([lower, factor])
     }
 
-    /// The field that bounds the associated factor from below.
+    /// Checks the field that proves the lower bound of the associated factor.
     fn associated_field(&mut self, at: f64, field: &[ContactForce], fill: &[f64]) {
         let scale = self.residual_scale(at);
         self.residual("associated_equilibrium", self.imbalance(field, fill, 1.0, at) / scale, ROUNDING);
         self.residual("associated_strength", self.violation(field, Admitted::Strength) / scale, ROUNDING);
     }
 
-    /// The factor that the motion proves, and by how much rounding of its jumps can change it where
-    /// strengths are far beyond the forces.
+    /// Returns the factor that the motion proves, and its possible change from rounding of the jumps if strengths are
+    /// far above the forces.
     fn upper_bound(&mut self, claim: &Claim) -> Option<(f64, f64)> {
         let motion = claim.motion?;
         let Powers { fixed, varying, dissipated, uncertain, impossible } = self.powers(motion);
@@ -722,7 +723,7 @@ impl Check<'_> {
         (flows && scaled).then(|| ((dissipated - fixed) / varying, uncertain / varying.abs()))
     }
 
-    /// Held bodies do not move.
+    /// Checks that held bodies do not move.
     fn held(&mut self, motion: &[CentroidVelocity]) {
         if self.groups.iter().zip(motion).any(|(group, v)| group.is_none() && v.iter().any(|x| *x != 0.0)) {
             self.fail("a body held by the ground moves");
@@ -764,30 +765,30 @@ impl Check<'_> {
 
 /// Powers on a motion.
 struct Powers {
-    /// Of the fixed loads.
+    /// Power of the fixed loads.
     fixed: f64,
-    /// Of the varying loads.
+    /// Power of the varying loads.
     varying: f64,
-    /// Dissipated in the joints.
+    /// Power dissipated in the joints.
     dissipated: f64,
-    /// What of the difference of these powers means nothing: rounding of the jumps times the strengths, and of the loads'
-    /// own powers.
+    /// Uncertainty of the difference of these powers: rounding of the jumps times the strengths, and rounding of the
+    /// powers of the loads.
     uncertain: f64,
-    /// The greatest motion that no force of a law could do, relative to the greatest jump.
+    /// The greatest jump that is not possible for any force of a law, relative to the greatest jump.
     impossible: f64,
 }
 
-/// Power that goes into fill whose point of action moves towards the ring at a speed: its greatest force resists motion
-/// into the fill, its least force drives motion away from it.
+/// Returns the power dissipated in fill whose point of action moves towards the ring at a speed. The greatest force
+/// resists motion into the fill; the least force drives motion away from it.
 fn fill_dissipation([least, greatest]: [f64; 2], speed: f64) -> f64 {
     (-speed * least).max(-speed * greatest)
 }
 
-/// ∫₀¹ max_v v·(−ġ(s)) ds of the linear jump along a joint: the power dissipated per area.
-/// The maximum of linear functions is integrated exactly between their crossings.
+/// Returns ∫₀¹ max_v v·(−ġ(s)) ds of the linear jump along a joint: the power dissipated per area. The maximum of
+/// linear functions is integrated exactly between their crossings.
 pub(super) fn support_integral(vertices: &[[f64; 2]], jump: &Jump) -> f64 {
     let end = |v: &[f64; 2], i: usize| -(v[0] * jump.open[i] + v[1] * jump.slip);
-    // Dry joints: nothing crosses.
+    // Dry joints: there is one function and no crossing.
     if let [vertex] = vertices {
         return (end(vertex, 0) + end(vertex, 1)) / 2.0;
     }
@@ -806,9 +807,9 @@ pub(super) fn support_integral(vertices: &[[f64; 2]], jump: &Jump) -> f64 {
     cuts.windows(2).map(|w| (w[1] - w[0]) * (greatest(w[0]) + greatest(w[1])) / 2.0).sum()
 }
 
-/// The greatest jump that no combination of flow directions gives, and Σ γ_i s_i over all
-/// joints: the power of the flow on the field's distance from the yield surface. Slip gives the
-/// multiplier of its sliding facet; what is left of the opening is associated. Joints that do not `count` are passed over.
+/// Returns the greatest jump that is not a combination of flow directions, and Σ γ_i s_i over all joints: the power of
+/// the flow on the distance of the field from the yield surface. Slip gives the multiplier of its sliding facet; the
+/// rest of the opening is associated. Joints that do not `count` are skipped.
 pub(super) fn idle_power(
     assembly: &Assembly,
     (facets, polygons): (&[Vec<Facet>], &[YieldPolygon]),
@@ -836,7 +837,7 @@ pub(super) fn idle_power(
         };
         let (height, area) = (joint.height(), joint.height() * assembly.width);
         let mut open = jump.open;
-        // Slip that is rounding is none, however far a facet is from yielding.
+        // Slip within rounding counts as zero, whatever the distance of a facet from yielding.
         let slip = if jump.slip.abs() > 8.0 * f64::EPSILON * largest { jump.slip } else { 0.0 };
         let slack = |f: &Facet| f.bound * area - f.normal[0] * n - f.normal[1] * t;
         let sliding = facets[law].iter().filter(|f| f.mode == FacetMode::Sliding && f.flow[1] * slip < 0.0);

@@ -1,11 +1,11 @@
-//! Mechanisms: which joints rotate, slide and crush in a motion, and what kind of collapse it is.
+//! Mechanisms: the joints that rotate, slide and crush in a motion, and the kind of collapse.
 
 use crate::law::{FacetMode, FlowRule, InterfaceLaw, YieldPolygon};
 use crate::model::geometry::{Vec2, turned};
 use crate::model::{Assembly, Bond, Joint};
 use serde::{Deserialize, Serialize};
 
-/// What kind of collapse a mechanism is.
+/// The kind of a mechanism.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MechanismKind {
@@ -21,7 +21,7 @@ pub enum MechanismKind {
     Sliding,
     /// Crushing only.
     Crushing,
-    /// Several of these together.
+    /// A combination of hinges, sliding and crushing.
     Mixed,
 }
 
@@ -35,16 +35,16 @@ pub enum Side {
     Extrados,
 }
 
-/// A joint that rotates while its blocks keep touching.
+/// A joint that rotates while its blocks stay in contact.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Hinge {
     /// Index of the joint.
     pub joint: usize,
     /// Names of the bodies \[minus, plus\].
     pub between: [String; 2],
-    /// On arches, where the blocks touch.
+    /// Side of the contact; arches only.
     pub side: Option<Side>,
-    /// Where the blocks touch \[m\].
+    /// Point of contact \[m\].
     pub point: [f64; 2],
     /// Rotation of plus relative to minus \[rad per unit of motion\].
     pub rotation: f64,
@@ -61,7 +61,7 @@ pub struct Sliding {
     pub slip: f64,
 }
 
-/// A joint that crushes: its own law over more than half the height, or blocks next to it.
+/// A joint that crushes: by its law over more than half of the height, or by the blocks next to it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Crushing {
     /// Index of the joint.
@@ -77,16 +77,16 @@ pub struct Crushing {
 pub struct Mechanism {
     /// Its kind.
     pub kind: MechanismKind,
-    /// Hinges, neighbouring joints of equal side and sense counted as one.
+    /// Number of hinges; neighbouring joints with equal side and sense count as one.
     pub hinge_count: usize,
-    /// Whether it is the only one; `null` where not known.
+    /// True if it is the only mechanism; `null` if not known.
     pub unique: Option<bool>,
-    /// Every rotating joint whose blocks touch.
+    /// All rotating joints whose blocks stay in contact.
     pub hinges: Vec<Hinge>,
     /// Every sliding joint.
     pub sliding: Vec<Sliding>,
-    /// Every joint that crushes over more than [`CRUSHES`] of its height, and every joint next to which a block
-    /// of a material that yields has crushed, over whatever share; the kind counts shares above [`CRUSHES`].
+    /// All joints that crush over more than [`CRUSHES`] of their height, and all joints next to a yielding block that
+    /// has crushed, over any share. The kind counts shares above [`CRUSHES`].
     pub crushing: Vec<Crushing>,
     /// Its place on a path; `None` for limit analysis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -97,17 +97,17 @@ pub struct Mechanism {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MechanismPlace {
-    /// At a constant load: forces rest.
+    /// At constant load: forces do not change.
     Plateau,
-    /// Just behind a limit point: the load falls and forces change.
+    /// Just after a limit point: the load falls and forces change.
     Peak,
 }
 
 impl MechanismPlace {
-    /// Relative change of a load that stands still.
+    /// Relative change of a load that counts as constant.
     const STANDS_STILL: f64 = 1e-6;
 
-    /// The place of the mechanism at a load factor behind which the path is followed to another factor.
+    /// Returns the place of a mechanism at a factor, if the path continues from there to another factor.
     pub fn of(factor: f64, followed_to: f64) -> Self {
         let still = (followed_to - factor).abs() <= Self::STANDS_STILL * factor.abs();
         if still { MechanismPlace::Plateau } else { MechanismPlace::Peak }
@@ -117,38 +117,38 @@ impl MechanismPlace {
 /// Velocity of a body: \[v_x, v_y\] at its centroid and ω.
 pub type CentroidVelocity = [f64; 3];
 
-/// How the plus body leaves the minus body at a joint.
+/// Relative velocity of the plus body at a joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Jump {
     /// ġ_n at the two ends.
     pub open: [f64; 2],
-    /// ġ_t, the same along the joint.
+    /// ġ_t, constant along the joint.
     pub slip: f64,
 }
 
 impl Jump {
-    /// Relative rotation of plus, given the joint's height.
+    /// Returns the relative rotation of plus for a joint of this height.
     pub fn rotation(&self, height: f64) -> f64 {
         (self.open[0] - self.open[1]) / height
     }
 
-    /// The greatest component.
+    /// Returns the size of the greatest component.
     pub fn size(&self) -> f64 {
         self.open[0].abs().max(self.open[1].abs()).max(self.slip.abs())
     }
 }
 
-/// Velocity of a point of a body.
+/// Returns the velocity of a point of a body.
 pub fn velocity_at(centroid: Vec2, velocity: CentroidVelocity, point: Vec2) -> Vec2 {
     Vec2::new(velocity[0], velocity[1]) + turned(point - centroid) * velocity[2]
 }
 
-/// The jumps at all joints in a motion of all bodies.
+/// Returns the jumps at all joints for a motion of all bodies.
 pub fn jumps(assembly: &Assembly, motion: &[CentroidVelocity]) -> Vec<Jump> {
     jumps_about(assembly, &assembly.centroids(), motion)
 }
 
-/// The same, the centroids of all bodies being known.
+/// Returns the jumps at all joints, given the centroids of all bodies.
 pub(super) fn jumps_about(assembly: &Assembly, centroids: &[Vec2], motion: &[CentroidVelocity]) -> Vec<Jump> {
     let jump = |joint: &Joint| {
         let (n, t) = joint.frame();
@@ -161,21 +161,20 @@ pub(super) fn jumps_about(assembly: &Assembly, centroids: &[Vec2], motion: &[Cen
     assembly.joints.iter().map(jump).collect()
 }
 
-/// Share of a joint's height that must crush before its hinge is none and the kind says so. A hinge whose toe
-/// crushes over less stays a hinge.
+/// Share of a joint's height above which its rotation counts as crushing and no longer as a hinge.
 pub const CRUSHES: f64 = 0.5;
 
-/// Jumps smaller than this share of the greatest count as none.
+/// Greatest size of jumps that are ignored, as a share of the greatest jump.
 const TOLERANCE: f64 = 1e-9;
 
-/// How far a point of a joint is from touching, given the rays of the law without crushing:
-/// positive apart, zero in contact (slip that dilates included), negative crushing.
+/// Returns the clearance of a point of a joint, given the rays of the law without crushing: positive if apart, zero in
+/// contact (including slip with dilatancy), negative if crushing.
 fn clearance(rays: &[[f64; 2]], open: f64, slip: f64) -> f64 {
     let along = |ray: &[f64; 2]| (ray[0] * open + ray[1] * slip) / ray[0].max(0.1);
     rays.iter().map(along).fold(f64::INFINITY, f64::min)
 }
 
-/// Reads a mechanism off a motion in which joints flow as `flow` says. `None` where nothing moves.
+/// Identifies the mechanism of a motion in which joints have the flow `flow`. `None` if nothing moves.
 pub fn mechanism(
     assembly: &Assembly,
     motion: &[CentroidVelocity],
@@ -185,16 +184,16 @@ pub fn mechanism(
     mechanism_of_deforming(Deforming { share: TOLERANCE, pressed: &[] }, assembly, motion, unique, flow)
 }
 
-/// Bodies that also deform while they move.
+/// Data of bodies that deform while they move.
 #[derive(Debug, Clone, Copy)]
 pub struct Deforming<'a> {
-    /// Jumps below this share of the greatest are deformation.
+    /// Jumps below this share of the greatest jump are deformation.
     pub share: f64,
-    /// By joint, the end near which its blocks press on each other: there it touches, even where its toe gives way.
+    /// For each joint, the end near which its blocks press on each other: the point of contact, also if the toe yields.
     pub pressed: &'a [Option<usize>],
 }
 
-/// Reads a mechanism off rates of bodies that also deform.
+/// Identifies the mechanism of rates of bodies that also deform.
 pub fn mechanism_of_deforming(
     deforming: Deforming,
     assembly: &Assembly,
@@ -224,13 +223,13 @@ pub fn mechanism_of_deforming(
         let between = || [joint.minus, joint.plus].map(|body| assembly.bodies[body].name.clone());
         let clear = jump.open.map(|open| clearance(&rays[law], open, jump.slip));
         if clear[0] > tolerance && clear[1] > tolerance {
-            continue; // apart all along
+            continue; // apart along the whole joint
         }
         if jump.slip.abs() > tolerance {
             found.sliding.push(Sliding { joint: index, between: between(), slip: jump.slip });
         }
-        // Where nothing can crush, an end that comes nearer was apart and closes again, unless blocks that deform are
-        // pressed and turn.
+        // If nothing can crush, an end with closing velocity was open and closes again, unless deformable blocks are
+        // pressed and rotate.
         let crushable = can_crush[law];
         let pressed = deforming.pressed.get(index).copied().flatten();
         let gives_way = pressed.filter(|end| turns_about(clear, *end));
@@ -256,8 +255,8 @@ pub fn mechanism_of_deforming(
 }
 
 impl Mechanism {
-    /// The mechanism with what also crushes: blocks next to these joints. A joint next to which more than
-    /// half of the height crushes is no hinge.
+    /// Adds joints next to crushing blocks. A joint next to which more than half of the height crushes does not count
+    /// as a hinge.
     pub fn with_crushing(mut self, assembly: &Assembly, crushing: Vec<Crushing>) -> Self {
         for new in crushing {
             match self.crushing.iter_mut().find(|own| own.joint == new.joint) {
@@ -272,12 +271,12 @@ impl Mechanism {
         self
     }
 
-    /// Whether more than [`CRUSHES`] of a joint crushes.
+    /// Returns true if more than [`CRUSHES`] of a joint crushes.
     pub fn crushes(&self, joint: usize) -> bool {
         self.crushing.iter().any(|c| c.joint == joint && c.share > CRUSHES)
     }
 
-    /// Counts hinges and names the kind.
+    /// Counts hinges and determines the kind.
     fn name_kind(&mut self, assembly: &Assembly) {
         let crushing = self.crushing.iter().any(|c| c.share > CRUSHES);
         let hinges: Vec<&Hinge> = self.hinges.iter().filter(|hinge| !self.crushes(hinge.joint)).collect();
@@ -294,7 +293,7 @@ impl Mechanism {
     }
 }
 
-/// Whether a law lets blocks come nearer than touching: it crushes, or gives its tractions from gaps.
+/// Returns true if a law allows overlap of blocks: it crushes, or it is a response.
 fn crushes(law: &dyn InterfaceLaw) -> bool {
     law.facets().is_none_or(|facets| facets.iter().any(|facet| facet.mode == FacetMode::Crushing))
 }
@@ -308,19 +307,19 @@ fn contact_rays(law: &dyn InterfaceLaw, flow: FlowRule) -> Vec<[f64; 2]> {
     let mut rays = YieldPolygon::of(&uncrushed).rays;
     let opposite = |a: &[f64; 2], b: &[f64; 2]| a[0] * b[0] + a[1] * b[1] < -0.999;
     if rays.len() < 2 || rays.iter().any(|a| rays.iter().any(|b| opposite(a, b))) {
-        // Stuck along the joint: only opening parts the blocks.
+        // No sliding along the joint: blocks separate only by opening.
         rays = vec![[1.0, 0.0]];
     }
     rays
 }
 
-/// Whether pressed blocks that deform turn about an end: one end comes nearer while the other parts, or the end where
-/// they press stays by far more than the other.
+/// Returns true if pressed deformable blocks rotate about an end: one end closes while the other opens, or the pressed
+/// end moves far less than the other.
 fn turns_about(clear: [f64; 2], end: usize) -> bool {
     clear[0] * clear[1] < 0.0 || clear[end].abs() < CRUSHES * clear[1 - end].abs()
 }
 
-/// Share of the height over which the clearance, linear along the joint, is negative.
+/// Returns the share of the height over which the clearance, linear along the joint, is negative.
 fn crushed_share(clear: [f64; 2], tolerance: f64) -> f64 {
     let [low, high] = if clear[0] < clear[1] { clear } else { [clear[1], clear[0]] };
     if low >= -tolerance {
@@ -332,7 +331,7 @@ fn crushed_share(clear: [f64; 2], tolerance: f64) -> f64 {
     }
 }
 
-/// Counts hinges, joints that share a body and rotate in the same sense on the same side as one.
+/// Counts hinges; joints that share a body and rotate in the same sense on the same side count as one.
 fn count_merged(assembly: &Assembly, hinges: &[&Hinge]) -> usize {
     let mut count = hinges.len();
     let mut group: Vec<usize> = (0..hinges.len()).collect();
@@ -361,12 +360,12 @@ mod tests {
     #[test]
     fn a_pressed_joint_turns_about_the_end_that_is_pressed() {
         let cases = [
-            ([-0.1, 1.0], true),   // the toe yields by a tenth of what the other end opens
-            ([-1.5, 1.0], true),   // and by more
-            ([0.1, -1.0], true),   // an open joint closes, its toe is relieved
-            ([0.05, 1.0], true),   // it grows longer
-            ([-0.2, -1.0], true),  // an open joint closes, and is pressed
-            ([-0.8, -1.0], false), // the joint is pressed together all along
+            ([-0.1, 1.0], true),   // the toe yields by a tenth of the opening of the other end
+            ([-1.5, 1.0], true),   // the toe yields by more
+            ([0.1, -1.0], true),   // an open joint closes and its toe is relieved
+            ([0.05, 1.0], true),   // the joint gets longer
+            ([-0.2, -1.0], true),  // an open joint closes and is pressed
+            ([-0.8, -1.0], false), // the joint is pressed along its whole height
             ([0.8, 1.0], false),
             ([-1.0, -0.2], false),
         ];

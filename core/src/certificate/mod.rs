@@ -1,4 +1,4 @@
-//! Certificates: what proves an answer. They share nothing with solvers.
+//! Certificates: proofs of the answers of solvers. They share no code with solvers.
 
 mod limit;
 mod magnitude;

@@ -1,24 +1,24 @@
-//! Proof that no limit state with the laws' own flow lies below a factor, from products of statics with
-//! kinematics, and its check, which shares nothing with the solver that found it.
+//! Proof that no limit state with the laws' own flow is below a factor, from products of statics with kinematics, and
+//! its check. The check shares no code with the solver that found the proof.
 //!
-//! A state has forces r and a factor λ with slacks s_j = b_j − a_j·r ≥ 0 and equilibrium, a motion q̇ with
-//! multipliers γ_i ≥ 0, jumps −Σ γ_i d_i and p·q̇ = 1, and γ_i s_i = 0. Every product of one of γ_i, p·q̇ with
-//! one of s_j, λ − a, t − λ is therefore ≥ 0 in a range a ≤ λ ≤ t, and the matrix Z of these products is
-//! U Y Vᵀ, where the columns of U span the motions that the flow rule allows and those of V the fields in
-//! equilibrium. Multipliers Λ ≥ 0 prove λ ≥ β where
+//! A state has forces r and a factor λ with slacks s_j = b_j − a_j·r ≥ 0 and equilibrium, a motion q̇ with multipliers
+//! γ_i ≥ 0, jumps −Σ γ_i d_i and p·q̇ = 1, and γ_i s_i = 0. Every product of one of γ_i, p·q̇ with one of s_j, λ − a, t
+//! − λ is therefore ≥ 0 in a range a ≤ λ ≤ t. The matrix Z of these products is U Y Vᵀ, where the columns of U span the
+//! motions that the flow rule allows and the columns of V span the fields in equilibrium. Multipliers Λ ≥ 0 prove λ ≥ β
+//! if
 //!
 //! ```text
 //! Uᵀ (C − (β − a) N − Λ) V = 0        λ − a = Σ C_ij Z_ij,   1 = p·q̇ = Σ N_ij Z_ij
 //! ```
 //!
 //! because then λ − β = Σ Λ_ij Z_ij, in which the products γ_i s_i are zero. This is linear duality of the first level
-//! of Sherali & Adams, SIAM J. Discrete Math. 3 (1990); the rows that say "equilibrium times γ_i" or "flow rule
-//! times r_j" need no multipliers here, they are U and V.
+//! of Sherali & Adams, SIAM J. Discrete Math. 3 (1990). The rows "equilibrium times γ_i" and "flow rule times r_j" need
+//! no multipliers here, because U and V represent them.
 //!
-//! **Rounding.** What is left of the left-hand side is spread over Λ by U (…) Vᵀ, so that the identity holds to
-//! the last digits; entries that become negative then cost their size times a product. That product has no bound
-//! that holds for every state (γ has none where mechanisms with p·q̇ = 0 exist). The check takes
-//! [`COVERED`] times the greatest γ times the greatest s of the state that was found.
+//! **Rounding.** The remainder of the left-hand side is distributed over Λ by U (…) Vᵀ, so that the identity holds to
+//! the last digits. Entries that become negative then cost their size times a product. No bound of this product holds
+//! for every state (γ has no bound if mechanisms with p·q̇ = 0 exist). The check uses [`COVERED`] times the greatest γ
+//! times the greatest s of the state that was found.
 
 use crate::law::{Facet, YieldPolygon};
 use crate::limit::{FIRST, LAST, ProductStep};
@@ -27,10 +27,10 @@ use crate::model::{Assembly, Bond, FillReaction, Joint, StageLoads, add_force};
 use nalgebra::DMatrix;
 use std::collections::BTreeMap;
 
-/// Products up to so many times those of the state that was found are covered.
+/// Greatest products that are covered, relative to those of the state that was found.
 pub const COVERED: f64 = 100.0;
 
-/// Columns shorter than this share of the longest are none.
+/// Columns shorter than this share of the longest are zero columns.
 const RANK: f64 = 1e-11;
 
 /// One row of one joint over its forces (N_0, N_1, T).
@@ -46,14 +46,14 @@ struct Row {
 struct Rows {
     rows: Vec<Row>,
     forces: usize,
-    /// Wrench components by force variable, two trailing columns for p and w; scaled.
+    /// Wrench components by force variable, with two trailing columns for p and w; scaled.
     balance: DMatrix<f64>,
     unit: f64,
     force: f64,
 }
 
 /// Checks each step from `start` on; `state` is the greatest γ and s of a state at the factor `found`. Returns the
-/// factor that is proved and what rounding took off it, or why nothing is.
+/// factor that is proved and the loss from rounding. An error gives the reason why nothing is proved.
 pub fn proved(
     assembly: &Assembly,
     loads: &StageLoads,
@@ -77,7 +77,7 @@ pub fn proved(
     Ok((proved, rounding))
 }
 
-/// Groups of bodies with the poles about which they balance.
+/// Groups of bodies with the poles of their moments.
 struct Groups<'a> {
     assembly: &'a Assembly,
     of_body: Vec<Option<usize>>,
@@ -98,7 +98,7 @@ impl<'a> Groups<'a> {
         Groups { assembly, of_body, poles, size: assembly.size() }
     }
 
-    /// Resultants of loads on each group about its pole, moments divided by the scene's size.
+    /// Returns the resultants of loads on each group about its pole; moments are divided by the size of the scene.
     fn gather(&self, wrenches: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let mut sums = vec![[0.0f64; 3]; self.poles.len()];
         for (group, [x, y, moment]) in self.of_body.iter().zip(wrenches) {
@@ -112,7 +112,7 @@ impl<'a> Groups<'a> {
         sums
     }
 
-    /// Columns of N_0, N_1 and T of a joint.
+    /// Returns the columns of N_0, N_1 and T of a joint.
     fn columns(&self, joint: &Joint) -> [Vec<f64>; 3] {
         let (n, t) = joint.frame();
         [(joint.ends[0], n), (joint.ends[1], n), (joint.ends[0], t)].map(|(at, direction)| {
@@ -128,7 +128,7 @@ impl<'a> Groups<'a> {
         })
     }
 
-    /// Column of a unit force of the fill; `None` where the ground holds the body.
+    /// Returns the column of a unit force of the fill. `None` if the ground holds the body.
     fn fill_column(&self, reaction: &FillReaction) -> Option<Vec<f64>> {
         let group = self.of_body[reaction.body]?;
         let mut column = vec![0.0; 3 * self.poles.len()];
@@ -137,7 +137,8 @@ impl<'a> Groups<'a> {
         Some(column)
     }
 
-    /// Rows of a joint's law over (N_0, N_1, T), and whether T is a variable: without friction T = 0 and slip is free.
+    /// Returns the rows of a joint's law over (N_0, N_1, T), and true if T is a variable: without friction T = 0 and
+    /// slip is free.
     fn rows(&self, index: usize, first: usize) -> Result<(Vec<Row>, bool), String> {
         let joint = &self.assembly.joints[index];
         let facets = self.assembly.law(joint).and_then(|law| law.facets()).unwrap_or_default();
@@ -171,7 +172,7 @@ impl<'a> Groups<'a> {
 impl Rows {
     fn new(assembly: &Assembly, loads: &StageLoads) -> Result<Self, String> {
         let groups = Groups::new(assembly);
-        // The least force of the fill is a fixed load; what it may press beyond is a variable.
+        // The least force of the fill is a fixed load; the force above it is a variable.
         let mut fixed = loads.fixed.clone();
         for (reaction, [least, _]) in assembly.fill_reactions().iter().zip(&loads.fill_bounds) {
             add_force(&mut fixed[reaction.body], reaction.point, reaction.direction, *least);
@@ -215,7 +216,7 @@ impl Rows {
         Ok(Rows { rows, forces, balance, unit, force })
     }
 
-    /// U: every γ_i and p·q̇ of the motions that the flow rule allows.
+    /// Returns U: every γ_i and p·q̇ of the motions that the flow rule allows.
     fn motions(&self) -> DMatrix<f64> {
         let (groups, count) = (self.balance.nrows(), self.rows.len());
         let mut flow = DMatrix::zeros(self.forces, groups + count);
@@ -232,7 +233,7 @@ impl Rows {
         orthonormal(all)
     }
 
-    /// V: every s_j, λ − a and t − λ of the fields in equilibrium.
+    /// Returns V: every s_j, λ − a and t − λ of the fields in equilibrium.
     fn fields(&self, [a, t]: [f64; 2]) -> DMatrix<f64> {
         let free = null_space(&self.balance);
         let one = free.row(self.forces + 1).into_owned();
@@ -251,7 +252,7 @@ impl Rows {
         orthonormal(all)
     }
 
-    /// By how much less than its bound a step proves.
+    /// Returns the difference between the bound of a step and the factor that it proves.
     fn shortfall(&self, motions: &DMatrix<f64>, step: &ProductStep, state: [f64; 2]) -> Result<f64, String> {
         let count = self.rows.len();
         let [a, t] = step.range;
@@ -260,7 +261,7 @@ impl Rows {
         let first = |code: i64| if code == FIRST { Some(count) } else { of.get(&code).copied() };
         let second = |code: i64| if code == LAST { Some(count + 1) } else { first(code) };
         let (unit, force) = (self.unit, self.force);
-        // γ F/Λ, s/F and λ/Λ are of size one.
+        // Scaled to order one: γ F/Λ, s/F and λ/Λ.
         let scale = |i: usize, j: usize| match (i < count, j < count) {
             (true, true) | (false, false) => 1.0,
             (true, false) => unit / force,
@@ -295,7 +296,7 @@ impl Rows {
                     (false, false) => (t - a) / unit,
                 };
                 let missing = -multipliers[(i, j)];
-                // `max` would read NaN as 0.
+                // `max` would treat NaN as 0.
                 shortfall += if missing.is_nan() { f64::NAN } else { missing.max(0.0) * product * unit };
             }
         }
@@ -303,7 +304,7 @@ impl Rows {
     }
 }
 
-/// Orthonormal columns with the same span, longest first, each made orthogonal twice.
+/// Returns orthonormal columns with the same span, longest first, each orthogonalised twice.
 fn orthonormal(mut columns: DMatrix<f64>) -> DMatrix<f64> {
     let (rows, count) = columns.shape();
     let length = |columns: &DMatrix<f64>, j: usize| columns.column(j).norm();
@@ -329,7 +330,7 @@ fn orthonormal(mut columns: DMatrix<f64>) -> DMatrix<f64> {
     basis.columns(0, found).into_owned()
 }
 
-/// Orthonormal columns that span the solutions of matrix · x = 0.
+/// Returns orthonormal columns that span the solutions of matrix · x = 0.
 fn null_space(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     let rows = orthonormal(matrix.transpose());
     let rest = DMatrix::identity(matrix.ncols(), matrix.ncols()) - &rows * rows.transpose();

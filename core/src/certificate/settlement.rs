@@ -1,7 +1,7 @@
-//! What proves how rigid blocks follow supports that move: the supports move as they are told, joints move along the
-//! flow of their laws, and the field does on every joint the work that it dissipates. With associated flow and a field that
-//! is admissible no motion has less potential energy (weak duality); with the laws' own flow it is a state, of which there
-//! may be others.
+//! The proof of a motion of rigid blocks that follow moving supports. The supports have their prescribed motion, joints
+//! move along the flow of their laws, and the work of the field on every joint equals the dissipation. With associated
+//! flow and an admissible field no motion has less potential energy (weak duality). With the laws' own flow this is one
+//! state of possibly several.
 
 use super::limit::{ContactForce, idle_power, largest_jump, support_integral};
 use super::mechanism::{CentroidVelocity, Jump, jumps};
@@ -9,18 +9,18 @@ use crate::law::{Facet, FlowRule, YieldPolygon};
 use crate::model::geometry::{Vec2, turned};
 use crate::model::{Assembly, Bond, Joint, Stage, Target};
 
-/// Motion of every held block at its centroid by the end of stage `index`; `None` of free ones.
+/// Returns the motion of every held block at its centroid at the end of stage `index`; `None` for free blocks.
 ///
 /// # Errors
 ///
-/// Says which blocks are bonded to supports that move apart.
+/// Names the blocks that are bonded to supports that move apart.
 pub fn support_motions(
     assembly: &Assembly,
     stages: &[Stage],
     index: usize,
 ) -> Result<Vec<Option<CentroidVelocity>>, String> {
     let groups = assembly.rigid_groups().0;
-    // Motion as a rigid one seen at the origin.
+    // Rigid motion about the origin.
     let mut own: Vec<Option<[f64; 3]>> = assembly.bodies.iter().map(|body| body.fixed.then_some([0.0; 3])).collect();
     for stage in &stages[..=index] {
         let factor = match stage.target {
@@ -35,7 +35,7 @@ pub fn support_motions(
             }
         }
     }
-    // What is bonded to a support is part of it.
+    // A block bonded to a support is part of it.
     let bonded = || assembly.joints.iter().filter(|joint| joint.bond == Bond::Bonded);
     loop {
         let mut changed = false;
@@ -63,11 +63,12 @@ pub fn support_motions(
     Ok(own.iter().enumerate().map(at_centroid).collect())
 }
 
-/// Residuals by name: `settlement_supports` (how far held blocks are from where they are told to be), `settlement_flow`
-/// (jumps that are no flow), both relative to the greatest displacement and to the greatest jump or a millionth of that, and `settlement_gap` (work of the
-/// field on all joints that is not dissipated, relative to the sum of |force| × greatest jump). `supports`: the motion
-/// of every held block, `None` of free ones. With the laws' own flow jumps are combinations of flow directions, and the gap is
-/// the power of each on the distance of the field from its yield surface.
+/// Returns the residuals by name. `settlement_supports` is the distance of held blocks from their prescribed motion,
+/// relative to the greatest displacement. `settlement_flow` is the greatest jump that is not a flow, relative to the
+/// greatest jump or a millionth of the greatest displacement. `settlement_gap` is the work of the field on all joints
+/// that is not dissipated, relative to the sum of |force| × greatest jump. `supports` is the motion of every held
+/// block, `None` for free blocks. With the laws' own flow jumps are combinations of flow directions, and the gap is the
+/// power of the flow on the distance of the field from the yield surface.
 pub fn settlement_residuals(
     assembly: &Assembly,
     field: &[ContactForce],
@@ -84,7 +85,7 @@ pub fn settlement_residuals(
     let facets: Vec<Vec<Facet>> =
         assembly.catalogue.laws.iter().map(|(_, law)| law.facets().unwrap_or_default()).collect();
     let polygons: Vec<YieldPolygon> = facets.iter().map(|facets| YieldPolygon::of(facets)).collect();
-    // Supports may move into each other: what they meet is the ground.
+    // Supports may overlap each other: their joint is part of the ground.
     let counts =
         |joint: &Joint| joint.bond == Bond::Bonded || supports[joint.minus].is_none() || supports[joint.plus].is_none();
     let (impossible, gap) = match flow {
@@ -99,7 +100,8 @@ pub fn settlement_residuals(
     ]
 }
 
-/// The greatest jump that is no associated flow, and the work of the field on the joints that is not dissipated.
+/// Returns the greatest jump that is not an associated flow, and the work of the field on the joints that is not
+/// dissipated.
 fn undissipated(
     assembly: &Assembly,
     polygons: &[YieldPolygon],

@@ -1,7 +1,8 @@
-//! Static condensation of a body's mesh on the points where something acts on it.
+//! Static condensation of a body's mesh onto the points at which forces act.
 //!
-//! Everything is computed for a material of modulus 1 and width 1 in the shape's own frame, in units of the shape's
-//! size: in plane problems the flexibility then does not depend on the size, and C = Q C̃ Qᵀ / (E width) with Q the
+//! All quantities are computed for modulus 1 and width 1 in the frame of the shape, in units of its size. In plane
+//! problems the flexibility then does not depend on the size, and C = Q C̃ Qᵀ / (E width), where Q is the rotation of
+//! the body and E the modulus of the material. The axes of the material are those of the shape.
 //! body's rotation and E the material's modulus. The material's axes are those of the shape.
 
 use super::inelastic::{InelasticBody, Strains};
@@ -14,32 +15,32 @@ use nalgebra::DMatrix;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// A body seen from some of its points, in world axes of its undeformed placement. Displacements
-/// are relative to the body's mean rigid motion.
+/// The flexibility of a body at some of its points, in world axes of its undeformed placement. Displacements are
+/// relative to the mean rigid motion of the body.
 #[derive(Debug, Clone)]
 pub struct Condensed {
-    /// The points, as asked for \[m\].
+    /// The points \[m\], in the given order.
     pub points: Vec<Vec2>,
-    /// C, 2m × 2m with rows and columns (x, y) per point \[m/N\]: u = C f. Symmetric, positive
-    /// semi-definite; forces that are not in equilibrium are balanced by the body's inertia. The body
-    /// force of a uniform acceleration is the inertia force of a rigid motion and adds nothing
-    /// relative to the mean motion: the weight is in C f where contact forces carry it.
+    /// C, 2m × 2m with rows and columns (x, y) per point \[m/N\]: u = C f. It is symmetric and positive semi-definite;
+    /// forces that are not in equilibrium are balanced by the inertia of the body. The body force of a uniform
+    /// acceleration is the inertia force of a rigid motion and adds nothing relative to the mean motion. The weight is
+    /// therefore included in C f if contact forces carry it.
     pub flexibility: DMatrix<f64>,
 }
 
-/// A shape with what is known of it.
+/// A shape with its computed quantities.
 struct Known {
     shape: Arc<Shape>,
     /// Flexibilities by local points.
     condensed: Vec<(Vec<Vec2>, Arc<DMatrix<f64>>)>,
     /// Strains at the quadrature points.
     strains: Option<Arc<Strains>>,
-    /// Places of points and displacements of all nodes by forces there, by local points.
+    /// Places of points, and displacements of all nodes from forces there, by local points.
     responses: Vec<(Vec<Vec2>, Response)>,
 }
 
 impl Known {
-    /// C̃ of points given in the shape's frame.
+    /// Returns C̃ of points given in the frame of the shape.
     fn flexibility(&mut self, local: Vec<Vec2>, asked: &[Vec2]) -> Result<Arc<DMatrix<f64>>, String> {
         if let Some((_, flexibility)) = self.condensed.iter().find(|(points, _)| agree(points, &local)) {
             return Ok(flexibility.clone());
@@ -50,9 +51,9 @@ impl Known {
     }
 }
 
-/// Condenses bodies. Congruent shapes (equal up to translation and rotation, vertices in the same
-/// order, with the same mesh density and elasticity but for its modulus) share one factorisation, and one
-/// flexibility where also their points agree.
+/// Condenses bodies. Congruent shapes share one factorisation, and one flexibility if their points agree too. Shapes
+/// are congruent if they are equal up to translation and rotation, with vertices in the same order and the same mesh
+/// density and elasticity, except for its modulus.
 pub struct Condenser {
     plane: Plane,
     width: f64,
@@ -63,17 +64,17 @@ pub struct Condenser {
 }
 
 impl Condenser {
-    /// For bodies of this width \[m\].
+    /// Creates a condenser for bodies of this width \[m\].
     pub fn new(plane: Plane, width: f64) -> Self {
         Condenser { plane, width, shapes: Vec::new(), by_area: HashMap::new(), factorisations: 0 }
     }
 
-    /// How many meshes were factorised.
+    /// Returns the number of factorised meshes.
     pub fn factorisations(&self) -> u64 {
         self.factorisations
     }
 
-    /// The index of the shape of a body, made where there is none yet.
+    /// Returns the index of the shape of a body and creates the shape if necessary.
     fn shape(
         &mut self,
         placement: &Placement,
@@ -114,8 +115,8 @@ impl Condenser {
         Ok((placement, shape, local))
     }
 
-    /// The body of simple anticlockwise `vertices` \[m\] seen from `points` \[m\] on or in it. An
-    /// error says what is wrong with the body, its mesh or a point.
+    /// Condenses the body with simple anticlockwise `vertices` \[m\] onto `points` \[m\] on or in it. An error names
+    /// the fault of the body, its mesh or a point.
     pub fn condense(
         &mut self,
         vertices: &[Vec2],
@@ -129,7 +130,7 @@ impl Condenser {
         Ok(Condensed { points: points.to_vec(), flexibility: turned })
     }
 
-    /// The same body of a material that yields: its first answer is that of [`condense`](Self::condense)
+    /// Condenses a body whose material yields. Before yielding its flexibility is that of [`condense`](Self::condense)
     /// with the same elasticity, to the last bit for elements of order 2 and 3.
     pub fn inelastic(
         &mut self,
@@ -161,9 +162,9 @@ impl Condenser {
         Ok(InelasticBody::new(shape, strains, response, flexibility, placement, elasticity, update, width))
     }
 
-    /// Displacements and stresses of the whole mesh from `forces` \[N\] at `points` and a uniform
-    /// `body_force` \[N/m³\]. They are those of a body in equilibrium; what is left of
-    /// the resultant is in [`Recovered::imbalance`] and is balanced by inertia.
+    /// Returns displacements and stresses of the whole mesh from `forces` \[N\] at `points` and a uniform `body_force`
+    /// \[N/m³\]. They are those of a body in equilibrium: a remaining resultant is stored in [`Recovered::imbalance`]
+    /// and balanced by inertia.
     pub fn recover(
         &mut self,
         vertices: &[Vec2],

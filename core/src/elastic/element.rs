@@ -1,11 +1,11 @@
-//! One element: its map, its stiffness, its stresses, for a material of modulus 1 and width 1 throughout.
+//! One finite element: its map, stiffness and stresses, always for modulus 1 and width 1.
 //!
-//! Displacement elements (orders 2 and 3): K = ∫ Bᵀ D B dA with (order + 1)² Gauss points, D the
-//! operator of the plane problem.
+//! Displacement elements (orders 2 and 3): K = ∫ Bᵀ D B dA with (order + 1)² Gauss points, where D is the operator of
+//! the plane problem.
 //!
-//! Order 1 (Pian & Sumihara 1984, eq. 25): σ = P β, H = ∫ Pᵀ S P dA, G = ∫ Pᵀ B dA,
-//! K = Gᵀ H⁻¹ G, β = H⁻¹ G u, with S = D⁻¹ and P the three uniform
-//! stresses and two linear ones, t₁ ⊗ t₁ η and t₃ ⊗ t₃ ξ, along the element's mean axes t₁, t₃.
+//! Order 1 (Pian & Sumihara 1984, eq. 25): σ = P β, H = ∫ Pᵀ S P dA, G = ∫ Pᵀ B dA, K = Gᵀ H⁻¹ G, β = H⁻¹ G u, with S =
+//! D⁻¹. P has the three uniform stresses and two linear ones, t₁ ⊗ t₁ η and t₃ ⊗ t₃ ξ, along the mean axes t₁, t₃ of
+//! the element.
 
 use super::quadrature::{gauss, lagrange, lagrange_slopes, lobatto};
 use crate::law::Plane;
@@ -17,19 +17,19 @@ use nalgebra::{DMatrix, Matrix2, Matrix3, Matrix5, SMatrix, SVector, Vector3};
 pub struct ShapeValues {
     /// N of each node.
     pub values: Vec<f64>,
-    /// ∂N/∂ξ, ∂N/∂η of each node.
+    /// ∂N/∂ξ and ∂N/∂η of each node.
     pub slopes: Vec<[f64; 2]>,
-    /// Where.
+    /// Coordinates (ξ, η) of the point.
     pub place: [f64; 2],
-    /// Weight of the quadrature; 0 where it is no quadrature point.
+    /// Weight of the quadrature; 0 if it is not a quadrature point.
     pub weight: f64,
 }
 
-/// Everything about elements of one order that does not depend on their shape.
+/// Data of elements of one order that do not depend on their shape.
 #[derive(Debug, Clone)]
 pub struct Reference {
     pub order: usize,
-    /// Nodes in one direction.
+    /// Node coordinates in one direction.
     pub nodes: Vec<f64>,
     /// Quadrature points, (order + 1)².
     pub points: Vec<ShapeValues>,
@@ -49,7 +49,7 @@ impl Reference {
         reference
     }
 
-    /// Shape functions at a point.
+    /// Returns the shape functions at a point.
     pub fn at(&self, place: [f64; 2]) -> ShapeValues {
         let [along, across] = place.map(|x| (lagrange(&self.nodes, x), lagrange_slopes(&self.nodes, x)));
         let n = self.nodes.len();
@@ -63,7 +63,7 @@ impl Reference {
     }
 }
 
-/// The bilinear map of an element: its place and Jacobian ∂x_i/∂ξ_j.
+/// The bilinear map of an element: returns the position and the Jacobian ∂x_i/∂ξ_j.
 pub fn bilinear(corners: &[Vec2; 4], [xi, eta]: [f64; 2]) -> (Vec2, Matrix2<f64>) {
     let [a, b, c, d] = corners;
     let place = (a * (1.0 - xi) + b * (1.0 + xi)) * ((1.0 - eta) / 4.0)
@@ -73,7 +73,7 @@ pub fn bilinear(corners: &[Vec2; 4], [xi, eta]: [f64; 2]) -> (Vec2, Matrix2<f64>
     (place, Matrix2::from_columns(&[along, across]))
 }
 
-/// ∇N of each node, and the Jacobian's determinant.
+/// Returns ∇N of each node and the determinant of the Jacobian.
 fn gradients(corners: &[Vec2; 4], shape: &ShapeValues) -> (Vec<Vec2>, f64) {
     let (_, jacobian) = bilinear(corners, shape.place);
     let determinant = jacobian.determinant();
@@ -84,7 +84,7 @@ fn gradients(corners: &[Vec2; 4], shape: &ShapeValues) -> (Vec<Vec2>, f64) {
     (shape.slopes.iter().map(gradient).collect(), determinant)
 }
 
-/// ∫ N_a dA and ∫ N_a x dA of each node: the element's part of M R.
+/// Returns ∫ N_a dA and ∫ N_a x dA of each node: the contribution of the element to M R.
 pub fn inertia(reference: &Reference, corners: &[Vec2; 4]) -> Vec<(f64, Vec2)> {
     let mut sums = vec![(0.0, Vec2::zeros()); reference.nodes.len().pow(2)];
     for point in &reference.points {
@@ -98,7 +98,7 @@ pub fn inertia(reference: &Reference, corners: &[Vec2; 4]) -> Vec<(f64, Vec2)> {
     sums
 }
 
-/// The element's stiffness, rows and columns (x, y) per node.
+/// Returns the stiffness of the element, with rows and columns (x, y) per node.
 pub fn stiffness(reference: &Reference, corners: &[Vec2; 4], d: &Matrix3<f64>) -> DMatrix<f64> {
     if reference.order == 1 {
         let hybrid = Hybrid::new(reference, corners, d);
@@ -107,7 +107,7 @@ pub fn stiffness(reference: &Reference, corners: &[Vec2; 4], d: &Matrix3<f64>) -
     }
     let count = reference.nodes.len().pow(2);
     let mut k = DMatrix::zeros(2 * count, 2 * count);
-    // What an isotropic material has not, apart: 0 there, so that mirrored elements stay mirrored to the last bit.
+    // Terms that vanish for an isotropic material are separate: mirrored elements then stay mirrored to the last bit.
     let other = [d.m11, d.m22].map(|direct| direct - (d.m12 + 2.0 * d.m33));
     for point in &reference.points {
         let (gradient, determinant) = gradients(corners, point);
@@ -130,12 +130,12 @@ pub fn stiffness(reference: &Reference, corners: &[Vec2; 4], d: &Matrix3<f64>) -
     k
 }
 
-/// B of each quadrature point, (ε_xx, ε_yy, γ_xy) from (x, y) per node, with its share of the area:
-/// strains of the displacements, which a material that yields needs. Orders 2 and 3: those of
-/// [`stiffness`]. Order 1 in plane strain: the dilatation is replaced by its mean over the element,
-/// half in each direction, so that volume-preserving flow does not lock (Nagtegaal, Parks & Rice 1974,
-/// Comput. Methods Appl. Mech. Engng 4, 153–177; Hughes 1980, Int. J. Numer. Methods Eng. 15,
-/// 1413–1418); it bends too stiffly, as all bilinear displacements do.
+/// Returns B of each quadrature point, (ε_xx, ε_yy, γ_xy) from (x, y) per node, with its share of the area. These are
+/// strains of the displacements, which a yielding material needs. For orders 2 and 3 they are the strains of
+/// [`stiffness`]. For order 1 in plane strain the dilatation is replaced by its mean over the element, half in each
+/// direction, so that volume-preserving flow does not lock (Nagtegaal, Parks & Rice 1974, Comput. Methods Appl. Mech.
+/// Engng 4, 153–177; Hughes 1980, Int. J. Numer. Methods Eng. 15, 1413–1418). This element is too stiff in bending,
+/// like all bilinear displacements.
 pub fn strain_operators(reference: &Reference, corners: &[Vec2; 4], plane: Plane) -> Vec<(DMatrix<f64>, f64)> {
     let mut all: Vec<(DMatrix<f64>, f64)> = Vec::with_capacity(reference.points.len());
     for point in &reference.points {
@@ -165,7 +165,7 @@ pub fn strain_operators(reference: &Reference, corners: &[Vec2; 4], plane: Plane
     all
 }
 
-/// K of strains from [`strain_operators`].
+/// Returns K of strains from [`strain_operators`].
 pub fn stiffness_of_strains(operators: &[(DMatrix<f64>, f64)], d: &Matrix3<f64>) -> DMatrix<f64> {
     let columns = operators[0].0.ncols();
     let mut k = DMatrix::zeros(columns, columns);
@@ -175,7 +175,7 @@ pub fn stiffness_of_strains(operators: &[(DMatrix<f64>, f64)], d: &Matrix3<f64>)
     k
 }
 
-/// Pian and Sumihara's element.
+/// The hybrid-stress element of Pian and Sumihara.
 struct Hybrid {
     /// H⁻¹.
     inverse: Matrix5<f64>,
@@ -209,13 +209,13 @@ impl Hybrid {
             h += p.transpose() * compliance * p * area;
             hybrid.coupling += p.transpose() * b * area;
         }
-        // H is positive definite for any convex element; a failure shows as not a number in the
-        // residual that every solution is checked by.
+        // H is positive definite for any convex element. A failure gives NaN in the residual that checks every
+        // solution.
         hybrid.inverse = h.cholesky().map_or(Matrix5::repeat(f64::NAN), |c| c.inverse());
         hybrid
     }
 
-    /// P at a place.
+    /// Returns P at a point.
     fn field(&self, [xi, eta]: [f64; 2]) -> SMatrix<f64, 3, 5> {
         let [one, three] = self.modes;
         SMatrix::from_fn(|i, j| match j {
@@ -230,9 +230,9 @@ impl Hybrid {
     }
 }
 
-/// Stresses (xx, yy, xy) at the element's nodes and at its middle, from its nodes' displacements.
-/// Orders 2 and 3: extrapolated from order × order Gauss points, where derivatives are most accurate
-/// (Barlow 1976, Int. J. Numer. Methods Eng. 10, 243–251). Order 1: the hybrid element's own.
+/// Returns the stresses (xx, yy, xy) at the nodes and the centre of the element from the displacements of its nodes.
+/// Orders 2 and 3: extrapolated from order × order Gauss points, where derivatives are most accurate (Barlow 1976, Int.
+/// J. Numer. Methods Eng. 10, 243–251). Order 1: the stresses of the hybrid element.
 pub fn stresses(
     reference: &Reference,
     corners: &[Vec2; 4],
@@ -275,8 +275,8 @@ mod tests {
 
     const CORNERS: [[f64; 2]; 4] = [[0.0, 0.0], [2.0, 0.2], [1.7, 1.1], [-0.1, 0.9]];
 
-    /// Each element has exactly three motions without energy, and the energy of a uniform strain is
-    /// ½ σ·ε A, for both plane states and every order, on a distorted element.
+    /// Each element has exactly three motions without energy, and a uniform strain has the energy ½ σ·ε A: for both
+    /// plane states and every order, on a distorted element.
     #[test]
     fn rigid_motions_and_uniform_strains() {
         let corners = CORNERS.map(Vec2::from);

@@ -1,8 +1,8 @@
-//! Bodies whose material yields: internal forces, tangent, and their condensation on the points where
-//! something acts, once per iteration.
+//! Bodies whose material yields: internal forces, tangent, and their condensation onto the points at which forces act,
+//! once per iteration.
 //!
-//! With v the displacements of the nodes relative to the mean rigid motion (∫ v dA = 0, ∫ X × v dA = 0,
-//! as for elastic bodies), B the strains at the Gauss points and f the forces on the points,
+//! Let v be the displacements of the nodes relative to the mean rigid motion (∫ v dA = 0, ∫ X × v dA = 0, as for
+//! elastic bodies), B the strains at the Gauss points and f the forces on the points:
 //!
 //! ```text
 //! f_int(v) = ∫ Bᵀ σ(B v, state) dA = Pᵀ Nᵀ f,    K = ∫ Bᵀ (∂σ/∂ε) B dA
@@ -10,20 +10,21 @@
 //! u = N v = C f + c,    C = N X,   c = N x
 //! ```
 //!
-//! so that Newton's method on (f, v) together needs C (not symmetric where flow is not associated) and the
-//! offset c only. While nothing has yielded, X and C are those of the elastic body, x and c are zero, and
-//! no matrix is factorised. Internal forces of symmetric stresses are in equilibrium for any v, so
-//! gravity enters as for elastic bodies: it is the inertia relief of the forces on the points.
+//! Newton's method on (f, v) together therefore only needs C (not symmetric if flow is not associated) and the offset
+//! c. Before yielding X and C are those of the elastic body, x and c are zero, and no matrix is factorised. Internal
+//! forces of symmetric stresses are in equilibrium for any v. Gravity therefore acts as on elastic bodies: it is the
+//! inertia relief of the forces on the points.
 //!
-//! Everything is in the shape's own frame with unit area, forces in modulus × width × size: strains, stresses,
-//! states (plastic strains) and the axes of the material.
+//! All quantities (strains, stresses, plastic strains and the axes of the material) are in the frame of the shape with
+//! unit area, forces in units of modulus × width × size.
 //!
 //! **Characteristic length** of a Gauss point: √A of its element (Rots 1988, Computational modeling of concrete
-//! fracture, section 5). What localises is a band one element wide, h∥ along the compression, so that the energy
-//! per area comes out as h∥/√A times the law's: right for nearly square elements. That holds for order 1, whose strain
-//! along the band's normal is constant in the element. With order 2 it is linear and, with Gauss points −, 0, +, the
-//! middle node's equilibrium asks for σ₋ = σ₊ only: one outer point may unload while the other softens and the middle one
-//! follows with half of its strain, and 13/18 of the element take part; so softening is for elements of order 1.
+//! fracture, section 5). Strain localises in a band one element wide, h∥ along the compression, so that the energy per
+//! area is h∥/√A times that of the law: this is right for nearly square elements. It holds for order 1, whose strain
+//! along the normal of the band is constant in the element. With order 2 the strain is linear and, with Gauss points −,
+//! 0, +, equilibrium of the middle node only requires σ₋ = σ₊. One outer point may then unload while the other softens
+//! and the middle point follows with half of its strain, so that 13/18 of the element take part. Softening is therefore
+//! only for elements of order 1.
 
 use super::element::strain_operators;
 use super::mesh::{Mesh, MeshDensity};
@@ -35,7 +36,7 @@ use nalgebra::{DMatrix, Matrix2};
 use std::fmt;
 use std::sync::Arc;
 
-/// √A of the greatest element \[m\] of a polygon's mesh, or why there is no mesh.
+/// Returns √A of the greatest element \[m\] of a polygon's mesh. An error gives the reason why there is no mesh.
 pub fn largest_element(vertices: &[Vec2], density: &MeshDensity) -> Result<f64, String> {
     let mesh = Mesh::new(vertices, density)?;
     Ok((0..mesh.elements.len()).map(|e| area_and_centroid(&mesh.corners(e)).0.sqrt()).fold(0.0, f64::max))
@@ -59,7 +60,7 @@ impl Strains {
     }
 }
 
-/// What a body of a yielding material remembers.
+/// The state of a body whose material yields.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InelasticState {
     /// State of the law, Gauss point by Gauss point.
@@ -68,26 +69,26 @@ pub struct InelasticState {
     pub plastic_strain: Vec<[f64; 4]>,
     /// Cumulated √(2/3 ε̇^p:ε̇^p) of each Gauss point.
     pub equivalent: Vec<f64>,
-    /// The part of it that yielded under compression.
+    /// The part of `equivalent` that yielded under compression.
     pub crushed: Vec<f64>,
-    /// Whether some point has ever yielded.
+    /// True if any point has ever yielded.
     pub yielded: bool,
     /// Plastic work so far \[J\].
     pub dissipated: f64,
 }
 
-/// A step of a body by its law alone.
+/// A step of a body, computed by its law alone.
 #[derive(Debug, Clone, Copy)]
 pub struct PassedStep {
     /// Difference of the history from the expected one, relative to the greatest strain.
     pub drift: f64,
-    /// Energy stored at its end \[J\].
+    /// Energy stored at the end of the step \[J\].
     pub stored: f64,
-    /// Energy dissipated in it \[J\].
+    /// Energy dissipated in the step \[J\].
     pub dissipated: f64,
 }
 
-/// A body of a yielding material, seen from some of its points.
+/// A body whose material yields, condensed onto some of its points.
 #[derive(Clone)]
 pub struct InelasticBody {
     pub(super) shape: Arc<Shape>,
@@ -95,13 +96,13 @@ pub struct InelasticBody {
     pub(super) places: Arc<Vec<Place>>,
     /// X of the elastic body.
     pub(super) response: Arc<DMatrix<f64>>,
-    /// C of the elastic body, in the world \[m/N\].
+    /// C of the elastic body, in world axes \[m/N\].
     pub(super) flexibility: Arc<DMatrix<f64>>,
     pub(super) origin: Vec2,
     pub(super) rotation: Matrix2<f64>,
     pub(super) size: f64,
     pub(super) width: f64,
-    /// E \[Pa\]: what the shape's elasticity is relative to.
+    /// E \[Pa\], the reference modulus of the shape's elasticity.
     pub(super) modulus: f64,
     /// C⁻¹ × E in space.
     pub(super) compliance: [Voigt; 6],
@@ -144,33 +145,34 @@ impl InelasticBody {
         }
     }
 
-    /// C of the elastic body \[m/N\].
+    /// Returns C of the elastic body \[m/N\].
     pub fn flexibility(&self) -> Arc<DMatrix<f64>> {
         self.flexibility.clone()
     }
 
-    /// Number of Gauss points.
+    /// Returns the number of Gauss points.
     pub fn gauss_points(&self) -> usize {
         self.strains.operators.iter().map(Vec::len).sum()
     }
 
-    /// Number of nodes.
+    /// Returns the number of nodes.
     pub fn nodes(&self) -> usize {
         self.shape.mesh.nodes.len()
     }
 
-    /// Numbers in the law's state of a Gauss point.
+    /// Returns the number of state variables of a Gauss point.
     pub fn state_size(&self) -> usize {
         self.update.state_size()
     }
 
-    /// The first of them, which are memory: in plane stress the last one is only where the search for ε_zz begins.
+    /// Returns the number of leading state variables that are history. In plane stress the last variable is only the
+    /// start value of the search for ε_zz.
     pub fn memory_size(&self) -> usize {
         self.update.law().state_size()
     }
 
-    /// Rows of Gauss points of the elements with a side between two points \[m\], from that side
-    /// inwards: the length along the side that each stands for \[m\], and its points.
+    /// Returns the rows of Gauss points of the elements with a side between two points \[m\], from that side inwards:
+    /// for each row its share of the side's length \[m\] and its points.
     pub fn rows_along(&self, from: Vec2, to: Vec2) -> Vec<(f64, Vec<usize>)> {
         let mut rows = Vec::new();
         let (points, n) = (&self.shape.reference.points, self.shape.reference.order + 1);
@@ -183,7 +185,7 @@ impl InelasticBody {
                 if off(a).max(off(b)) > 1e-7 * self.size {
                     continue;
                 }
-                // Point (i, j) is the one at i + n j; sides 0 and 2 run along i.
+                // Point (i, j) has the index i + n j; sides 0 and 2 run along i.
                 let rule: f64 = points[..n].iter().map(|p| p.weight).sum();
                 for (row, point) in points[..n].iter().enumerate() {
                     let inwards = (0..n).map(|k| if side % 2 == 0 { row + n * k } else { k + n * row });
@@ -195,7 +197,7 @@ impl InelasticBody {
         rows
     }
 
-    /// The state of the undeformed body.
+    /// Returns the state of the undeformed body.
     pub fn initial(&self) -> InelasticState {
         let (count, size) = (self.gauss_points(), self.update.state_size());
         let mut history = vec![0.0; count * size];
@@ -210,14 +212,14 @@ impl InelasticBody {
         }
     }
 
-    /// Forces (x, y per point) \[N\] in the body's axes as loads of the shape.
+    /// Converts forces (x, y per point) \[N\] in the axes of the body into loads of the shape.
     pub(super) fn local_forces(&self, forces: &[f64]) -> Vec<f64> {
         let scale = 1.0 / (self.modulus * self.width * self.size);
         let to_local = self.rotation.transpose() * scale;
         forces.chunks(2).flat_map(|f| <[f64; 2]>::from(to_local * Vec2::new(f[0], f[1]))).collect()
     }
 
-    /// Displacements of the nodes of the elastic body.
+    /// Returns the displacements of the nodes of the elastic body.
     pub fn elastic_displacement(&self, forces: &[f64]) -> Vec<f64> {
         let mut all = vec![0.0; 2 * self.nodes()];
         for (f, column) in self.local_forces(forces).iter().zip(self.response.column_iter()) {
@@ -226,14 +228,14 @@ impl InelasticBody {
         all
     }
 
-    /// Displacements (x, y) of the points from those of the nodes \[m\], in the body's axes.
+    /// Returns the displacements (x, y) of the points from those of the nodes \[m\], in the axes of the body.
     pub fn at_points(&self, displacement: &[f64]) -> Vec<f64> {
         let local = at_places(&self.places, &DMatrix::from_column_slice(displacement.len(), 1, displacement));
         let turn = self.rotation * self.size;
         local.as_slice().chunks(2).flat_map(|u| <[f64; 2]>::from(turn * Vec2::new(u[0], u[1]))).collect()
     }
 
-    /// Greatest force on a node that internal forces leave \[N\].
+    /// Returns the greatest unbalanced force on a node \[N\].
     pub(super) fn unbalanced(&self, internal: &[f64], forces: &[f64]) -> f64 {
         let mut rest = DMatrix::zeros(internal.len(), 1);
         for (place, f) in self.places.iter().zip(self.local_forces(forces).chunks(2)) {
@@ -285,7 +287,7 @@ impl InelasticBody {
         Ok(points)
     }
 
-    /// f_int of stresses.
+    /// Returns f_int of stresses.
     pub(super) fn internal(&self, points: &[PlanarPoint]) -> Vec<f64> {
         let mut internal = vec![0.0; 2 * self.nodes()];
         let mut next = points.iter();
@@ -301,9 +303,9 @@ impl InelasticBody {
         internal
     }
 
-    /// Recomputes a state from displacements and history alone: the greatest unbalanced force on a
-    /// node \[N\] with stresses that the law itself gives there, and how much the law would still change
-    /// the history, relative to the greatest strain: 0 where no stress lies beyond the yield surface.
+    /// Recomputes a state from displacements and history alone. Returns the greatest unbalanced force on a node \[N\]
+    /// with the stresses of the law, and the change of the history that the law still gives, relative to the greatest
+    /// strain: 0 if no stress is beyond the yield surface.
     pub fn check(&self, displacement: &[f64], history: &[f64], forces: &[f64]) -> Result<[f64; 2], String> {
         if displacement.len() != 2 * self.nodes() || history.len() != self.gauss_points() * self.state_size() {
             return Err("the state of a block does not fit its mesh".into());
@@ -318,7 +320,8 @@ impl InelasticBody {
         Ok([self.unbalanced(&self.internal(&points), forces), drift])
     }
 
-    /// The update of all Gauss points to displacements from the first of two histories, which the second should be.
+    /// Updates all Gauss points to displacements from the first of two histories and compares the result with the
+    /// second.
     ///
     /// # Errors
     /// If an update fails or the numbers do not fit the mesh.
@@ -344,8 +347,8 @@ impl InelasticBody {
         Ok(PassedStep { drift, stored, dissipated })
     }
 
-    /// Displacements and stresses of the whole mesh in world axes of the undeformed placement. Stresses at
-    /// nodes are those of the Gauss points next to them, so that none lies beyond the yield surface.
+    /// Returns displacements and stresses of the whole mesh in world axes of the undeformed placement. The stress at a
+    /// node is the mean of the nearest Gauss points, so that the stress of each element is within the yield surface.
     pub fn recover(&self, displacement: &[f64], state: &InelasticState) -> Result<Recovered, String> {
         let strains = self.strains_at(displacement);
         let mut new = state.history.clone();
@@ -372,7 +375,7 @@ impl InelasticBody {
         Ok(recovered.placed(self.origin, self.rotation, self.size, 1.0, [0.0; 3]))
     }
 
-    /// Mean over each element of a value of its Gauss points.
+    /// Returns the mean over each element of a quantity at its Gauss points.
     pub fn by_element(&self, values: &[f64]) -> Vec<f64> {
         let mut next = values.iter();
         let mean = |points: &Vec<(DMatrix<f64>, f64)>| {

@@ -1,23 +1,22 @@
-//! Where two bodies touch along a joint: contact points and their weights.
+//! Contact points of two bodies along a joint, and their weights.
 
 use super::mesh::{MeshDensity, edge_breaks};
 use super::quadrature::lobatto;
 use crate::model::geometry::{Vec2, edges};
 
-/// Breaks closer than this share of the joint are one.
+/// Distance below which two breaks are the same, as a share of the joint.
 const SAME: f64 = 1e-9;
-/// How far from its edge a joint's end may lie, as a share of the edge: joints are found to a
-/// tolerance that counts in sizes of the scene.
+/// Greatest distance of a joint's end from its edge, as a share of the edge: joints are found with a tolerance relative
+/// to the size of the scene.
 const ON_EDGE: f64 = 1e-5;
 
-/// Contact points along a joint, as fractions from its end 0 to its end 1, and the share of the
-/// joint's area that belongs to each (their sum is 1): on each segment between two breaks the
-/// Gauss–Lobatto rule of order + 1 points, exact for polynomials of degree 2 order − 1 on the
-/// segment. Times height and width of the joint a share is the tributary area \[m²\].
+/// Returns the contact points along a joint, as fractions from its end 0 to its end 1, and their shares of its area
+/// (their sum is 1). Each segment between two breaks has the Gauss–Lobatto rule of order + 1 points, which is exact for
+/// polynomials of degree 2 order − 1. A share times height and width of the joint is the tributary area \[m²\].
 ///
-/// `breaks` are the element boundaries of both sides, sorted, from 0 to 1 ([`union_breaks`]). Forces
-/// p × share × area at these points act on each side as the consistent nodal forces of the uniform
-/// pressure p, because p times a shape function has degree `order` on a segment.
+/// `breaks` are the element boundaries of both sides, sorted, from 0 to 1 ([`union_breaks`]). Forces p × share × area
+/// at these points are on each side the consistent nodal forces of the uniform pressure p, because p times a shape
+/// function has degree `order` on a segment.
 pub fn joint_points(breaks: &[f64], order: usize) -> (Vec<f64>, Vec<f64>) {
     let (nodes, rule) = lobatto(order + 1);
     let (mut places, mut weights) = (Vec::new(), Vec::new());
@@ -40,8 +39,8 @@ pub fn joint_points(breaks: &[f64], order: usize) -> (Vec<f64>, Vec<f64>) {
     (places, weights)
 }
 
-/// The breaks of two sides together, sorted, from exactly 0 to exactly 1; those outside are left
-/// out, those within 1e-9 of each other are one.
+/// Returns the breaks of both sides, sorted, from exactly 0 to exactly 1. Breaks outside are left out; breaks within
+/// 1e-9 of each other are merged.
 pub fn union_breaks(one: &[f64], other: &[f64]) -> Vec<f64> {
     let mut all: Vec<f64> = one.iter().chain(other).copied().filter(|&t| t > SAME && t < 1.0 - SAME).collect();
     all.sort_by(f64::total_cmp);
@@ -49,9 +48,11 @@ pub fn union_breaks(one: &[f64], other: &[f64]) -> Vec<f64> {
     std::iter::once(0.0).chain(all).chain([1.0]).collect()
 }
 
-/// Element boundaries of a body along a joint on one of its edges, as fractions from the joint's end
-/// 0 to its end 1. The joint may cover a part of the edge only; its ends are breaks. An error where
-/// no edge holds the joint.
+/// Returns the element boundaries of a body along a joint on one of its edges, as fractions from end 0 to end 1 of the
+/// joint. The joint may cover only a part of the edge; its ends are breaks.
+///
+/// # Errors
+/// If no edge contains the joint.
 pub fn breaks_on_joint(vertices: &[Vec2], density: &MeshDensity, ends: [Vec2; 2]) -> Result<Vec<f64>, String> {
     let (along, found) = (ends[1] - ends[0], edges(vertices).enumerate());
     let distance = |a: Vec2, b: Vec2| {
@@ -80,7 +81,7 @@ mod tests {
         [[0.0, 0.0], [0.4, 0.0], [0.4, 0.175], [0.0, 0.175]].map(|[a, b]| Vec2::new(a + x, b + y)).to_vec()
     }
 
-    /// On meshes that match, contact points are the nodes and weights the consistent forces.
+    /// On matching meshes contact points are the nodes and weights are the consistent forces.
     #[test]
     fn matching_meshes_touch_at_their_nodes() {
         let density = MeshDensity { elements: [4, 6], order: 2, grading: [3.0; 2] };

@@ -1,5 +1,5 @@
-//! A body of a yielding material linearised at displacements of its nodes: stresses, energies, tangent, and the
-//! condensation of the tangent on its points. The equations are those of the module `inelastic`.
+//! A body of a yielding material, linearised at displacements of its nodes: stresses, energies, tangent, and the
+//! condensation of the tangent onto its points. The module `inelastic` has the equations.
 
 use super::element::stiffness_of_strains;
 use super::inelastic::{InelasticBody, InelasticState};
@@ -12,11 +12,11 @@ use std::sync::Arc;
 
 /// Greatest residual of the equations of a tangent, relative to loads and stiffness × displacement.
 const RESIDUAL: f64 = 1e-10;
-/// Share of the elastic stiffness that yielding points get where their tangent has no inverse. It
-/// slows the iteration down; what it converges to is the same.
+/// Share of the elastic stiffness that is added to yielding points if the tangent has no inverse. It makes the
+/// iteration slower but does not change its result.
 const SOFTEST: f64 = 1e-3;
 
-/// Flexibility, relative to the elastic body's, from which a tangent counts as singular.
+/// Flexibility, relative to that of the elastic body, above which a tangent counts as singular.
 const LARGEST: f64 = 1e4;
 
 /// A body linearised at nodal displacements: u = C f + c at its points.
@@ -29,23 +29,23 @@ pub struct Linearisation {
     /// X and x.
     response: Arc<DMatrix<f64>>,
     rest: Vec<f64>,
-    /// Where: displacements of the nodes (x, y) in the shape's frame, in units of its size.
+    /// Displacements of the nodes (x, y) at which it is linearised, in the frame of the shape, in units of its size.
     pub displacement: Arc<Vec<f64>>,
     internal: Vec<f64>,
-    /// What a step that ends here remembers.
+    /// State of the body if a step ends here.
     pub end: Arc<InelasticState>,
     /// Elastic energy \[J\].
     pub stored: f64,
     /// ∂(plastic work)/∂v \[J\].
     slope: Vec<f64>,
-    /// Gauss points that yield in the step.
+    /// Number of Gauss points that yield in the step.
     pub yielding: usize,
-    /// Matrices factorised for it.
+    /// Number of matrices factorised for it.
     pub factorisations: u64,
 }
 
 impl InelasticBody {
-    /// Displacements of the nodes by forces on the points, as the linearisation sees them.
+    /// Returns the displacements of the nodes from forces on the points, by the linearisation.
     pub fn displaced(&self, linear: &Linearisation, forces: &[f64]) -> Vec<f64> {
         let mut all = linear.rest.clone();
         for (f, column) in self.local_forces(forces).iter().zip(linear.response.column_iter()) {
@@ -56,18 +56,18 @@ impl InelasticBody {
         all
     }
 
-    /// Greatest force on a node that the stresses at the linearisation's displacements leave \[N\].
+    /// Returns the greatest unbalanced force on a node \[N\] at the displacements of the linearisation.
     pub fn residual(&self, linear: &Linearisation, forces: &[f64]) -> f64 {
         self.unbalanced(&linear.internal, forces)
     }
 
-    /// C⁻¹ σ of a point: the elastic part of (ε_xx, ε_yy, ε_zz, γ_xy).
+    /// Returns C⁻¹ σ of a point: the elastic part of (ε_xx, ε_yy, ε_zz, γ_xy).
     fn elastic_strain(&self, stress: [f64; 4]) -> [f64; 4] {
         let entry = |i: usize| (0..4).map(|j| self.compliance[i][j] * stress[j]).sum::<f64>() / self.modulus;
         [0, 1, 2, 3].map(entry)
     }
 
-    /// ∂(σ · Δε^p)/∂(ε_xx, ε_yy, γ_xy) of a point \[Pa\].
+    /// Returns ∂(σ · Δε^p)/∂(ε_xx, ε_yy, γ_xy) of a point \[Pa\].
     fn dissipation_slope(&self, point: &PlanarPoint, step: &[f64; 4]) -> [f64; 3] {
         let stress = [point.stress[0], point.stress[1], point.stress_across, point.stress[2]];
         [0, 1, 2].map(|j| {
@@ -78,8 +78,10 @@ impl InelasticBody {
         })
     }
 
-    /// The body at displacements of its nodes, `start` being the state at the step's start. An error
-    /// says why there are no stresses or no tangent.
+    /// Linearises the body at displacements of its nodes; `start` is the state at the start of the step.
+    ///
+    /// # Errors
+    /// If stresses or the tangent cannot be computed.
     pub fn linearise(&self, displacement: Vec<f64>, start: &InelasticState) -> Result<Linearisation, String> {
         let volume = self.size.powi(2) * self.width;
         let strains = self.strains_at(&displacement);
@@ -155,7 +157,7 @@ impl InelasticBody {
         })
     }
 
-    /// P K⁺ Pᵀ Nᵀ and P K⁺ f_int for the tangents of points that yield, the elastic stiffness elsewhere.
+    /// Returns P K⁺ Pᵀ Nᵀ and P K⁺ f_int with the tangents of yielding points and the elastic stiffness elsewhere.
     fn solve(&self, points: &[PlanarPoint], internal: &[f64], share: f64) -> Option<(DMatrix<f64>, Vec<f64>)> {
         let size = internal.len();
         let mut entries: Entries = Vec::new();
@@ -213,7 +215,7 @@ impl InelasticBody {
         Some((all.columns(0, right.len() - 1).into_owned(), own))
     }
 
-    /// ∂(plastic work of the step)/∂(forces on the points) \[J/N\].
+    /// Returns ∂(plastic work of the step)/∂(forces on the points) \[J/N\].
     pub fn dissipation_by_force(&self, linear: &Linearisation) -> Vec<f64> {
         if linear.yielding == 0 {
             return vec![0.0; 2 * self.places.len()];

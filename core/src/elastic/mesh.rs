@@ -5,20 +5,20 @@ use super::quadrature::lobatto;
 use crate::model::geometry::Vec2;
 use std::collections::HashMap;
 
-/// How bodies are meshed.
+/// The density of a body's mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeshDensity {
-    /// Elements along edges 0 and 2, along edges 1 and 3: of a voussoir along the ring, across it.
+    /// Number of elements along edges 0 and 2, and along edges 1 and 3: for a voussoir along the ring and across it.
     pub elements: [usize; 2],
     /// Order of the elements, 1 to 3.
     pub order: usize,
-    /// g ≥ 1: greatest over least element size along edges 0 and 2, along edges 1 and 3; finer
-    /// towards the edge's ends. Polygons that are no quadrilaterals take the greater for all edges.
+    /// g ≥ 1: ratio of greatest to least element size along edges 0 and 2, and along edges 1 and 3; elements are finer
+    /// towards the ends of an edge. Polygons that are not quadrilaterals use the greater value for all edges.
     pub grading: [f64; 2],
 }
 
 impl Default for MeshDensity {
-    /// 4 × 6 elements of order 2, all alike.
+    /// 4 × 6 elements of order 2 with equal sizes.
     fn default() -> Self {
         MeshDensity { elements: [4, 6], order: 2, grading: [1.0; 2] }
     }
@@ -28,7 +28,7 @@ impl MeshDensity {
     /// Greatest order of an element.
     pub const MAX_ORDER: usize = 3;
 
-    /// What is wrong with it, in words.
+    /// Checks the values. An error gives the reason.
     pub fn check(&self) -> Result<(), String> {
         if self.elements.contains(&0) {
             return Err("a mesh needs at least one element each way".into());
@@ -43,8 +43,8 @@ impl MeshDensity {
     }
 }
 
-/// Ends of n parts of \[0, 1\] whose sizes grow geometrically from both ends to the middle, the
-/// greatest `grading` times the least; t\[n − i\] = 1 − t\[i\] to the last bit.
+/// Returns the ends of n parts of \[0, 1\] whose sizes grow geometrically from both ends to the middle; the greatest
+/// size is `grading` times the least. t\[n − i\] = 1 − t\[i\] holds to the last bit.
 fn graded(n: usize, grading: f64) -> Vec<f64> {
     let steps = ((n - 1) / 2).max(1) as f64;
     let size = |i: usize| grading.powf(i.min(n - 1 - i) as f64 / steps);
@@ -56,7 +56,7 @@ fn graded(n: usize, grading: f64) -> Vec<f64> {
     mirrored(ends)
 }
 
-/// The values with the upper half replaced by one minus the lower.
+/// Replaces the upper half of the values by one minus the lower half.
 fn mirrored(mut t: Vec<f64>) -> Vec<f64> {
     let n = t.len() - 1;
     for i in 0..=n / 2 {
@@ -65,7 +65,7 @@ fn mirrored(mut t: Vec<f64>) -> Vec<f64> {
     t
 }
 
-/// Places of the nodes between element ends.
+/// Returns the positions of all nodes, given the element ends.
 fn with_nodes(ends: &[f64], order: usize) -> Vec<f64> {
     let inner = lobatto(order + 1).0;
     let mut t = vec![ends[0]];
@@ -81,13 +81,13 @@ fn half_divisions(density: &MeshDensity) -> usize {
     density.elements[0].max(density.elements[1]).div_ceil(2)
 }
 
-/// Grading of edges of polygons that are no quadrilaterals.
+/// Grading of edges of polygons that are not quadrilaterals.
 fn common_grading(density: &MeshDensity) -> f64 {
     density.grading[0].max(density.grading[1])
 }
 
-/// Element boundaries along the edge from vertex `edge` to the next, as fractions from 0 to 1;
-/// symmetric to the last bit, so that an edge read backwards has the same ones.
+/// Returns the element boundaries along the edge from vertex `edge` to the next, as fractions from 0 to 1. They are
+/// symmetric to the last bit, so that the reversed edge has the same boundaries.
 pub fn edge_breaks(vertices: &[Vec2], density: &MeshDensity, edge: usize) -> Vec<f64> {
     if is_convex_quadrilateral(vertices) {
         graded(density.elements[edge % 2], density.grading[edge % 2])
@@ -96,7 +96,7 @@ pub fn edge_breaks(vertices: &[Vec2], density: &MeshDensity, edge: usize) -> Vec
     }
 }
 
-/// The mesh's nodes along the edge from vertex `edge` to the next, as fractions from 0 to 1.
+/// Returns the nodes of the mesh along the edge from vertex `edge` to the next, as fractions from 0 to 1.
 pub fn edge_points(vertices: &[Vec2], density: &MeshDensity, edge: usize) -> Vec<f64> {
     with_nodes(&edge_breaks(vertices, density, edge), density.order)
 }
@@ -104,16 +104,16 @@ pub fn edge_points(vertices: &[Vec2], density: &MeshDensity, edge: usize) -> Vec
 /// A mesh of straight-sided quadrilaterals.
 #[derive(Debug, Clone)]
 pub struct Mesh {
-    /// Places of the nodes.
+    /// Positions of the nodes.
     pub nodes: Vec<Vec2>,
-    /// Nodes of each element, (order + 1)², row by row: node (i, j) is the one at i + (order + 1) j.
+    /// Nodes of each element, (order + 1)², row by row: node (i, j) has the index i + (order + 1) j.
     pub elements: Vec<Vec<usize>>,
     /// Order of the elements.
     pub order: usize,
 }
 
 impl Mesh {
-    /// The mesh of a simple anticlockwise polygon, or why there is none.
+    /// Meshes a simple anticlockwise polygon. An error gives the reason why this is not possible.
     pub fn new(vertices: &[Vec2], density: &MeshDensity) -> Result<Mesh, String> {
         density.check()?;
         let mut mesh = Mesh { nodes: vertices.to_vec(), elements: Vec::new(), order: density.order };
@@ -139,7 +139,7 @@ impl Mesh {
                 *middles.entry((a.min(b), a.max(b))).or_insert_with(|| mesh.add((vertices[a] + vertices[b]) / 2.0))
             });
             for i in 0..3 {
-                // Both directions start at the vertex, so each side is always met the same way round.
+                // Both directions start at the vertex, so that each side is always traversed in the same sense.
                 let corners = [triangle[i], middle[i], centre, middle[(i + 2) % 3]];
                 let places = [(half.as_slice(), complement.clone()), (half.as_slice(), complement.clone())];
                 mesh.fill(corners, &places, &mut sides);
@@ -153,8 +153,8 @@ impl Mesh {
         self.nodes.len() - 1
     }
 
-    /// Meshes the quadrilateral of four nodes. `places` are those of nodes from corner 0 to 1 and
-    /// from 0 to 3 with their complements to one; `sides` remembers the nodes on sides.
+    /// Meshes the quadrilateral of four nodes. `places` are the positions of nodes from corner 0 to 1 and from 0 to 3,
+    /// with their complements to one; `sides` stores the nodes on sides.
     fn fill(
         &mut self,
         corners: [usize; 4],
@@ -192,7 +192,7 @@ impl Mesh {
         }
     }
 
-    /// The corners of an element, anticlockwise.
+    /// Returns the corners of an element, anticlockwise.
     pub fn corners(&self, element: usize) -> [Vec2; 4] {
         let (nodes, p) = (&self.elements[element], self.order);
         [0, p, (p + 1) * (p + 1) - 1, p * (p + 1)].map(|k| self.nodes[nodes[k]])
@@ -219,8 +219,8 @@ mod tests {
         ]
     }
 
-    /// Elements fill the polygon, every corner is convex, no two nodes coincide, and each inner
-    /// element side belongs to two elements: the mesh is conforming.
+    /// Meshes are valid and conforming: elements fill the polygon, every corner is convex, no two nodes coincide, and
+    /// each inner element side belongs to two elements.
     #[test]
     fn meshes_are_valid() {
         for (shape, order, grading) in shapes()
@@ -251,7 +251,7 @@ mod tests {
         }
     }
 
-    /// Nodes of the mesh lie where `edge_points` says, from either end, to rounding.
+    /// The edges of a mesh have their nodes at `edge_points`, from either end, within rounding.
     #[test]
     fn edges_have_their_nodes() {
         for shape in shapes() {
@@ -269,7 +269,7 @@ mod tests {
         }
     }
 
-    /// The greatest element along an edge is `grading` times the least, and lies in the middle.
+    /// The greatest element along an edge is `grading` times the least and is in the middle.
     #[test]
     fn grading_is_the_ratio_of_sizes() {
         for n in 3..9 {

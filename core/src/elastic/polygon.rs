@@ -1,12 +1,12 @@
-//! From any simple polygon to quadrilaterals: ears are cut off into triangles, each triangle gives
-//! three quadrilaterals around its centroid.
+//! Decomposition of simple polygons into quadrilaterals: ear clipping gives triangles, and each triangle gives three
+//! quadrilaterals around its centroid.
 
 use crate::model::geometry::{Vec2, cross};
 
-/// Sine of the least angle of a corner that a bilinear map takes; flatter corners are cut.
+/// Sine of the least corner angle for the bilinear map; polygons with flatter corners are cut.
 const LEAST_CORNER: f64 = 1e-3;
 
-/// Whether one bilinear map meshes the polygon: four corners, each clearly convex.
+/// Returns true if one bilinear map can mesh the polygon: four corners, each clearly convex.
 pub fn is_convex_quadrilateral(vertices: &[Vec2]) -> bool {
     vertices.len() == 4
         && (0..4).all(|i| {
@@ -15,13 +15,13 @@ pub fn is_convex_quadrilateral(vertices: &[Vec2]) -> bool {
         })
 }
 
-/// Twice the signed area of a triangle over its longest side squared: a measure of its shape.
+/// Returns twice the signed area of a triangle over its longest side squared, a measure of its shape.
 fn quality(a: Vec2, b: Vec2, c: Vec2) -> f64 {
     let longest = (b - a).norm_squared().max((c - b).norm_squared()).max((a - c).norm_squared());
     cross(b - a, c - a) / longest
 }
 
-/// Whether p lies in the closed triangle a, b, c, grown by rounding.
+/// Returns true if p is in the closed triangle a, b, c, enlarged by rounding.
 fn covers(a: Vec2, b: Vec2, c: Vec2, p: Vec2) -> bool {
     [(a, b), (b, c), (c, a)].iter().all(|&(from, to)| {
         let side = to - from;
@@ -29,9 +29,9 @@ fn covers(a: Vec2, b: Vec2, c: Vec2, p: Vec2) -> bool {
     })
 }
 
-/// Triangles of a simple anticlockwise polygon, as indices of vertices; every vertex is a corner,
-/// also those within a straight edge, so that triangles meet along whole edges. The best-shaped ear
-/// goes first. `None` where no ear is left, which a simple polygon cannot be.
+/// Returns triangles of a simple anticlockwise polygon as indices of vertices. Every vertex is a corner, also vertices
+/// within a straight edge, so that triangles share whole edges. The ear with the best shape is cut first. `None` if
+/// there is no ear, which cannot happen for a simple polygon.
 pub fn triangles(vertices: &[Vec2]) -> Option<Vec<[usize; 3]>> {
     let mut rest: Vec<usize> = (0..vertices.len()).collect();
     let mut found = Vec::with_capacity(vertices.len());
@@ -58,10 +58,10 @@ pub fn triangles(vertices: &[Vec2]) -> Option<Vec<[usize; 3]>> {
     Some(found)
 }
 
-/// Flips diagonals while that makes the worse of two triangles better.
+/// Flips diagonals as long as the worse of two triangles improves.
 fn improve(vertices: &[Vec2], triangles: &mut [[usize; 3]]) {
     let shape = |t: [usize; 3]| quality(vertices[t[0]], vertices[t[1]], vertices[t[2]]);
-    // Each flip raises the worse of two shapes, so this ends; the bound is for rounding only.
+    // Each flip improves the worse of two shapes, so the loop ends; the bound covers rounding only.
     for _ in 0..triangles.len() * triangles.len() + 1 {
         let mut flip = None;
         'search: for i in 0..triangles.len() {
@@ -96,7 +96,7 @@ mod tests {
         points.iter().map(|&(x, y)| Vec2::new(x, y)).collect()
     }
 
-    /// Triangles are not flat, fill the polygon, and use every vertex, also flat ones.
+    /// Triangles are not flat, fill the polygon, and use every vertex, also vertices within a straight edge.
     #[test]
     fn triangles_fill_any_polygon() {
         let shapes = [

@@ -1,7 +1,7 @@
 //! Gauss and Gauss–Lobatto points on \[−1, 1\], and Lagrange polynomials through points.
 //! Sources: Abramowitz & Stegun 1964, 25.4.29 and 25.4.32; Berrut & Trefethen 2004.
 
-/// Legendre's polynomial P_n and its derivative at |x| < 1.
+/// Returns Legendre's polynomial P_n and its derivative at |x| < 1.
 fn legendre(n: usize, x: f64) -> (f64, f64) {
     let (mut before, mut value) = (1.0, x);
     if n == 0 {
@@ -27,7 +27,7 @@ fn symmetric(mut points: Vec<f64>, mut weights: Vec<f64>) -> (Vec<f64>, Vec<f64>
     (points, weights)
 }
 
-/// Gauss's rule of n points, ascending: exact to degree 2n − 1.
+/// Returns Gauss's rule of n points, ascending: exact up to degree 2n − 1.
 pub fn gauss(n: usize) -> (Vec<f64>, Vec<f64>) {
     let point = |i: usize| {
         let mut x = -(std::f64::consts::PI * (i as f64 + 0.75) / (n as f64 + 0.5)).cos();
@@ -43,7 +43,7 @@ pub fn gauss(n: usize) -> (Vec<f64>, Vec<f64>) {
     symmetric(points, weights)
 }
 
-/// The rule of Gauss and Lobatto of n ≥ 2 points, ascending, with both ends: exact to degree 2n − 3.
+/// Returns the Gauss–Lobatto rule of n ≥ 2 points, ascending, with both ends: exact up to degree 2n − 3.
 pub fn lobatto(n: usize) -> (Vec<f64>, Vec<f64>) {
     let degree = n - 1;
     let m = degree as f64;
@@ -54,7 +54,7 @@ pub fn lobatto(n: usize) -> (Vec<f64>, Vec<f64>) {
         if i == degree {
             return 1.0;
         }
-        // Zeros of P'_m by Newton; (1 − x²) P'' = 2 x P' − m (m + 1) P.
+        // Zeros of P'_m by Newton's method; (1 − x²) P'' = 2 x P' − m (m + 1) P.
         let mut x = -(std::f64::consts::PI * i as f64 / m).cos();
         for _ in 0..20 {
             let (value, slope) = legendre(degree, x);
@@ -71,13 +71,13 @@ pub fn lobatto(n: usize) -> (Vec<f64>, Vec<f64>) {
     symmetric(points, weights)
 }
 
-/// Values of the Lagrange polynomials through `nodes` at x.
+/// Returns the values of the Lagrange polynomials through `nodes` at x.
 pub fn lagrange(nodes: &[f64], x: f64) -> Vec<f64> {
     let factor = |i: usize| move |(j, node): (usize, &f64)| (j != i).then(|| (x - node) / (nodes[i] - node));
     (0..nodes.len()).map(|i| nodes.iter().enumerate().filter_map(factor(i)).product()).collect()
 }
 
-/// Derivatives of the Lagrange polynomials through `nodes` at x.
+/// Returns the derivatives of the Lagrange polynomials through `nodes` at x.
 pub fn lagrange_slopes(nodes: &[f64], x: f64) -> Vec<f64> {
     let slope = |i: usize| -> f64 {
         let others = || (0..nodes.len()).filter(move |&j| j != i);
@@ -98,7 +98,7 @@ mod tests {
         points.iter().zip(weights).map(|(x, w)| w * x.powi(power)).sum()
     }
 
-    /// Both rules integrate every power up to their degree.
+    /// Both rules integrate every power up to their degree exactly.
     #[test]
     fn rules_are_exact_to_their_degree() {
         for n in 1..=8 {
@@ -113,7 +113,7 @@ mod tests {
         assert!((lobatto(4).0[1] + 0.2f64.sqrt()).abs() < 1e-16);
     }
 
-    /// Interpolation and its derivative are exact for polynomials of the degree.
+    /// Interpolation and its derivative are exact for polynomials of the same degree.
     #[test]
     fn lagrange_polynomials_interpolate() {
         let nodes = lobatto(4).0;

@@ -1,5 +1,5 @@
-//! A shape: a placed polygon's mesh in its own frame with its factorisation, for modulus 1, width 1 and area 1
-//! (origin at the centroid, x along edge 0), and what forces on its points do to it.
+//! A shape: the mesh of a placed polygon in its own frame with its factorisation, for modulus 1, width 1 and area 1
+//! (origin at the centroid, x along edge 0), and its response to forces on its points.
 
 use super::element::{Reference, bilinear, inertia, stiffness, stiffness_of_strains, strain_operators};
 use super::mesh::{Mesh, MeshDensity};
@@ -9,15 +9,15 @@ use crate::model::geometry::{Vec2, area_and_centroid, bounding_box, turned};
 use nalgebra::{DMatrix, Matrix2};
 use std::sync::Arc;
 
-/// Shapes and points that differ by less than this share of the size are congruent.
+/// Greatest difference of congruent shapes and points, as a share of the size.
 const CONGRUENT: f64 = 1e-9;
-/// How far outside an element a point may lie, in the element's coordinates: contact points are
-/// found to a tolerance that counts in sizes of the scene.
+/// Greatest distance of a point outside an element, in the coordinates of the element: contact points are found with a
+/// tolerance relative to the size of the scene.
 const OUTSIDE: f64 = 1e-4;
 /// Greatest residual of the solved equations, relative to loads and to stiffness × displacement.
 const RESIDUAL: f64 = 1e-13;
-/// Springs that hold a free mesh: the ends of edge 0, which lies on the local x axis. They are
-/// statically determinate, so they carry nothing, whatever they are.
+/// Springs that hold a free mesh, at the ends of edge 0, which lies on the local x axis. They are statically
+/// determinate, so their forces are zero for any stiffness.
 pub(super) const SPRINGS: [usize; 3] = [0, 1, 3];
 
 /// A placed polygon: vertex i of the shape is `origin` + Q × local vertex × `size`.
@@ -51,15 +51,15 @@ impl Placement {
     }
 }
 
-/// Whether two lists of points agree within `CONGRUENT`.
+/// Returns true if two lists of points agree within `CONGRUENT`.
 pub(super) fn agree(a: &[Vec2], b: &[Vec2]) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).amax() <= CONGRUENT)
 }
 
-/// A point's place in the mesh: nodes with their shape functions.
+/// The place of a point in the mesh: nodes with their shape functions.
 pub(super) type Place = Vec<(usize, f64)>;
 
-/// Places of points, and the elastic displacements of all nodes by forces there.
+/// Places of points, and the elastic displacements of all nodes from forces there.
 pub(super) type Response = (Arc<Vec<Place>>, Arc<DMatrix<f64>>);
 
 /// A mesh with its factorisation, for modulus 1, width 1 and area 1, centroid at the origin.
@@ -68,7 +68,7 @@ pub(super) struct Shape {
     /// √area \[m\].
     size: f64,
     density: MeshDensity,
-    /// Whether the elements are those of strains also where others are better for linear materials.
+    /// True if elements use strains of displacements, also if other elements are better for linear materials.
     of_strains: bool,
     pub reference: Reference,
     pub elasticity: PlaneElasticity,
@@ -154,8 +154,8 @@ impl Shape {
             && agree(&self.vertices, &placement.local)
     }
 
-    /// The element that holds a point, with the shape functions there; those of an element are also
-    /// right a little outside it, so that resultants stay exact.
+    /// Returns the place of a point. The shape functions of an element are also correct a little outside it, so that
+    /// resultants are exact.
     fn place(&self, point: Vec2) -> Option<Place> {
         let mut best: Option<(f64, usize, [f64; 2])> = None;
         for element in 0..self.mesh.elements.len() {
@@ -179,7 +179,7 @@ impl Shape {
         Some(self.mesh.elements[element].iter().copied().zip(values).collect())
     }
 
-    /// The places of points given in the shape's frame; `asked` are the same in the world.
+    /// Returns the places of points given in the frame of the shape; `asked` are the same points in world axes.
     pub fn places(&self, points: &[Vec2], asked: &[Vec2]) -> Result<Vec<Place>, String> {
         let place = |(point, asked): (&Vec2, &Vec2)| {
             self.place(*point).ok_or_else(|| format!("the point ({}, {}) m lies outside its body", asked.x, asked.y))
@@ -187,17 +187,17 @@ impl Shape {
         points.iter().zip(asked).map(place).collect()
     }
 
-    /// P x.
+    /// Computes P x.
     pub fn without_rigid_motion(&self, x: &mut DMatrix<f64>) {
         self.project(x, &self.rigid, &self.inertia);
     }
 
-    /// Pᵀ x.
+    /// Computes Pᵀ x.
     pub fn balanced(&self, x: &mut DMatrix<f64>) {
         self.project(x, &self.inertia, &self.rigid);
     }
 
-    /// Nᵀ: unit forces (x, y) at places.
+    /// Returns Nᵀ: unit forces (x, y) at places.
     pub fn loads_at(&self, places: &[Place]) -> DMatrix<f64> {
         let mut loads = DMatrix::zeros(2 * self.mesh.nodes.len(), 2 * places.len());
         for (j, place) in places.iter().enumerate() {
@@ -209,15 +209,15 @@ impl Shape {
         loads
     }
 
-    /// Takes Bᵀ x off along A: x − A (Rᵀ M R)⁻¹ Bᵀ x. P with A = R, B = M R; Pᵀ the other way round.
+    /// Computes x − A (Rᵀ M R)⁻¹ Bᵀ x: P with A = R and B = M R, Pᵀ with A and B exchanged.
     fn project(&self, x: &mut DMatrix<f64>, along: &DMatrix<f64>, seen: &DMatrix<f64>) {
         let mut motion = seen.tr_mul(x);
         (0..3).for_each(|i| motion.row_mut(i).scale_mut(1.0 / self.masses[i]));
         x.gemm(-1.0, along, &motion, 1.0);
     }
 
-    /// P K⁺ Pᵀ times each column of `loads`, refined once and checked. Residuals are taken at
-    /// projected displacements: those of the held mesh may be large rigid motions, which cost digits.
+    /// Returns P K⁺ Pᵀ times each column of `loads`, refined once and checked. Residuals are computed at projected
+    /// displacements: displacements of the held mesh may be large rigid motions, which cost digits.
     pub fn displacements(&self, mut loads: DMatrix<f64>) -> Result<DMatrix<f64>, String> {
         self.project(&mut loads, &self.inertia, &self.rigid);
         let solve = |mut right: DMatrix<f64>| {
@@ -246,17 +246,17 @@ impl Shape {
         Ok(all)
     }
 
-    /// C̃ of points given in the shape's frame.
+    /// Returns C̃ of points given in the frame of the shape.
     pub fn flexibility(&self, places: &[Place]) -> Result<DMatrix<f64>, String> {
         let columns = 2 * places.len();
         let full = at_places(places, &self.displacements(self.loads_at(places))?);
-        // Symmetric but for rounding: the two triangles come from different solutions.
+        // Symmetric except for rounding: the two triangles come from different solutions.
         Ok(DMatrix::from_fn(columns, columns, |i, j| 0.5 * (full[(i, j)] + full[(j, i)])))
     }
 }
 
-/// Where the bilinear map of an element takes a point from, by Newton's method; `None` where it
-/// does not converge, which happens far outside only.
+/// Inverts the bilinear map of an element at a point by Newton's method. `None` if it does not converge, which only
+/// happens far outside the element.
 fn inverse(corners: &[Vec2; 4], point: Vec2) -> Option<[f64; 2]> {
     let mut place = [0.0, 0.0];
     let mut last = f64::INFINITY;
@@ -273,7 +273,7 @@ fn inverse(corners: &[Vec2; 4], point: Vec2) -> Option<[f64; 2]> {
     (last < 1e-9).then_some(place)
 }
 
-/// N x: rows (x, y) per place.
+/// Returns N x: rows (x, y) per place.
 pub(super) fn at_places(places: &[Place], all: &DMatrix<f64>) -> DMatrix<f64> {
     let entry = |i: usize, j: usize| -> f64 {
         places[i / 2].iter().map(|&(node, value)| value * all[(2 * node + i % 2, j)]).sum()
@@ -281,7 +281,7 @@ pub(super) fn at_places(places: &[Place], all: &DMatrix<f64>) -> DMatrix<f64> {
     DMatrix::from_fn(2 * places.len(), all.ncols(), entry)
 }
 
-/// Q C̃ Qᵀ scale, block by block; exactly symmetric where C̃ is and `symmetric` says so.
+/// Returns Q C̃ Qᵀ scale, block by block; exactly symmetric if C̃ is symmetric and `symmetric` is true.
 pub(super) fn placed(local: &DMatrix<f64>, q: Matrix2<f64>, scale: f64, symmetric: bool) -> DMatrix<f64> {
     let mut turned = DMatrix::zeros(local.nrows(), local.ncols());
     for j in 0..local.ncols() / 2 {
@@ -305,8 +305,8 @@ mod tests {
     use super::*;
     use crate::law::Elasticity;
 
-    /// C̃ of a graded mesh of a concave polygon equals that of a dense solution of another form: the
-    /// stiffness bordered by the conditions of mean motion, solved by LU with complete pivoting.
+    /// The sparse flexibility C̃ of a mesh of a concave polygon equals a dense solution of another form: the stiffness
+    /// bordered by the conditions of mean motion, solved by LU with complete pivoting.
     #[test]
     fn sparse_and_dense_routes_agree() {
         let outline = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]].map(Vec2::from);

@@ -1,4 +1,4 @@
-//! Stresses and displacements of a whole mesh, for pictures and files; nothing else needs them.
+//! Stresses and displacements of a whole mesh, for pictures and files only.
 
 use super::element::{Reference, stresses};
 use super::mesh::Mesh;
@@ -9,27 +9,26 @@ use nalgebra::Matrix2;
 /// A deformed mesh with its stresses, in world axes of the undeformed placement.
 #[derive(Debug, Clone)]
 pub struct Recovered {
-    /// Places of the nodes, undeformed \[m\].
+    /// Positions of the nodes, undeformed \[m\].
     pub nodes: Vec<Vec2>,
-    /// Nodes of each element in VTK's order: corners, then the nodes on sides 0→1, 1→2, 3→2, 0→3,
-    /// then inner ones row by row (cell types 9, 28 and 70 for orders 1, 2, 3; type 28 takes its
-    /// sides as 0→1, 1→2, 2→3, 3→0, which is the same with one node each). Nodes of order 3 are
-    /// Gauss–Lobatto points: type 70 believes them evenly spaced, which shows between nodes only.
+    /// Nodes of each element in VTK's order: corners, then the nodes on sides 0→1, 1→2, 3→2, 0→3, then inner nodes row
+    /// by row (cell types 9, 28 and 70 for orders 1, 2, 3). Type 28 has its sides in the order 0→1, 1→2, 2→3, 3→0,
+    /// which is the same with one node each. Nodes of order 3 are Gauss–Lobatto points; type 70 assumes even spacing,
+    /// which is visible only between nodes.
     pub elements: Vec<Vec<usize>>,
     /// Order of the elements.
     pub order: usize,
     /// Elastic displacement of each node, relative to the body's mean rigid motion \[m\].
     pub displacement: Vec<Vec2>,
-    /// (σ_xx, σ_yy, σ_zz, σ_xy) at each node, tension positive, the mean of the elements that share it \[Pa\].
+    /// (σ_xx, σ_yy, σ_zz, σ_xy) at each node \[Pa\], positive in tension: the mean of the elements that share it.
     pub stress: Vec<[f64; 4]>,
-    /// The same in the middle of each element \[Pa\].
+    /// (σ_xx, σ_yy, σ_zz, σ_xy) at the centre of each element \[Pa\].
     pub element_stress: Vec<[f64; 4]>,
-    /// Resultant of what was given, \[F_x, F_y, moment about the centroid\] \[N, N m\]; zero in
-    /// equilibrium.
+    /// Resultant of the given forces, \[F_x, F_y, moment about the centroid\] \[N, N m\]; zero in equilibrium.
     pub imbalance: [f64; 3],
 }
 
-/// The places in an element's row-by-row list of nodes, in VTK's order.
+/// Returns, in VTK's order, the positions in the row-by-row list of an element's nodes.
 fn vtk_order(order: usize) -> Vec<usize> {
     let (p, n) = (order, order + 1);
     let mut places = vec![0, p, n * n - 1, n * p];
@@ -41,7 +40,7 @@ fn vtk_order(order: usize) -> Vec<usize> {
     places
 }
 
-/// Stresses of a mesh with modulus 1.
+/// Returns the stresses of a mesh with modulus 1.
 pub fn recovered(mesh: &Mesh, reference: &Reference, elasticity: &PlaneElasticity, displacement: &[Vec2]) -> Recovered {
     let mut sums = vec![([0.0; 3], 0.0); mesh.nodes.len()];
     let mut element_stress = Vec::with_capacity(mesh.elements.len());
@@ -54,13 +53,13 @@ pub fn recovered(mesh: &Mesh, reference: &Reference, elasticity: &PlaneElasticit
         }
         element_stress.push(elasticity.with_across(middle));
     }
-    // Triangles of a cut polygon list each vertex, so a node without an element cannot be.
+    // Triangles of a cut polygon include every vertex, so every node has an element.
     let stress = sums.into_iter().map(|(sum, count)| elasticity.with_across(sum.map(|s| s / count))).collect();
     Recovered::with(mesh, displacement.to_vec(), stress, element_stress)
 }
 
 impl Recovered {
-    /// A mesh with displacements and stresses that were found otherwise.
+    /// Creates the result from displacements and stresses that are already known.
     pub(super) fn with(
         mesh: &Mesh,
         displacement: Vec<Vec2>,
@@ -79,7 +78,7 @@ impl Recovered {
         }
     }
 
-    /// The same in the world: `self` has unit size and modulus 1.
+    /// Transforms the result from unit size and modulus 1 to world axes.
     pub(super) fn placed(
         self,
         origin: Vec2,

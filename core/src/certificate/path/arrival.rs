@@ -1,12 +1,13 @@
-//! The piece of a path before a state: the modes that all points could have on it, and the modes in which it was passed.
+//! The piece of a path before a state: the modes that all points could have on it, and the increments on it.
 //!
-//! A rate at the state in modes of that piece existed on it too. Unloading is such a rate, and so is the way back. None of them
-//! continues the path.
+//! A rate at the state in modes of that piece also existed on the piece. Unloading is such a rate, and so is the way
+//! back. Neither of them continues the path.
 
 use super::point_modes::{Decided, ModeCone};
 use crate::path::PointMode;
 
-/// Distance of an increment from a mode, relative to the greatest increment, from which the point was not in this mode.
+/// Distance of an increment from a mode, relative to the greatest increment, above which the point was not in this
+/// mode.
 const APART: f64 = 1e-6;
 
 /// The piece before a state.
@@ -21,8 +22,8 @@ pub(super) struct Arrival {
 }
 
 impl Arrival {
-    /// Checks that all modes that are left at a state were possible on the piece. If λ fell on it, one of the decided modes must
-    /// also differ from the mode on the piece: else the path goes on as it was.
+    /// Checks that all remaining modes at a state were possible on the piece. If λ fell on it, one of the decided modes
+    /// must also differ from the mode on the piece; otherwise the path continues as before.
     pub fn had(&self, modes: &[Vec<ModeCone>], decided: &Decided) -> Result<(), String> {
         for (contact, (before, now)) in self.modes.iter().zip(modes).enumerate() {
             let mut left = now.iter().filter(|cone| decided.get(&contact).is_none_or(|mode| *mode == cone.mode));
@@ -40,7 +41,7 @@ impl Arrival {
         Ok(())
     }
 
-    /// True if a contact point was not in a mode on the piece.
+    /// Returns true if a contact point was not in a mode on the piece.
     fn leaves(&self, contact: usize, cone: &ModeCone) -> bool {
         let [force, gap] = self.increments[contact];
         let distances = cone.distances(force, gap);
@@ -49,7 +50,7 @@ impl Arrival {
     }
 }
 
-/// True if a mode before an event has all rates of a mode at it.
+/// Returns true if a mode before an event has all rates of a mode at the event.
 fn contains(old: &ModeCone, now: &ModeCone) -> bool {
     match (old.mode, now.mode) {
         (PointMode::Open, PointMode::Vertex) => true,

@@ -1,9 +1,10 @@
 //! A path as a chain of states: from the unloaded structure to its end, each state next to the one before.
 //!
-//! A greatest factor among states proves a peak of the path only if the states follow each other. Each increment
-//! is checked: only the factor of one load step changes, supports move as that says, and every contact point keeps one mode
-//! ([`increment`](super::increment)). With small displacements the chain is then a path to rounding. With finite displacements
-//! the state midway must nearly be in equilibrium too: states of two branches are not neighbours.
+//! A greatest factor among states proves a peak of the path only if the states follow each other. Each increment is
+//! checked: only the factor of one load step changes, supports move by their settlements, and every contact point keeps
+//! one mode ([`increment`](super::increment)). With small displacements the chain is then a path, except for rounding.
+//! With finite displacements the state midway must also be nearly in equilibrium: states of two branches are not
+//! neighbours.
 
 use super::displaced::Displaced;
 use super::history::{History, has_history};
@@ -14,19 +15,19 @@ use super::rate_equations::RateEquations;
 use crate::path::{FarkasVector, LoadStep, LoadStepEnd, ModeTree, PathProblem, PathState, RateClaim, Witness, Yielded};
 use std::sync::Arc;
 
-/// Most distance of all increments together from the flow of laws, as a share of the greatest displacement.
+/// Greatest total distance of the increments from the flow of laws, as a share of the greatest displacement.
 const DRIFT: f64 = 1e-7;
-/// Opening of closed points, as a share of the greatest displacement.
+/// Greatest opening of closed points, as a share of the greatest displacement.
 const CLOSED: f64 = 1e-9;
-/// Relative difference of factors that are the same.
+/// Relative difference below which factors are equal.
 const SAME_FACTOR: f64 = 1e-9;
-/// Error of the displacement of the load, relative to the greatest motion.
+/// Greatest error of the displacement of the load, relative to the greatest motion.
 const DISPLACEMENT: f64 = 1e-9;
-/// With finite displacements, unbalanced forces of the state midway, as a share of all forces.
+/// Greatest unbalanced forces of the state midway with finite displacements, as a share of all forces.
 const MIDWAY: f64 = 1e-3;
-/// Change of load and forces, relative to them, along a mechanism of finite displacements.
+/// Greatest relative change of load and forces along a mechanism of finite displacements.
 const STANDS_STILL: f64 = 1e-8;
-/// Least motion along it, as a share of the scene's size.
+/// Least motion along it, as a share of the size of the scene.
 const MECHANISM: f64 = 1e-3;
 
 /// A state of a chain.
@@ -35,7 +36,7 @@ pub(super) struct Link {
     pub(super) state: PathState,
     /// Opening of every contact point \[m\].
     pub(super) openings: Vec<f64>,
-    /// The history of laws after it.
+    /// The history of laws after the state.
     pub(super) history: History,
 }
 
@@ -47,11 +48,11 @@ pub struct PathChain {
     pub(super) links: Vec<Link>,
     /// Distance of the increments so far from the flow of laws \[m\].
     drift: f64,
-    /// Why the chain ends before its last state.
+    /// The reason why the chain ends before its last state.
     broken: Option<String>,
 }
 
-/// The greatest size of gaps and displacements.
+/// Returns the greatest size of gaps and displacements.
 pub(super) fn deformation(state: &PathState) -> f64 {
     let moves = state.motion.iter().flat_map(|u| [u[0], u[1]]);
     state.gap.as_flattened().iter().copied().chain(moves).fold(0.0, |a: f64, v| a.max(v.abs()))
@@ -61,22 +62,22 @@ pub(super) fn greatest_force(state: &PathState) -> f64 {
     state.force.iter().map(|r| r[0].hypot(r[1])).fold(0.0, f64::max)
 }
 
-/// Returns true if two records are of one state.
+/// Returns true if two records describe one state.
 pub(super) fn is_same(a: &PathState, b: &PathState) -> bool {
     a.load_step == b.load_step && a.factor == b.factor && a.force == b.force && a.motion == b.motion
 }
 
-/// Returns true if a load step has neither a load nor a settlement, so that its factor means nothing.
+/// Returns true if a load step has no load and no settlement, so that its factor has no effect.
 fn is_idle(problem: &PathProblem, step: &LoadStep) -> bool {
     step.loading.settlements.is_empty() && problem.wrenches(&step.loading).iter().all(|w| *w == [0.0; 3])
 }
 
-/// The mean of two neighbours.
+/// Returns the mean of two neighbouring states.
 pub(super) fn midway(problem: &PathProblem, last: &PathState, state: &PathState) -> PathState {
     let mean2 = |a: &[[f64; 2]], b: &[[f64; 2]]| -> Vec<[f64; 2]> {
         a.iter().zip(b).map(|(a, b)| [0, 1].map(|i| 0.5 * (a[i] + b[i]))).collect()
     };
-    // Applied loads are linear in the factor, whichever load step the last state is in.
+    // Applied loads are linear in the factor, whatever the load step of the last state.
     let applied = |of: &PathState| problem.applied(of.load_step, of.factor)[state.load_step];
     let start = problem.load_steps[state.load_step].start;
     let motion = last.motion.iter().zip(&state.motion);
@@ -97,7 +98,7 @@ pub(super) fn midway(problem: &PathProblem, last: &PathState, state: &PathState)
 }
 
 impl PathChain {
-    /// A chain that begins with the unloaded structure.
+    /// Creates a chain that begins with the unloaded structure.
     pub fn new(structure: Arc<PathProblem>, finite: bool) -> Self {
         let contacts = &structure.contacts;
         let state = PathState {
@@ -129,7 +130,7 @@ impl PathChain {
         }
     }
 
-    /// Adds a state that the observer has not seen, the located peak between two states, if it follows from one of them.
+    /// Adds a located peak between two states, which the observer has not received, if it follows from one of them.
     pub fn add_peak(&mut self, state: &PathState) {
         if self.links.iter().any(|link| is_same(&link.state, state)) {
             return;
@@ -143,7 +144,7 @@ impl PathChain {
         }
     }
 
-    /// True if the load has a turn between two links at which the state may be.
+    /// Returns true if the load has a turning point between two links at which the state may be.
     fn is_beside(&self, at: usize, state: &PathState) -> bool {
         let sense = self.sense(state.load_step);
         let of_step = |other: &Link| other.state.load_step == state.load_step;
@@ -151,13 +152,13 @@ impl PathChain {
         higher(&self.links[at]) && self.links.get(at + 1).is_none_or(higher)
     }
 
-    /// 1 if a load step raises its factor, else −1.
+    /// Returns 1 if a load step raises its factor, else −1.
     pub(super) fn sense(&self, load_step: usize) -> f64 {
         let step = &self.structure.load_steps[load_step];
         if matches!(step.end, LoadStepEnd::Factor(end) if end < step.start) { -1.0 } else { 1.0 }
     }
 
-    /// The link after an increment from another to a state, and its drift.
+    /// Returns the link after an increment to a state, and the drift of the increment.
     fn next(&self, last: &Link, state: &PathState) -> Result<(Link, f64), String> {
         let problem = &*self.structure;
         if state.load_step < last.state.load_step || state.load_step >= problem.load_steps.len() {
@@ -199,7 +200,7 @@ impl PathChain {
         Ok((Link { state: state.clone(), openings, history }, drift))
     }
 
-    /// Only the factor of the state's own load step may change; earlier steps have reached their ends.
+    /// Checks that only the factor of the state's own load step changes; earlier steps have reached their ends.
     fn check_factors(&self, last: &PathState, state: &PathState) -> Result<(), String> {
         let problem = &*self.structure;
         let [before, now] = [last, state].map(|state| problem.applied(state.load_step, state.factor));
@@ -213,7 +214,7 @@ impl PathChain {
         Ok(())
     }
 
-    /// Held bodies have moved by their settlements.
+    /// Checks that held bodies have moved by their settlements.
     fn check_supports(&self, state: &PathState) -> Result<(), String> {
         let problem = &*self.structure;
         let settled = problem.settled(state.load_step, state.factor);
@@ -224,7 +225,7 @@ impl PathChain {
         if off.fold(0.0, f64::max) > 0.0 { Err("a support has not moved by its settlement".into()) } else { Ok(()) }
     }
 
-    /// The displacement of the load follows from the motions.
+    /// Checks that the displacement of the load follows from the motions.
     fn check_displacement(&self, state: &PathState) -> Result<(), String> {
         let problem = &*self.structure;
         let growing = (&problem.load_steps[state.load_step].loading, state.factor);
@@ -236,7 +237,7 @@ impl PathChain {
         if is_right { Ok(()) } else { Err("the displacement of the load does not follow from the motions".into()) }
     }
 
-    /// The mean of two neighbours is nearly in equilibrium.
+    /// Checks that the mean of two neighbours is nearly in equilibrium.
     fn check_midway(&self, last: &PathState, state: &PathState) -> Result<(), String> {
         let problem = &*self.structure;
         let midway = midway(problem, last, state);
@@ -247,22 +248,22 @@ impl PathChain {
         if worst <= MIDWAY * size { Ok(()) } else { Err("it is far from the state before it".into()) }
     }
 
-    /// True if laws of tractions from gaps, or blocks that yield, make the path depend on its history.
+    /// Returns true if responses or yielding blocks make the path depend on its history.
     pub fn has_history(&self) -> bool {
         has_history(&self.structure)
     }
 
-    /// Why the chain ends before the last state that was added.
+    /// Returns the reason why the chain ends before the last state that was added.
     pub fn broken(&self) -> Option<&str> {
         self.broken.as_deref()
     }
 
-    /// States of the chain in order; the first is the unloaded structure.
+    /// Iterates over the states of the chain; the first is the unloaded structure.
     pub fn states(&self) -> impl Iterator<Item = &PathState> {
         self.links.iter().map(|link| &link.state)
     }
 
-    /// A state of the chain with the equations of its rates and the modes of its points.
+    /// Returns a state of the chain with the equations of its rates and the modes of its points.
     pub(super) fn at(&self, own: &PathState) -> Result<(&Link, RateEquations, Vec<Vec<ModeCone>>), String> {
         let link =
             self.links.iter().rev().find(|link| is_same(&link.state, own)).ok_or("the state is not on the path")?;
@@ -273,7 +274,7 @@ impl PathChain {
         Ok((link, equations, self.modes(&link.state, &link.openings)))
     }
 
-    /// The modes that all points may take at a state.
+    /// Returns the modes that all points may have at a state.
     pub(super) fn modes(&self, state: &PathState, openings: &[f64]) -> Vec<Vec<ModeCone>> {
         let rounding = if self.finite { 512.0 * f64::EPSILON * self.structure.length } else { 0.0 };
         let (slack, closed) = (ACTIVE * greatest_force(state), CLOSED * deformation(state) + rounding);
@@ -281,11 +282,11 @@ impl PathChain {
         points.map(|((contact, force), opening)| point_modes(contact, *force, *opening > closed, slack)).collect()
     }
 
-    /// Checks that no rate raises the load at a state, and that a mechanism moves on there at constant load. If flow is associated the
-    /// mechanism proves both. Small displacements only.
+    /// Checks that no rate raises the load at a state, and that a mechanism continues at constant load. If flow is
+    /// associated, the mechanism proves both. Small displacements only.
     ///
     /// # Errors
-    /// The first part that is wrong, in words.
+    /// Names the first part that is wrong.
     pub fn check_collapse(&self, state: &PathState, motion: &[[f64; 3]], witnesses: &[&Witness]) -> Result<(), String> {
         if self.finite {
             return Err("mechanisms at constant load are checked with small displacements only".into());
@@ -301,7 +302,7 @@ impl PathChain {
         rates.check_none_rises(&own).map(|_| ()).or_else(|_| self.check_none_rises(state, witnesses))
     }
 
-    /// Checks that after a state the structure moves on to the last state under the same load and forces.
+    /// Checks that after a state the structure moves to the last state at the same load and the same forces.
     ///
     /// # Errors
     /// If the load or a force changes, or the structure hardly moves.
@@ -322,10 +323,11 @@ impl PathChain {
         Ok(())
     }
 
-    /// Checks that the rates of a witness stay admissible however far they go, so that any load is carried. Small displacements only.
+    /// Checks that the rates of a witness remain admissible at any distance, so that any load is carried. Small
+    /// displacements only.
     ///
     /// # Errors
-    /// The first part that is wrong, in words.
+    /// Names the first part that is wrong.
     pub fn check_ray(&self, witness: &Witness) -> Result<(), String> {
         let RateClaim::Rate(rate) = &witness.claim else { return Err("a ray is a rate".into()) };
         if self.finite {
@@ -338,7 +340,7 @@ impl PathChain {
     /// Checks that one of the witnesses at a state proves that no rate raises the load there.
     ///
     /// # Errors
-    /// The first part of the last witness that is wrong, in words.
+    /// Names the first part of the last witness that is wrong.
     pub fn check_none_rises(&self, state: &PathState, witnesses: &[&Witness]) -> Result<(), String> {
         let (_, equations, modes) = self.at(state)?;
         let rates = RateProblem { equations: &equations, modes: &modes };
@@ -354,7 +356,8 @@ impl PathChain {
         found
     }
 
-    /// Returns true if the last state is at the end of the last load step and no increment lowers a factor away from its end.
+    /// Returns true if the last state is at the end of the last load step and no increment moves a factor away from its
+    /// end.
     pub fn reaches_end(&self) -> bool {
         let steps = &self.structure.load_steps;
         let Some(last) = self.links.last().filter(|_| self.broken.is_none()) else { return false };

@@ -1,4 +1,4 @@
-//! Checks every state of a path and keeps the worst of each residual.
+//! Checks every state of a path and stores the worst value of each residual.
 
 use super::displaced::Displaced;
 use super::energy::EnergyBalance;
@@ -10,23 +10,24 @@ use crate::path::{PathObserver, PathProblem, PathState, PointLaw};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Share of the greatest forces of a path below which forces are not compared with themselves: a structure
-/// that has come apart carries rounding.
+/// Share of the greatest forces of a path below which forces are not used as scale: a structure that has come apart
+/// carries only rounding errors.
 const NOTHING: f64 = 1e-6;
 
-/// Slip beyond the face of a joint that is rounding of the place of an event, as a share of the scene's size.
+/// Slip beyond the face of a joint that is allowed for rounding of the location of an event, as a share of the size of
+/// the scene.
 const AT_FACE: f64 = 1e-6;
 
-/// Sees the states of a path and keeps the worst of each residual.
+/// An observer that checks the states of a path and stores the worst value of each residual.
 #[derive(Debug, Default)]
 pub struct PathChecker {
-    /// Name → worst value.
+    /// Worst value by name of the residual.
     pub worst: BTreeMap<&'static str, f64>,
-    /// Number of states seen.
+    /// Number of states checked.
     pub states: u64,
     /// (displacement \[m\], λ) of the states of the last load step.
     pub curve: Vec<[f64; 2]>,
-    /// Whether equilibrium holds in displaced positions.
+    /// True if equilibrium is checked in displaced positions.
     pub finite: bool,
     structure: Option<Arc<PathProblem>>,
     last: Option<(usize, f64)>,
@@ -35,14 +36,14 @@ pub struct PathChecker {
     energy: EnergyBalance,
 }
 
-/// Keeps the worse of two residuals; a NaN stays.
+/// Stores the worse of two residuals; NaN is the worst.
 fn worsen(worst: &mut f64, value: f64) {
     if value.is_nan() || value > *worst {
         *worst = value;
     }
 }
 
-/// Which checks the facets of a law ask for.
+/// The checks that depend on the facets of a law.
 #[derive(Clone, Copy)]
 struct Asks {
     penetration: bool,
@@ -59,7 +60,7 @@ impl Asks {
     }
 }
 
-/// What residuals of a state are compared with.
+/// Scales of the residuals of a state.
 struct Scale {
     /// Sum of all forces \[N\].
     force: f64,
@@ -70,13 +71,14 @@ struct Scale {
 }
 
 impl PathChecker {
-    /// Checks states over small or `finite` displacements against the problem that they come with: the self-check of a
-    /// solver, no certificate.
+    /// Creates a checker for small or `finite` displacements that checks states against the problem that they come
+    /// with. This is the self-check of a solver, not a certificate.
     pub fn new(finite: bool) -> Self {
         PathChecker { finite, ..PathChecker::default() }
     }
 
-    /// Checks states against the structure that the assembly and the stages describe, whatever problem they come with.
+    /// Creates a checker that checks states against the structure of the assembly and the stages, whatever problem they
+    /// come with.
     pub fn certifying(assembly: &Assembly, stages: &[Stage], finite: bool) -> Result<Self, String> {
         Ok(PathChecker {
             finite,
@@ -85,7 +87,7 @@ impl PathChecker {
         })
     }
 
-    /// The structure that states are checked against, where it comes from an assembly.
+    /// Returns the structure that states are checked against, if it comes from an assembly.
     pub fn structure(&self) -> Option<Arc<PathProblem>> {
         self.structure.clone()
     }
@@ -109,21 +111,21 @@ impl PathChecker {
             })
             .sum();
         let forces: f64 = state.force.iter().map(|f| (f[0] * f[0] + f[1] * f[1]).sqrt()).sum();
-        // Where everything has come apart the forces are rounding of what they were.
+        // If all blocks have come apart, the forces are rounding errors of earlier forces.
         self.greatest = self.greatest.max(loads + forces);
         let gaps = state.gap.iter().flatten().fold(0.0, |a: f64, g| a.max(g.abs()));
         let moves = state.motion.iter().fold(gaps, |a: f64, u| a.max(u[0].abs()).max(u[1].abs()));
         let scale = Scale {
             force: (loads + forces).max(NOTHING * self.greatest).max(1e-300),
             deformation: moves.max(1e-300),
-            // Gaps of finite displacements are differences of positions.
+            // With finite displacements gaps are differences of positions.
             rounding: if self.finite { 512.0 * f64::EPSILON * problem.length } else { 0.0 },
         };
         let displaced = Displaced::new(problem, state, self.finite);
         self.check_bodies(problem, &displaced, state, &scale);
         self.check_blocks(problem, state);
         self.check_points(problem, state, &scale);
-        // The history is that of the states seen, where all of them were.
+        // Use the history of the states received so far, if all states were received.
         let before = self.memory.as_deref().unwrap_or(&state.memory);
         let least = NOTHING * self.greatest;
         if let Some((worst, after)) = law_residual(problem, state, before, scale.deformation, self.finite, least) {
@@ -140,7 +142,8 @@ impl PathChecker {
         self.last = Some((state.load_step, state.dissipated));
     }
 
-    /// Checks that bodies balance, that gaps follow from their motions, and that supports have moved by their settlements.
+    /// Checks that bodies are in equilibrium, that gaps follow from motions, and that supports have moved by their
+    /// settlements.
     fn check_bodies(&mut self, problem: &PathProblem, displaced: &Displaced, state: &PathState, scale: &Scale) {
         let mut unbalanced = 0.0;
         for (w, _) in displaced.unbalanced().iter().zip(&problem.bodies).filter(|(_, b)| !b.held) {
@@ -161,12 +164,12 @@ impl PathChecker {
         self.note("path_kinematics", apart / scale.deformation);
     }
 
-    /// Checks contact points with facets, and bonded ones.
+    /// Checks contact points with facets, and bonded points.
     fn check_points(&mut self, problem: &PathProblem, state: &PathState, scale: &Scale) {
         let largest = state.force.iter().flatten().fold(0.0, |a: f64, f| a.max(f.abs())).max(1e-300);
         let [mut bonded, mut strength, mut penetration, mut complementarity] = [None; 4];
         let note = |worst: &mut Option<f64>, value: f64| worsen(worst.get_or_insert(0.0), value);
-        // Most contact points share the law of the one before.
+        // Most contact points have the same law as the point before.
         let (mut last, mut asks): (&[Facet], Asks) = (&[], Asks::of(&[]));
         for ((contact, force), gap) in problem.contacts.iter().zip(&state.force).zip(&state.gap) {
             let facets = match &contact.law {

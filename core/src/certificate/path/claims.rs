@@ -1,17 +1,17 @@
-//! What is claimed at the end of a path: mechanisms and rays.
+//! Claims at the end of a path: mechanisms and rays.
 
 use crate::path::{Loading, PathProblem, PointLaw};
 
-/// `path_power`: |p·q̇ − 1|, p the loading and q̇ the velocities of all bodies about their poles.
+/// Returns `path_power`: |p·q̇ − 1| with the loading p and the velocities q̇ of all bodies about their poles.
 pub fn power_residual(problem: &PathProblem, loading: &Loading, motion: &[[f64; 3]]) -> f64 {
     let load = problem.wrenches(loading);
     let power: f64 = load.iter().flatten().zip(motion.iter().flatten()).map(|(p, v)| p * v).sum();
     (power - 1.0).abs()
 }
 
-/// `path_ray`: whether rates of contact forces carry any amount of a loading: what they leave of it
-/// on a free body (moments divided by the scene's length), or their greatest excess over a facet of
-/// the recession cone, relative to the sum of all of them; NaN where there are none under a load.
+/// Returns `path_ray`: the residual of rates of contact forces that carry any amount of a loading. It is the greatest
+/// unbalanced resultant on a free body (moments divided by the length of the scene) or the greatest excess over a facet
+/// of the recession cone, relative to the sum of all rates; NaN if all rates are zero under a load.
 pub fn ray_residual(problem: &PathProblem, loading: &Loading, ray: &[[f64; 2]]) -> f64 {
     let mut sum = problem.wrenches(loading);
     let size: f64 = ray.iter().map(|r| r[0].hypot(r[1])).sum();
@@ -30,16 +30,16 @@ pub fn ray_residual(problem: &PathProblem, loading: &Loading, ray: &[[f64; 2]]) 
         worst = worst.max(w[0].hypot(w[1])).max(w[2].abs() / problem.length);
     }
     match size.is_finite() {
-        // A support that moves asks for no forces.
+        // A moving support needs no forces.
         true if worst == 0.0 => 0.0,
         true => worst / size,
         false => f64::NAN,
     }
 }
 
-/// Checks a mechanism against a field: how far the jumps leave the flow of the facets that yield,
-/// relative to the greatest jump. Every contact point with slack in all facets must not move. Laws of
-/// tractions from gaps have no flow: see [`leaves_forces`](super::leaves_forces).
+/// Returns `path_flow`: the distance of the jumps of a mechanism from the flow of the yielding facets, relative to the
+/// greatest jump. A contact point with slack in all facets must not move. Responses have no flow: see
+/// [`leaves_forces`](super::leaves_forces).
 pub fn flow_residual(problem: &PathProblem, force: &[[f64; 2]], motion: &[[f64; 3]]) -> f64 {
     let largest = force.iter().flatten().fold(0.0, |a: f64, f| a.max(f.abs()));
     let jumps: Vec<[f64; 2]> = problem
@@ -79,10 +79,10 @@ pub fn flow_residual(problem: &PathProblem, force: &[[f64; 2]], motion: &[[f64; 
     worst
 }
 
-/// Slack, relative to the greatest contact force, up to which a facet counts as yielding.
+/// Greatest slack, relative to the greatest contact force, of a facet that yields.
 const YIELDING: f64 = 1e-9;
 
-/// Distance of v from the cone of some directions in the plane.
+/// Returns the distance of v from the cone of some directions in the plane.
 pub(super) fn outside(v: [f64; 2], cone: &[[f64; 2]]) -> f64 {
     let mut least = v[0].hypot(v[1]);
     for (k, a) in cone.iter().enumerate() {

@@ -1,12 +1,12 @@
-//! Gaps and equilibrium of a recorded state, from the problem alone: at undeformed places where
-//! displacements are small, else at displaced ones.
+//! Gaps and equilibrium of a recorded state, from the problem alone: at undeformed positions if displacements are
+//! small, else at displaced positions.
 //!
-//! With finite displacements a body's point is at x = X + u + R(θ)(ξ + v): X the pole, ξ the point from
-//! it, v the deformation in axes that turn with the body, v = C f, f the forces on its points in those
-//! axes. A contact's n and t turn by θ⁻ + β (θ⁺ − θ⁻), its gaps are those of x⁺ − x⁻ in them, and its force
-//! acts on both bodies at (1 − β) x⁺ + β x⁻: that is the place for which its virtual work is r·δg
-//! ([`Sliding`](crate::path::Sliding); β = ½ is the middle; where β follows the slip a force along t goes with that).
-//! Bodies balance about their displaced poles.
+//! With finite displacements a point of a body is at x = X + u + R(θ)(ξ + v): X is the pole, ξ the position relative to
+//! it, v the deformation in axes that rotate with the body, v = C f, and f the forces on its points in these axes. The
+//! axes n and t of a contact rotate by θ⁻ + β (θ⁺ − θ⁻) and its gaps are x⁺ − x⁻ in them. Its force acts on both bodies
+//! at (1 − β) x⁺ + β x⁻, the point for which its virtual work is r·δg ([`Sliding`](crate::path::Sliding); β = ½ is the
+//! middle; if β depends on slip, there is an additional force along t). Bodies are in equilibrium about their displaced
+//! poles.
 
 use crate::law::{Facet, FacetMode};
 use crate::linear::vectors::add_product;
@@ -18,19 +18,19 @@ pub struct Displaced<'a> {
     problem: &'a PathProblem,
     state: &'a PathState,
     finite: bool,
-    /// Forces on every body's points in its axes \[N\].
+    /// Forces on the points of every body in its axes \[N\].
     forces: Vec<Vec<Vec2>>,
-    /// Deformation of every body's points in its axes \[m\].
+    /// Deformation of the points of every body in its axes \[m\].
     deformation: Vec<Vec<Vec2>>,
 }
 
-/// v turned by an angle \[rad\].
+/// Returns v rotated by an angle \[rad\].
 fn rotated(v: Vec2, angle: f64) -> Vec2 {
     v * angle.cos() + turned(v) * angle.sin()
 }
 
 impl<'a> Displaced<'a> {
-    /// With small or `finite` displacements.
+    /// Creates it for small or `finite` displacements.
     pub fn new(problem: &'a PathProblem, state: &'a PathState, finite: bool) -> Self {
         let forces = problem.forces_on_points(state, finite);
         let bodies = problem.bodies.iter().zip(&forces).enumerate();
@@ -52,7 +52,7 @@ impl<'a> Displaced<'a> {
         Displaced { problem, state, finite, forces, deformation }
     }
 
-    /// Displacement of a point of a body by its rigid motion and by its deformation \[m\].
+    /// Returns the displacement of a point of a body by its rigid motion and by its deformation \[m\].
     fn parts(&self, body: usize, slot: Option<usize>, point: Vec2) -> [Vec2; 2] {
         let [x, y, theta] = self.state.motion[body];
         let arm = point - self.problem.bodies[body].pole;
@@ -69,27 +69,28 @@ impl<'a> Displaced<'a> {
         rigid + deformed
     }
 
-    /// Displacements of the points on plus and minus.
+    /// Returns the displacements of the points on plus and minus.
     fn sides(&self, contact: &Contact) -> [[Vec2; 2]; 2] {
         [contact.plus, contact.minus].map(|side: Attachment| self.parts(side.body, side.slot, contact.position))
     }
 
-    /// Axes (n, t) of a contact point that have turned with a share β of its bodies' relative turn, where displacements are
-    /// finite.
+    /// Returns the axes (n, t) of a contact point, rotated with a share β of the relative rotation of its bodies, for
+    /// finite displacements.
     fn axes(&self, contact: &Contact, share: f64) -> [Vec2; 2] {
         let [low, high] = [contact.minus, contact.plus].map(|side| self.state.motion[side.body][2]);
         let turn = low + share * (high - low);
         [contact.normal, contact.tangent].map(|e| rotated(e, turn))
     }
 
-    /// β of a contact point and its derivative by the slip, at its slip in the mean axes; displacements are finite.
+    /// Returns β of a contact point and its derivative with respect to slip, at its slip in the mean axes, for finite
+    /// displacements.
     fn share(&self, contact: &Contact, [plus, minus]: &[[Vec2; 2]; 2]) -> [f64; 2] {
         let slip = (plus[0] - minus[0]).dot(&self.axes(contact, 0.5)[1]);
         let [share, first, _] = contact.sliding.share_at(slip);
         [share, first]
     }
 
-    /// Gaps (n, t) of all contact points from motions, forces and loads \[m\].
+    /// Returns the gaps (n, t) of all contact points from motions, forces and loads \[m\].
     pub fn gaps(&self) -> Vec<[f64; 2]> {
         let apart = |contact: &Contact| {
             if !self.finite {
@@ -110,12 +111,12 @@ impl<'a> Displaced<'a> {
         self.problem.contacts.iter().zip(&self.state.force).map(gap).collect()
     }
 
-    /// Elastic energy of blocks and joints \[J\] (Clapeyron); `None` where it is no function of forces: a block has
-    /// yielded, a joint has a law of tractions from gaps, or one whose tensile strength opening works against.
+    /// Returns the elastic energy of blocks and joints \[J\] (Clapeyron). `None` if it is not a function of forces: a
+    /// block has yielded, or a joint has a response or a tensile strength.
     pub fn stored(&self) -> Option<f64> {
         let contacts = &self.problem.contacts;
         let pulls = |f: &Facet| f.mode == FacetMode::Opening && f.bound > 0.0;
-        // Most contact points share the law of the one before.
+        // Most contact points have the same law as the point before.
         let mut last: &[Facet] = &[];
         let mut by_history = |law: &'a PointLaw| match law {
             PointLaw::Bonded => false,
@@ -134,7 +135,7 @@ impl<'a> Displaced<'a> {
         Some(0.5 * (points.map(|(f, u)| f.dot(u)).sum::<f64>() + joints))
     }
 
-    /// What loads and contact forces leave on each body, about its pole \[N, N m\].
+    /// Returns the unbalanced resultant of loads and contact forces on each body, about its pole \[N, N m\].
     pub fn unbalanced(&self) -> Vec<[f64; 3]> {
         let problem = self.problem;
         let mut wrench = vec![[0.0; 3]; problem.bodies.len()];
@@ -162,7 +163,7 @@ impl<'a> Displaced<'a> {
             }
         }
         for (contact, r) in problem.contacts.iter().zip(&self.state.force) {
-            // With small displacements at its place, wherever that moves.
+            // With small displacements the force acts at the undeformed position.
             if !self.finite {
                 let push = contact.normal * r[0] + contact.tangent * r[1];
                 for (body, push) in [(contact.plus.body, push), (contact.minus.body, -push)] {
@@ -183,12 +184,12 @@ impl<'a> Displaced<'a> {
             both(plus[0] * (1.0 - share) + minus[0] * share, by_motion);
             let mean = self.axes(contact, 0.5);
             if by_slip != 0.0 {
-                // What β does as the slip grows: r·∂g/∂β β' along the mean tangent.
+                // Additional force because β depends on slip: r·∂g/∂β β' along the mean tangent.
                 let [low, high] = [contact.minus, contact.plus].map(|side| self.state.motion[side.body][2]);
                 let passing = cross(by_motion, plus[0] - minus[0]) * (high - low) * by_slip;
                 both((plus[0] + minus[0]) * 0.5, mean[1] * passing);
             }
-            // The levers that the deformation of the blocks adds.
+            // Lever arms from the deformation of the blocks.
             let moment = cross((plus[1] + minus[1]) * 0.5, mean[0] * r[0] + mean[1] * r[1]);
             wrench[contact.plus.body][2] += moment;
             wrench[contact.minus.body][2] -= moment;

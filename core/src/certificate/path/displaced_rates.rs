@@ -7,25 +7,25 @@ use crate::path::{Attachment, Contact, PathProblem, PathRate, PathState};
 /// Displacement of a point by the rigid motion and by the deformation of its body.
 type Parts = [Dual2; 2];
 
-/// Rates (n, t) of all gaps, and rates of the wrench that loads and contact forces leave on each body.
+/// Rates (n, t) of all gaps, and rates of the unbalanced wrench on each body.
 pub(super) struct ResidualRates {
     pub gaps: Vec<[Dual; 2]>,
     pub unbalanced: Vec<[Dual; 3]>,
 }
 
-/// A state that moves along rates of forces, motions and the factor; the gap rates of `along` are not read.
+/// A state that moves along rates of forces, motions and the factor. The gap rates of `along` are not used.
 struct Moving<'a> {
     problem: &'a PathProblem,
     /// Motions of all bodies.
     motion: Vec<[Dual; 3]>,
     force: Vec<[Dual; 2]>,
-    /// The applied part of each load step.
+    /// The applied share of each load step.
     applied: Vec<Dual>,
-    /// Deformation of the points of all bodies in axes that turn with them.
+    /// Deformation of the points of all bodies in axes that rotate with them.
     deformation: Vec<Vec<Dual2>>,
 }
 
-/// The rates of residuals along a direction. Bodies do not yield, and laws do not give tractions from gaps.
+/// Returns the rates of residuals along a direction. Bodies must not yield, and no law may be a response.
 pub(super) fn residual_rates(problem: &PathProblem, state: &PathState, along: &PathRate) -> ResidualRates {
     let pair = |i: usize, (value, rate): (&[f64; 2], &[f64; 2])| Dual::new(value[i], rate[i]);
     let motion = state.motion.iter().zip(&along.motion);
@@ -47,13 +47,13 @@ impl Moving<'_> {
         Dual2 { x: self.motion[body][0], y: self.motion[body][1] }
     }
 
-    /// Axes (n, t) that have turned with a share of the relative turn of both bodies.
+    /// Returns the axes (n, t), rotated with a share of the relative rotation of both bodies.
     fn axes(&self, contact: &Contact, share: Dual) -> [Dual2; 2] {
         let [low, high] = [contact.minus, contact.plus].map(|side| self.angle(side.body));
         [contact.normal, contact.tangent].map(|e| Dual2::fixed(e).rotated(low + share * (high - low)))
     }
 
-    /// Forces on the points of bodies in axes that turn with them.
+    /// Returns the forces on the points of bodies in axes that rotate with them.
     fn forces_on_points(&self) -> Vec<Vec<Dual2>> {
         let mut forces: Vec<Vec<Dual2>> =
             self.problem.bodies.iter().map(|body| vec![Dual2::default(); body.points.len()]).collect();
@@ -105,7 +105,7 @@ impl Moving<'_> {
         [contact.plus, contact.minus].map(|side| self.parts(side, contact.position))
     }
 
-    /// β and its derivative by the slip.
+    /// Returns β and its derivative with respect to slip.
     fn share(&self, contact: &Contact, [plus, minus]: &[Parts; 2]) -> [Dual; 2] {
         let slip = (plus[0] - minus[0]).dot(self.axes(contact, Dual::fixed(0.5))[1]);
         let [share, first, second] = contact.sliding.share_at(slip.value);

@@ -1,4 +1,4 @@
-//! Numbers with a derivative along one direction, and plane vectors of them.
+//! Dual numbers, which carry the derivative along one direction, and plane vectors of them.
 
 use crate::model::geometry::Vec2;
 use std::ops::{Add, Mul, Neg, Sub};
@@ -11,12 +11,12 @@ pub(super) struct Dual {
 }
 
 impl Dual {
-    /// A number with a derivative.
+    /// Creates a number with a derivative.
     pub fn new(value: f64, rate: f64) -> Self {
         Dual { value, rate }
     }
 
-    /// A constant.
+    /// Creates a constant.
     pub fn fixed(value: f64) -> Self {
         Dual { value, rate: 0.0 }
     }
@@ -65,22 +65,22 @@ pub(super) struct Dual2 {
 }
 
 impl Dual2 {
-    /// A constant vector.
+    /// Creates a constant vector.
     pub fn fixed(v: Vec2) -> Self {
         Dual2 { x: Dual::fixed(v.x), y: Dual::fixed(v.y) }
     }
 
-    /// Scalar product.
+    /// Returns the scalar product.
     pub fn dot(self, other: Dual2) -> Dual {
         self.x * other.x + self.y * other.y
     }
 
-    /// Moment of `other` at this place about the origin.
+    /// Returns the moment of `other` at this position about the origin.
     pub fn cross(self, other: Dual2) -> Dual {
         self.x * other.y - self.y * other.x
     }
 
-    /// Turned by an angle \[rad\].
+    /// Returns the vector rotated by an angle \[rad\].
     pub fn rotated(self, angle: Dual) -> Dual2 {
         let (s, c) = angle.value.sin_cos();
         let (sine, cosine) = (Dual::new(s, c * angle.rate), Dual::new(c, -s * angle.rate));

@@ -1,17 +1,17 @@
-//! Ends of a path at its last state: no rate leads on, or a joint is lost.
+//! Ends of a path at its last state: no rate continues it, or a joint is lost.
 
 use super::arrival::Arrival;
 use super::chain::{Link, PathChain, greatest_force, is_same, midway};
 use super::none_rises::{RateProblem, Refuted};
 use crate::path::{PathState, RateClaim, Witness};
 
-/// Distance of a slip from the bound of its face, as a share of the scene's size.
+/// Greatest distance of a slip from the bound of its face, as a share of the size of the scene.
 const AT_BOUND: f64 = 1e-9;
-/// Force of a contact point that carries, relative to the greatest.
+/// Least force of a contact point that carries, relative to the greatest force.
 const PRESSED: f64 = 1e-9;
 
 impl PathChain {
-    /// The last state and the one before it in the same load step.
+    /// Returns the last state and the state before it in the same load step.
     fn last_piece(&self) -> Result<[&Link; 2], String> {
         match &self.links[..] {
             [.., before, last] if before.state.load_step == last.state.load_step => Ok([before, last]),
@@ -19,7 +19,7 @@ impl PathChain {
         }
     }
 
-    /// The piece between two states of a load step.
+    /// Returns the piece between two states of a load step.
     fn arrival(&self, [before, last]: [&Link; 2]) -> Arrival {
         let problem = &*self.structure;
         let sense = self.sense(last.state.load_step);
@@ -37,7 +37,7 @@ impl PathChain {
     /// Checks that one of the witnesses proves that no rate continues the path from its last state.
     ///
     /// # Errors
-    /// The first part of the last witness that is wrong, in words.
+    /// Names the first part of the last witness that is wrong.
     pub fn check_none_continues(&self, witnesses: &[Witness]) -> Result<(), String> {
         let [before, last] = self.last_piece()?;
         let (_, equations, modes) = self.at(&last.state)?;
@@ -60,8 +60,7 @@ impl PathChain {
         found
     }
 
-    /// Checks that a contact point that carries leaves the face that it slides on at the last state, and that its blocks
-    /// come apart there.
+    /// Checks that a loaded contact point leaves its face at the last state and that its blocks separate there.
     ///
     /// # Errors
     /// If there is no such point.

@@ -2,16 +2,17 @@
 
 use crate::path::{PathProblem, PathState};
 
-/// What the work of loads and supports leaves of the energy stored and dissipated. Scale of a stage: the sum of |work|
-/// of loads and supports over its steps, what is stored at its end and what it has dissipated, and at least a `floor`.
+/// The energy error of a path: the work of loads and supports minus the energy stored and dissipated. The scale of a
+/// stage is the sum of |work| of loads and supports over its steps, the energy stored at its end and the energy
+/// dissipated in it, and at least `floor`.
 #[derive(Debug, Default, Clone)]
 pub(super) struct EnergyBalance {
-    /// The worst of the stages before.
+    /// The worst value of the stages before.
     worst: f64,
     stage: usize,
-    /// What is needed of the last state, and the energy stored there \[J\].
+    /// The required data of the last state, and the energy stored there \[J\].
     last: Option<(PathState, f64)>,
-    /// Σ|work|, dissipated, and what is left over in the stage: all of it, and in its worst step \[J\].
+    /// Σ|work|, dissipated energy, and the energy error of the stage: in total, and in its worst step \[J\].
     work: f64,
     dissipated: f64,
     left: f64,
@@ -19,7 +20,8 @@ pub(super) struct EnergyBalance {
 }
 
 impl EnergyBalance {
-    /// Adds a state of small or `finite` displacements; the worst of all stages so far. A path starts at rest.
+    /// Adds a state of small or `finite` displacements and returns the worst value of all stages so far. A path starts
+    /// at rest.
     pub fn add(&mut self, problem: &PathProblem, finite: bool, (state, stored): (&PathState, f64), floor: f64) -> f64 {
         let stage = problem.load_steps[state.load_step].stage;
         if stage != self.stage {
@@ -40,7 +42,7 @@ impl EnergyBalance {
         self.share(stored, floor)
     }
 
-    /// Of the present stage, or of one before it.
+    /// Returns the worst value of the present stage and the stages before.
     fn share(&self, stored: f64, floor: f64) -> f64 {
         let scale = (self.work + stored.abs() + self.dissipated).max(floor);
         let own = if scale > 0.0 { self.left.abs().max(self.step) / scale } else { 0.0 };

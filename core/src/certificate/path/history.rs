@@ -1,8 +1,9 @@
-//! Laws with a history along a chain of states: laws of tractions from gaps, and blocks that yield.
+//! Laws with a history along a chain of states: responses, and blocks that yield.
 //!
-//! An increment follows such a law if the law's own update, from the history of the state before it, gives the forces of the
-//! state. The law takes the straight way between both states. So it is checked too that the trapezoidal rule over the forces finds
-//! the energy that the law stores and dissipates on this way: a path that has jumped to another branch sets energy free.
+//! An increment follows such a law if the update of the law, from the history of the state before, gives the forces of
+//! the state. The update follows the straight line between both states. The check therefore also integrates the forces
+//! by the trapezoidal rule and compares the work with the energy that the law stores and dissipates on this line: a
+//! path that has jumped to another branch releases energy.
 
 use super::response::{law_residual, updated};
 use super::tolerance::tolerance;
@@ -10,34 +11,35 @@ use crate::elastic::InelasticState;
 use crate::path::{PathProblem, PathState, Yielded};
 use std::sync::Arc;
 
-/// Work of an increment that the laws neither store nor dissipate, as a share of all work so far.
+/// Greatest work of an increment that the laws neither store nor dissipate, as a share of all work so far.
 const ENERGY: f64 = 1e-3;
-/// Change of the history of a block that its law does not give, relative to its greatest strain.
+/// Greatest difference between the history of a block and the update of its law, relative to its greatest strain.
 const REMEMBERED: f64 = 1e-8;
 
-/// The history of all laws at a state, and the energies on the way to it.
+/// The history of all laws at a state, and the energies up to it.
 #[derive(Debug, Clone, Default)]
 pub(super) struct History {
-    /// States of all laws of tractions from gaps.
+    /// States of all responses.
     pub memory: Vec<f64>,
-    /// Energy that these laws and the blocks that yield store \[J\].
+    /// Energy stored in responses and yielding blocks \[J\].
     stored: f64,
     /// Σ|work| of loads and supports so far \[J\].
     gross: f64,
 }
 
-/// True if a problem has laws with a history.
+/// Returns true if a problem has laws with a history.
 pub(super) fn has_history(problem: &PathProblem) -> bool {
     problem.yields() || problem.contacts.iter().any(|contact| contact.law.response().is_some())
 }
 
 impl History {
-    /// Before any load.
+    /// Creates the history before any load.
     pub fn untouched(problem: &PathProblem) -> Self {
         History { memory: problem.untouched(), ..History::default() }
     }
 
-    /// The history after an increment between two states. `deformation`: the greatest gap or displacement \[m\].
+    /// Returns the history after an increment between two states. `deformation` is the greatest gap or displacement
+    /// \[m\].
     ///
     /// # Errors
     /// If the increment does not follow the laws.
@@ -75,8 +77,8 @@ impl History {
     }
 }
 
-/// Energy that blocks that yield store at the end of an increment, and the work of the forces on their points in it without what
-/// they dissipate \[J\].
+/// Returns the energy that yielding blocks store at the end of an increment, and the work of the forces on their points
+/// in it minus the energy they dissipate \[J\].
 fn block_energies(problem: &PathProblem, states: [&PathState; 2], finite: bool) -> Result<(f64, f64), String> {
     if !problem.yields() {
         return Ok((0.0, 0.0));

@@ -1,9 +1,9 @@
 //! The check of an increment between two states of a path at one contact point.
 //!
-//! With small displacements everything but the laws is linear. So the straight line between two states is a piece of a path if
-//! each point keeps one mode on it: it sticks, or its gap flows along facets that are active at both ends, or it is open and
-//! carries nothing at both ends. An open point is followed by its opening, the gap above the surface that slip with
-//! dilatancy has raised.
+//! With small displacements everything except the laws is linear. The straight line between two states is therefore a
+//! piece of a path if each point keeps one mode on it: it sticks, or its gap flows along facets that are active at both
+//! ends, or it is open and unloaded at both ends. An open point is described by its opening, the gap above the surface
+//! that slip with dilatancy has raised.
 
 use super::claims::outside;
 use super::point_modes::{active_facets, dilatancy, dot, is_apex};
@@ -14,9 +14,9 @@ use crate::path::{Contact, PointLaw};
 /// Tolerances of an increment.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Allowed {
-    /// Slack of active facets \[N\].
+    /// Greatest slack of active facets \[N\].
     pub slack: f64,
-    /// Opening of closed points \[m\].
+    /// Greatest opening of closed points \[m\].
     pub opening: f64,
 }
 
@@ -34,7 +34,7 @@ pub(super) fn first_opening(contact: &Contact) -> f64 {
     if contact.law.facets().is_some() { contact.gap.max(0.0) } else { 0.0 }
 }
 
-/// The increment of one contact point with forces and gaps at both ends.
+/// Checks the increment of one contact point from forces and gaps at both ends.
 pub(super) fn passed(
     contact: &Contact,
     forces: [[f64; 2]; 2],
@@ -65,7 +65,7 @@ fn better(a: Passed, b: Passed) -> Passed {
     if b.outside < a.outside { b } else { a }
 }
 
-/// A closed point that flows along its active facets.
+/// The increment of a closed point that flows along its active facets.
 fn flowing(facets: &[Facet], active: &[usize], moved: [f64; 2], stuck: Passed) -> Passed {
     let flows: Vec<[f64; 2]> = active.iter().map(|f| facets[*f].flow.map(|d| -d)).collect();
     let outside = outside(moved, &flows);
@@ -79,7 +79,7 @@ fn flowing(facets: &[Facet], active: &[usize], moved: [f64; 2], stuck: Passed) -
     Passed { opening: stuck.opening + opened, outside }
 }
 
-/// An open point on its opening facet.
+/// The increment of an open point on its opening facet.
 fn reopened(facets: &[Facet], active: &[usize], facet: usize, moved: [f64; 2], opening: f64) -> Passed {
     let [d, back] = [facets[facet].flow.map(|d| -d), facets[facet].flow];
     let others = active.iter().filter(|f| **f != facet).map(|f| facets[*f].flow.map(|d| -d));
@@ -89,7 +89,8 @@ fn reopened(facets: &[Facet], active: &[usize], facet: usize, moved: [f64; 2], o
     Passed { opening: after.max(0.0), outside: off.max(-after) }
 }
 
-/// The multiplier of an opening facet in an increment; if rounding keeps it from the flow of the facets, its part along this one.
+/// Returns the multiplier of an opening facet in an increment. If rounding keeps the increment from the flow of the
+/// facets, returns its component along this facet.
 fn opened_by(facets: &[Facet], active: &[usize], facet: usize, moved: [f64; 2]) -> f64 {
     let own = opening_of(facets, active, facet, moved);
     let flow = facets[facet].flow;

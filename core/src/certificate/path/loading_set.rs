@@ -1,10 +1,11 @@
-//! Limit points of structures whose laws have a history: no rate of one loading set raises the load.
+//! Limit points of structures whose laws have a history: the check that no rate of one loading set raises the load.
 //!
-//! Just ahead of a state in the direction of a rate, the updates of all such laws give tangents: ṙ = A T ġ of a law of tractions, a
-//! flexibility of a block that yields. With the modes of all other contact points they make a linear rate problem. One
-//! functional c is positive if the set loads: points that soften go on, and yielding dissipates. Multipliers then prove c·x = −λ̇/μ
-//! for all rates x of the set, with μ ≥ 0: where c·x ≥ 0, no rate rises. Another loading set may have one. The set must dissipate:
-//! that of mere unloading proves nothing. If all laws have the same tangents on both sides, there is no other set, and λ̇ = 0.
+//! Just beyond a state in the direction of a rate, the updates of all such laws give tangents: ṙ = A T ġ for a
+//! response, a flexibility for a block that yields. With the modes of all other contact points they form a linear rate
+//! problem. A linear functional c is positive if the set loads: points that soften continue to soften, and yielding
+//! dissipates. Multipliers then prove c·x = −λ̇/μ with μ ≥ 0 for all rates x of the set: if c·x ≥ 0, no rate rises.
+//! Another loading set may have a rising rate. The set must dissipate: pure unloading proves nothing. If all laws have
+//! the same tangents on both sides, there is no other set, and λ̇ = 0.
 //!
 //! The multipliers are the solution of one linear system. They are checked like the multipliers of a witness.
 
@@ -18,17 +19,17 @@ use crate::path::{FarkasVector, PathProblem, PathRate, PathState, PointMode, Rat
 use nalgebra::DMatrix;
 use std::sync::Arc;
 
-/// Distance of the updates from the state, as a share of the greatest gap or displacement.
+/// Distance from the state at which updates are evaluated, as a share of the greatest gap or displacement.
 const AHEAD: f64 = 1e-6;
-/// Relative change of a tangent that is no other branch of its law.
+/// Relative difference below which two tangents belong to one branch of a law.
 const SAME_BRANCH: f64 = 1e-3;
-/// Loading sets that are tried, each found with the rate of the last.
+/// Number of loading sets that are tried; each is found with the rate of the last.
 const SETS: usize = 4;
 /// Least dissipation of a set that loads, relative to the work of contact forces.
 const DISSIPATES: f64 = 1e-6;
-/// Sums below this share of their terms are rounding.
+/// Share of their terms below which sums count as rounding errors.
 const NOISE: f64 = 1e-12;
-/// Iterations of the nodes of a block that yields.
+/// Iterations for the nodes of a block that yields.
 const ITERATIONS: usize = 6;
 /// Steps of refinement of linear systems.
 const REFINEMENTS: usize = 3;
@@ -36,30 +37,30 @@ const REFINEMENTS: usize = 3;
 /// A 2 × 2 matrix, row by row.
 type Matrix = [[f64; 2]; 2];
 
-/// A block that yields, linearised.
+/// A linearised block that yields.
 struct Block {
-    /// Displacements of its points by forces on them \[m/N\].
+    /// Displacements of its points per force on them \[m/N\].
     flexibility: Arc<DMatrix<f64>>,
-    /// Gradient of its plastic work by these forces \[m\]; empty if it does not yield.
+    /// Gradient of its plastic work with respect to these forces \[m\]; empty if it does not yield.
     power: Vec<f64>,
-    /// Energy dissipated on the way from the state \[J\].
+    /// Energy dissipated between the state and the linearisation \[J\].
     dissipated: f64,
 }
 
 /// The linear rate problem of a loading set.
 struct LoadingSet {
-    /// A T of each contact point with a law of tractions.
+    /// A T of each contact point with a response.
     tangents: Vec<Option<Matrix>>,
     /// The structure with the flexibilities of its blocks.
     structure: Arc<PathProblem>,
-    /// Coefficients of c by rates of force and of gap of each contact point, and by λ̇.
+    /// Coefficients of c for rates of force and of gap of each contact point, and for λ̇.
     forces: Vec<[f64; 2]>,
     gaps: Vec<[f64; 2]>,
     factor: f64,
     /// False if nothing softens or yields: c then has no sign.
     loads: bool,
     equations: RateEquations,
-    /// The mode of each contact point with facets, or that is bonded.
+    /// The mode of each contact point that has facets or is bonded.
     modes: Vec<Option<ModeCone>>,
 }
 
@@ -68,7 +69,7 @@ struct System {
     entries: Entries,
     /// Factors of the rows.
     scales: Vec<f64>,
-    /// ġ by the scaled unknowns.
+    /// Coefficients of ġ for the scaled unknowns.
     gaps: Vec<Vec<(usize, f64)>>,
 }
 
@@ -80,7 +81,7 @@ fn transposed(m: Matrix) -> Matrix {
     [[m[0][0], m[1][0]], [m[0][1], m[1][1]]]
 }
 
-/// Greatest entry.
+/// Returns the size of the greatest entry.
 fn size(matrix: Matrix) -> f64 {
     matrix.as_flattened().iter().fold(0.0, |a: f64, x| a.max(x.abs()))
 }
@@ -90,7 +91,7 @@ fn same(a: Matrix, b: Matrix) -> bool {
     size(difference) <= SAME_BRANCH * size(a).max(size(b))
 }
 
-/// The direction in which a law leaves the branch of the opposite direction: its tangents differ by m ⊗ n.
+/// Returns the direction in which a law leaves the branch of the opposite direction: its tangents differ by m ⊗ n.
 fn loading_direction(ahead: Matrix, behind: Matrix, along: [f64; 2]) -> Option<[f64; 2]> {
     if same(ahead, behind) {
         return None;
@@ -105,7 +106,7 @@ impl PathChain {
     /// Checks that no rate of one loading set raises the load at a state. A witness at the state gives the rate just beyond it.
     ///
     /// # Errors
-    /// The first part of the last witness that is wrong, in words.
+    /// Names the first part of the last witness that is wrong.
     pub fn check_loading_set(&self, state: &PathState, witnesses: &[&Witness]) -> Result<(), String> {
         let link =
             self.links.iter().rev().find(|link| is_same(&link.state, state)).ok_or("the state is not on the path")?;
@@ -121,7 +122,7 @@ impl PathChain {
         found
     }
 
-    /// Checks the loading set of a rate, or else the set that the rate of this one loads.
+    /// Checks the loading set of a rate; if it is not consistent, checks the set of the resulting rate.
     fn check_beyond(&self, link: &Link, rate: &PathRate) -> Result<(), String> {
         let contacts = self.structure.contacts.len();
         if rate.force.len() != contacts
@@ -147,7 +148,7 @@ impl PathChain {
         Err("the rate just beyond the state does not load as its laws say".into())
     }
 
-    /// A rate in the direction of another that moves as much as the state has moved.
+    /// Returns a rate in the same direction, scaled to the size of the motion of the state.
     fn scaled(&self, state: &PathState, rate: &PathRate) -> PathRate {
         let moves = rate.motion.iter().flat_map(|v| [v[0], v[1], v[2] * self.structure.length]);
         let fastest = rate.gap.as_flattened().iter().copied().chain(moves).fold(0.0, |a: f64, v| a.max(v.abs()));
@@ -161,7 +162,8 @@ impl PathChain {
         }
     }
 
-    /// Tangents A T of the laws of tractions a share of a rate from a state, and the energy that they dissipate \[J\].
+    /// Returns the tangents A T of responses at a share of a rate from a state, and the energy that they dissipate
+    /// \[J\].
     fn tangents(&self, link: &Link, rate: &PathRate, share: f64) -> Result<(Vec<Option<Matrix>>, f64), String> {
         let (mut at, mut dissipated) = (0, 0.0);
         let of = |(index, contact): (usize, &crate::path::Contact)| {
@@ -179,7 +181,7 @@ impl PathChain {
         Ok((tangents?, dissipated))
     }
 
-    /// The blocks that yield, linearised a share of a rate from a state.
+    /// Returns the yielding blocks, linearised at a share of a rate from a state.
     fn blocks(&self, link: &Link, rate: &PathRate, share: f64) -> Result<Vec<Option<Block>>, String> {
         let problem = &*self.structure;
         if !problem.yields() {
@@ -213,7 +215,7 @@ impl PathChain {
         problem.bodies.iter().enumerate().map(of).collect()
     }
 
-    /// The loading set of a rate.
+    /// Returns the loading set of a rate.
     fn loading_set(&self, link: &Link, rate: &PathRate) -> Result<LoadingSet, String> {
         let (tangents, mut dissipated) = self.tangents(link, rate, AHEAD)?;
         let (behind, _) = self.tangents(link, rate, -AHEAD)?;
@@ -252,7 +254,8 @@ impl PathChain {
         Ok(LoadingSet { tangents, structure: Arc::new(structure), forces, gaps, factor, loads, equations, modes })
     }
 
-    /// True if the rate of a loading set loads as the set does: its laws have the same tangents ahead, and no facet is left.
+    /// Returns true if the rate of a loading set loads in the same way: its laws have the same tangents, and no mode is
+    /// left.
     fn is_consistent(&self, link: &Link, set: &LoadingSet, rate: &PathRate) -> Result<bool, String> {
         let rate = &self.scaled(&link.state, rate);
         let (laws, _) = self.tangents(link, rate, AHEAD)?;
@@ -274,7 +277,8 @@ impl PathChain {
     }
 }
 
-/// Adds the gradient of the plastic work of all blocks by contact forces and λ; returns true if a block yields.
+/// Adds the gradient of the plastic work of all blocks with respect to contact forces and λ. Returns true if a block
+/// yields.
 fn plastic_power(
     problem: &PathProblem,
     state: &PathState,
@@ -299,7 +303,7 @@ fn plastic_power(
     blocks.iter().flatten().any(|block| !block.power.is_empty())
 }
 
-/// The mode that is nearest to a rate. `None` for laws of tractions.
+/// Returns the mode that is nearest to a rate. `None` for responses.
 fn nearest_mode(modes: Vec<ModeCone>, rate: &PathRate, index: usize) -> Option<ModeCone> {
     let sizes = [&rate.force, &rate.gap].map(|v| v.iter().map(|x| length(*x)).fold(f64::MIN_POSITIVE, f64::max));
     let off = |cone: &ModeCone| {
@@ -309,7 +313,7 @@ fn nearest_mode(modes: Vec<ModeCone>, rate: &PathRate, index: usize) -> Option<M
     modes.into_iter().min_by(|a, b| off(a).total_cmp(&off(b)))
 }
 
-/// Rows of a contact point in a mode: coefficients of ṙ and of ġ in each.
+/// Returns the two equations of a contact point in a mode: coefficients of ṙ and of ġ in each.
 fn rows(facets: &[Facet], mode: PointMode) -> [[[f64; 2]; 2]; 2] {
     match mode {
         PointMode::Stick => [[[0.0; 2], [1.0, 0.0]], [[0.0; 2], [0.0, 1.0]]],
@@ -322,7 +326,7 @@ fn rows(facets: &[Facet], mode: PointMode) -> [[[f64; 2]; 2]; 2] {
 }
 
 impl LoadingSet {
-    /// The two rows of a contact point.
+    /// Returns the two equations of a contact point.
     fn rows_of(&self, index: usize) -> [[[f64; 2]; 2]; 2] {
         match (&self.tangents[index], &self.modes[index]) {
             (Some(k), _) => [[[1.0, 0.0], k[0].map(|x| -x)], [[0.0, 1.0], k[1].map(|x| -x)]],
@@ -331,7 +335,8 @@ impl LoadingSet {
         }
     }
 
-    /// Columns of the unknowns ṙ, q̇ of free bodies and λ̇ with their units, for forces and motions of a size.
+    /// Returns the columns of the unknowns ṙ, q̇ of free bodies and λ̇ with their units, for given sizes of forces and
+    /// motions.
     fn columns(&self, free: &[usize], [force, moved]: [f64; 2]) -> Vec<(&Column, f64)> {
         let equations = &self.equations;
         let most = equations.load.equilibrium.iter().map(|(row, p)| (p / self.turn(*row)).abs()).fold(0.0, f64::max);
@@ -341,12 +346,13 @@ impl LoadingSet {
         forces.chain(motions).chain([(&equations.load, load)]).collect()
     }
 
-    /// Unit of a row or column of a motion: moments and rotations have a length.
+    /// Returns the unit of a row or column of a motion: moments and rotations have a length.
     fn turn(&self, index: usize) -> f64 {
         if index % 3 == 2 { self.equations.length } else { 1.0 }
     }
 
-    /// The matrix: rows of contact points, of equilibrium, and c, with the factors of the rows; and ġ by the unknowns.
+    /// Returns the matrix (equations of contact points, equilibrium, and c) with the scales of its rows, and ġ in the
+    /// unknowns.
     fn matrix(&self, free: &[usize], columns: &[(&Column, f64)], [force, moved]: [f64; 2]) -> System {
         let (contacts, bodies, size) = (self.gaps.len(), self.equations.held.len(), columns.len());
         let mut gaps: Vec<Vec<(usize, f64)>> = vec![Vec::new(); 2 * contacts];
@@ -379,7 +385,7 @@ impl LoadingSet {
         System { entries, scales, gaps }
     }
 
-    /// The rate with c·x = 1, the multipliers, and κ with λ̇ = κ c·x in the sense of the load step.
+    /// Returns the rate with c·x = 1, the multipliers, and κ with λ̇ = κ c·x in the sense of the load step.
     fn solve(&self, state: &PathState) -> Result<(PathRate, FarkasVector, f64), String> {
         let (equations, contacts) = (&self.equations, self.gaps.len());
         let free: Vec<usize> = (0..equations.motions.len()).filter(|i| !equations.held[i / 3]).collect();
@@ -411,7 +417,7 @@ impl LoadingSet {
         Ok((rate, self.multipliers(&z, &scales, &free), z[size - 1]))
     }
 
-    /// Multipliers of equilibrium and kinematics with the opposite sign, from the multipliers of all rows.
+    /// Returns the multipliers of equilibrium and kinematics with the opposite sign, from the multipliers of all rows.
     fn multipliers(&self, z: &[f64], scales: &[f64], free: &[usize]) -> FarkasVector {
         let (contacts, last) = (self.gaps.len(), z.len() - 1);
         let mut vector = FarkasVector {
@@ -436,9 +442,10 @@ impl LoadingSet {
         vector
     }
 
-    /// Checks the multipliers: with `behind` = κ, α·ṙ + β·ġ + κ c·x ≥ 0 in all modes of the set, and the factor of λ̇ is negative.
+    /// Checks the multipliers: with κ = `behind`, α·ṙ + β·ġ + κ c·x ≥ 0 in all modes of the set, and the factor of λ̇
+    /// is negative.
     fn check(&self, vector: &FarkasVector, behind: f64) -> Result<(), String> {
-        // Without a set that loads c has any sign, and the load stands still.
+        // If the set does not load, c has either sign, and the load is constant.
         let kept = if self.loads { behind.min(0.0) } else { 0.0 };
         let modes: Vec<Vec<ModeCone>> = self.modes.iter().map(|mode| mode.iter().cloned().collect()).collect();
         let problem = RateProblem { equations: &self.equations, modes: &modes };

@@ -1,28 +1,30 @@
-//! The proof that no rate at a state has a sense of λ̇: a complete tree of mode decisions with a Farkas vector at each leaf.
+//! The proof that no rate at a state has a sense of λ̇: a complete tree of mode decisions with a Farkas vector at each
+//! leaf.
 //!
 //! A leaf with multipliers (y, β) proves that λ̇ > 0 is impossible if, with α as in [`FarkasVector`],
 //!
 //! - Kᵀ y + Gᵀ β = 0 for the motion of every free body,
-//! - α·ṙ + β·ġ ≥ 0 in every mode that is left at every contact point,
+//! - α·ṙ + β·ġ ≥ 0 in every remaining mode at every contact point,
 //! - p·y + g_p·β is negative by a margin.
 //!
-//! For λ̇ < 0 it is positive. For λ̇ = 0 it has no influence, and Kᵀ y + Gᵀ β = −κ p with κ > 0 by a margin.
+//! For λ̇ < 0 the last sum is positive instead. For λ̇ = 0 it is not used, and Kᵀ y + Gᵀ β = −κ p with κ > 0 by a
+//! margin.
 //!
-//! Sums are compared with the sizes of their terms. So the proof holds for all structures whose coefficients differ from these
-//! by the tolerances. No number is searched for.
+//! Sums are compared with the sizes of their terms. The proof therefore holds for all structures whose coefficients
+//! differ from these by the tolerances. The check involves no search.
 
 use super::arrival::Arrival;
 use super::point_modes::{Decided, ModeCone, length};
 use super::rate_equations::{Column, RateEquations};
 use crate::path::{FarkasVector, ModeTree};
 
-/// Most leaves of a tree.
+/// Greatest number of leaves of a tree.
 pub const MAX_LEAVES: usize = 10_000;
 /// Rounding of sums that must vanish or have a sign, as a share of their terms.
 const ROUNDING: f64 = 1e-10;
-/// The same of the geometric terms Kᵀ y: how closely a state on a curved path is at its limit point.
+/// The same for the geometric terms Kᵀ y: the accuracy of a limit point on a curved path.
 const LOCATED: f64 = 1e-7;
-/// Sums below this share of the greatest sum of terms are rounding.
+/// Share of the greatest sum of terms below which sums count as rounding errors.
 const NOISE: f64 = 1e-14;
 /// Least size of the negative factor of λ̇, as a share of its terms.
 const MARGIN: f64 = 1e-6;
@@ -37,18 +39,19 @@ pub(super) struct RateProblem<'a> {
 /// The rates that a tree refutes.
 #[derive(Clone, Copy)]
 pub(super) enum Refuted<'a> {
-    /// With λ̇ > 0.
+    /// Rates with λ̇ > 0.
     Rising,
-    /// With λ̇ = 0 and a load that does work.
+    /// Rates with λ̇ = 0 and a load that does work.
     Standing,
-    /// With λ̇ > 0 on a path that arrives with λ falling: those in modes of the piece before are the way back.
+    /// Rates with λ̇ > 0 on a path that arrives with λ falling, except rates in modes of the piece before, which are
+    /// the way back.
     RisingNew(&'a Arrival),
-    /// With λ̇ < 0, but those in modes of the piece before.
+    /// Rates with λ̇ < 0, except rates in modes of the piece before.
     FallingNew(&'a Arrival),
 }
 
 impl<'a> Refuted<'a> {
-    /// The sense of λ̇ in the sense of the load step.
+    /// Returns the sense of λ̇ relative to the sense of the load step.
     fn factor(self) -> f64 {
         match self {
             Refuted::Rising | Refuted::RisingNew(_) => 1.0,
@@ -57,7 +60,7 @@ impl<'a> Refuted<'a> {
         }
     }
 
-    /// The piece before, if rates in its modes are left out.
+    /// Returns the piece before, if rates in its modes are excluded.
     fn left_out(self) -> Option<&'a Arrival> {
         match self {
             Refuted::RisingNew(arrival) | Refuted::FallingNew(arrival) => Some(arrival),
@@ -80,18 +83,18 @@ impl Sum {
     }
 }
 
-/// Multipliers with the sums that they make.
+/// Multipliers with their sums.
 pub(super) struct Products {
     /// α of each contact point with the sizes of its terms.
     alpha: Vec<([f64; 2], f64)>,
     beta: Vec<[f64; 2]>,
-    /// Kᵀ y and Gᵀ β by 3 × body + component.
+    /// Kᵀ y and Gᵀ β by index 3 × body + component.
     motions: Vec<[Sum; 2]>,
     /// The factor of λ̇.
     load: Sum,
 }
 
-/// Sums of the entries of a column with y, and with β.
+/// Returns the products of a column with y and with β.
 fn sums(column: &Column, vector: &FarkasVector) -> [Sum; 2] {
     let mut sums = [Sum::default(); 2];
     let y = vector.equilibrium.as_flattened();
@@ -120,7 +123,7 @@ impl Products {
         Products { alpha: forces.chunks_exact(2).map(pair).collect(), beta: vector.gap.clone(), motions, load }
     }
 
-    /// The reason why the work of the load is not excluded, with the size of the greatest of the sums over motions.
+    /// Returns an error if work of the load is not excluded; `largest` is the size of the greatest sum over motions.
     fn excludes_work(&self, equations: &RateEquations, work: f64, largest: f64) -> Result<(), String> {
         let scale = |row: usize| if row % 3 == 2 { equations.length } else { 1.0 };
         let share = |(row, p): &(usize, f64)| (work * p / scale(*row)).abs();
@@ -129,7 +132,7 @@ impl Products {
         if proves { Ok(()) } else { Err("the multipliers do not exclude that the load does work".into()) }
     }
 
-    /// The first reason why these multipliers prove nothing.
+    /// Returns the first reason why these multipliers prove nothing.
     fn refutes(&self, problem: &RateProblem, decided: &Decided, refuted: Refuted, work: f64) -> Result<(), String> {
         let largest = self.balance(problem.equations)?;
         if matches!(refuted, Refuted::Standing) {
@@ -140,7 +143,7 @@ impl Products {
         self.admit(problem, decided)
     }
 
-    /// Kᵀ y + Gᵀ β = 0, with the size of the greatest of these sums.
+    /// Checks Kᵀ y + Gᵀ β = 0 and returns the size of the greatest of these sums.
     fn balance(&self, equations: &RateEquations) -> Result<f64, String> {
         let scale = |index: usize| if index % 3 == 2 { equations.length } else { 1.0 };
         let moved = self.motions.iter().enumerate().map(|(i, [k, g])| (k.terms + g.terms) / scale(i));
@@ -154,7 +157,7 @@ impl Products {
         Ok(largest)
     }
 
-    /// The factor of λ̇ has the opposite sign of `sense`.
+    /// Checks that the factor of λ̇ has the opposite sign of `sense`.
     fn excludes(&self, sense: f64) -> Result<(), String> {
         let factor = sense * self.load.value;
         if factor.is_nan() || factor > -MARGIN * self.load.terms || factor == 0.0 {
@@ -172,8 +175,9 @@ impl Products {
         self.load.add(-kappa * factor);
     }
 
-    /// The first reason why these multipliers do not exclude that the load rises in one linear rate problem at a state that is
-    /// located. `linear`: of a contact point whose rates are linear, the size of the sum that must vanish and of its terms.
+    /// Returns the first reason why these multipliers do not exclude a rising load in one linear rate problem at a
+    /// located state. For a contact point whose rates are linear, `linear` gives the size of the sum that must vanish
+    /// and of its terms.
     pub fn refutes_linear(
         &self,
         problem: &RateProblem,
@@ -198,7 +202,7 @@ impl Products {
         Ok(())
     }
 
-    /// α·ṙ + β·ġ ≥ 0 in all modes that are left.
+    /// Checks α·ṙ + β·ġ ≥ 0 in all remaining modes.
     fn admit(&self, problem: &RateProblem, decided: &Decided) -> Result<(), String> {
         let largest_alpha = self.alpha.iter().map(|own| own.1).fold(0.0, f64::max);
         let largest_beta = self.beta.iter().map(|beta| length(*beta)).fold(0.0, f64::max);
@@ -220,15 +224,15 @@ impl RateProblem<'_> {
     /// Checks the proof that no rate has λ̇ > 0; returns the number of its leaves.
     ///
     /// # Errors
-    /// The first part that proves nothing, in words.
+    /// Names the first part that proves nothing.
     pub fn check_none_rises(&self, tree: &ModeTree) -> Result<usize, String> {
         self.check_none(tree, Refuted::Rising)
     }
 
-    /// Checks the proof that there are no such rates; returns the number of its leaves.
+    /// Checks the proof that no such rates exist and returns the number of its leaves.
     ///
     /// # Errors
-    /// The first part that proves nothing, in words.
+    /// Names the first part that proves nothing.
     pub fn check_none(&self, tree: &ModeTree, refuted: Refuted) -> Result<usize, String> {
         if tree.leaves(MAX_LEAVES) > MAX_LEAVES {
             return Err(format!("the tree has more than {MAX_LEAVES} leaves"));

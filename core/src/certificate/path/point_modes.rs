@@ -1,4 +1,4 @@
-//! The modes that a contact point may take in a rate, each as two cones: rates of its force and rates of its gap.
+//! The modes of a contact point in a rate, each as two cones: rates of its force and rates of its gap.
 //!
 //! | mode | ṙ | ġ |
 //! |---|---|---|
@@ -7,19 +7,19 @@
 //! | vertex | 0 | −Σ γ_j d_j over the active facets |
 //! | open | 0 | any |
 //!
-//! γ ≥ 0. An open point without strength has the last mode only. An open point with a tensile strength stays on its opening
-//! facet, whose γ has any sign: it may close. A bonded point has ġ = 0 and any ṙ.
-//! Source: the modes are those of Klarbring (1990), Ing.-Arch. 60, with facets in the place of Coulomb's cone.
+//! All γ ≥ 0. An open point without strength has the last mode only. An open point with a tensile strength stays on its
+//! opening facet, whose γ may have either sign because it may close. A bonded point has ġ = 0 and any ṙ. Source: the
+//! modes of Klarbring (1990), Ing.-Arch. 60, with facets instead of Coulomb's cone.
 
 use super::claims::outside;
 use crate::law::{Facet, FacetMode, YieldPolygon};
 use crate::path::{Contact, PointLaw, PointMode};
 use std::collections::BTreeMap;
 
-/// Slack of a facet, as a share of the greatest contact force, up to which it is active.
+/// Greatest slack of an active facet, as a share of the greatest contact force.
 pub const ACTIVE: f64 = 1e-8;
 
-/// Directions this close to a right angle to a normal lie on its facet.
+/// Greatest cosine between a normal and a direction along its facet.
 const ALONG: f64 = 1e-12;
 
 /// All directions of the plane.
@@ -37,13 +37,13 @@ pub(super) struct ModeCone {
 }
 
 impl ModeCone {
-    /// Distances of rates of force and of gap from the cones.
+    /// Returns the distances of rates of force and of gap from the cones.
     pub fn distances(&self, force: [f64; 2], gap: [f64; 2]) -> [f64; 2] {
         [outside(force, &self.force), outside(gap, &self.gap)]
     }
 
-    /// The least products of the multipliers (α, β) with the generators, each divided by the generator's length: both are
-    /// ≥ 0 if α·ṙ + β·ġ ≥ 0 in this mode.
+    /// Returns the least products of the multipliers (α, β) with the generators, each divided by the length of the
+    /// generator. Both are ≥ 0 if α·ṙ + β·ġ ≥ 0 in this mode.
     pub fn least_products(&self, [alpha, beta]: [[f64; 2]; 2]) -> [f64; 2] {
         let least = |m: [f64; 2], cone: &[[f64; 2]]| cone.iter().map(|v| dot(m, *v) / length(*v)).fold(0.0, f64::min);
         [least(alpha, &self.force), least(beta, &self.gap)]
@@ -58,12 +58,12 @@ pub(super) fn length(a: [f64; 2]) -> f64 {
     a[0].hypot(a[1])
 }
 
-/// Slack of a facet at a contact force, divided by the length of its normal \[N\].
+/// Returns the slack of a facet at a contact force, divided by the length of its normal \[N\].
 fn slack(contact: &Contact, facet: &Facet, force: [f64; 2]) -> f64 {
     (facet.bound * contact.area - dot(facet.normal, force)) / length(facet.normal)
 }
 
-/// Indices of the facets whose slack is at most `tolerance` \[N\] at all of these forces.
+/// Returns the indices of the facets whose slack is at most `tolerance` \[N\] at all of these forces.
 pub(super) fn active_facets(contact: &Contact, facets: &[Facet], forces: &[[f64; 2]], tolerance: f64) -> Vec<usize> {
     let is_active = |facet: &Facet| forces.iter().all(|force| slack(contact, facet, *force) <= tolerance);
     (0..facets.len()).filter(|f| is_active(&facets[*f])).collect()
@@ -76,14 +76,14 @@ pub(super) fn is_apex(facets: &[Facet], active: &[usize]) -> bool {
     bare(&|f| f.mode == FacetMode::Opening) && slides(1.0) && slides(-1.0)
 }
 
-/// The greatest opening per slip of the sliding facets.
+/// Returns the greatest opening per slip of the sliding facets.
 pub(super) fn dilatancy(facets: &[Facet]) -> f64 {
     let slides = facets.iter().filter(|f| f.mode == FacetMode::Sliding && f.flow[1] != 0.0);
     slides.map(|f| -f.flow[0] / f.flow[1].abs()).fold(0.0, f64::max)
 }
 
-/// The modes of a contact point at a force; `open` if it has opened. Empty for a law of tractions from gaps.
-/// `tolerance`: slack of active facets \[N\].
+/// Returns the modes of a contact point at a force; `open` is true if it has opened. Empty for a response. `tolerance`
+/// is the greatest slack of active facets \[N\].
 pub(super) fn point_modes(contact: &Contact, force: [f64; 2], open: bool, tolerance: f64) -> Vec<ModeCone> {
     match &contact.law {
         PointLaw::Bonded => vec![ModeCone { mode: PointMode::Stick, force: PLANE.into(), gap: Vec::new() }],
@@ -95,7 +95,7 @@ pub(super) fn point_modes(contact: &Contact, force: [f64; 2], open: bool, tolera
     }
 }
 
-/// Generators of {ṙ : a_j·ṙ ≤ 0 on the active facets}.
+/// Returns the generators of {ṙ : a_j·ṙ ≤ 0 on the active facets}.
 fn admissible_rates(facets: &[Facet], active: &[usize]) -> Vec<[f64; 2]> {
     let own: Vec<Facet> = active.iter().map(|f| Facet { bound: 0.0, ..facets[*f] }).collect();
     if own.is_empty() { PLANE.into() } else { YieldPolygon::of(&own).rays }

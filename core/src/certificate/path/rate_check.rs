@@ -1,30 +1,30 @@
-//! The check of a rate at a state, and of a mechanism at constant load.
+//! Checks of a rate at a state, and of a mechanism at constant load.
 
 use super::none_rises::RateProblem;
 use super::point_modes::{ModeCone, dilatancy, dot, length};
 use crate::law::Facet;
 use crate::path::{Contact, PathProblem, PathRate, PathState, PointMode};
 
-/// Residuals of equations and laws up to which rates are accepted, relative to the sizes of rates.
+/// Greatest residual of equations and laws, relative to the sizes of rates.
 pub const RATE: f64 = 1e-8;
-/// Rows whose terms are below this share of the greatest are compared with that share.
+/// Least scale of a row, as a share of the greatest row.
 const SMALL_ROW: f64 = 1e-3;
 
-/// The greatest length among pairs.
+/// Returns the greatest length of the pairs.
 fn greatest(pairs: &[[f64; 2]]) -> f64 {
     pairs.iter().map(|pair| length(*pair)).fold(0.0, f64::max)
 }
 
-/// The residual of a row relative to its terms.
+/// Returns the residual of a row relative to its terms.
 fn relative([value, terms]: [f64; 2], largest: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value.abs() / (terms + SMALL_ROW * largest) }
 }
 
 impl RateProblem<'_> {
-    /// Checks that rates solve the rate problem; returns the greatest residual.
+    /// Checks that rates solve the rate problem and returns the greatest residual.
     ///
     /// # Errors
-    /// The first part that is wrong, in words.
+    /// Names the first part that is wrong.
     pub fn check_rate(&self, rate: &PathRate) -> Result<f64, String> {
         let (contacts, bodies) = (self.modes.len(), self.equations.held.len());
         if rate.force.len() != contacts || rate.gap.len() != contacts || rate.motion.len() != bodies {
@@ -62,17 +62,17 @@ impl RateProblem<'_> {
         if worst <= RATE { Ok(worst) } else { Err(format!("the rate leaves {worst:.1e} of its equations")) }
     }
 
-    /// The gaps that rates of forces and motions open.
+    /// Returns the rates of gaps from rates of forces and motions.
     pub(super) fn gaps_of(&self, rate: &PathRate) -> Vec<[f64; 2]> {
         let rows = self.equations.products(rate);
         rows[3 * self.equations.held.len()..].chunks_exact(2).map(|pair| [pair[0][0], pair[1][0]]).collect()
     }
 
-    /// Checks a mechanism at constant load with small displacements: contact forces and supports rest, p·q̇ = 1, gaps flow
-    /// as the laws say, the dissipation is the power of all loads, and no open point closes.
+    /// Checks a mechanism at constant load with small displacements: contact forces and supports do not change, p·q̇ =
+    /// 1, gaps flow by the laws, the dissipation is the power of all loads, and no open point closes.
     ///
     /// # Errors
-    /// The first part that is wrong, in words.
+    /// Names the first part that is wrong.
     pub fn check_plateau(&self, problem: &PathProblem, state: &PathState, motion: &[[f64; 3]]) -> Result<(), String> {
         let still = vec![[0.0; 2]; self.modes.len()];
         let mut rate = PathRate { factor: 0.0, gap: still.clone(), force: still, motion: motion.to_vec() };
@@ -104,10 +104,11 @@ impl RateProblem<'_> {
         self.check_closing(problem, &rate)
     }
 
-    /// Checks that rates stay admissible however far they go: contact forces grow within their facets, and no open point closes.
+    /// Checks that rates remain admissible at any distance: contact forces grow within their facets, and no open point
+    /// closes.
     ///
     /// # Errors
-    /// The first part that is wrong, in words.
+    /// Names the first part that is wrong.
     pub fn check_ray(&self, problem: &PathProblem, rate: &PathRate) -> Result<(), String> {
         self.check_rate(rate)?;
         if rate.factor * self.equations.sense <= 0.0 {
@@ -123,7 +124,7 @@ impl RateProblem<'_> {
         self.check_closing(problem, rate)
     }
 
-    /// Checks that no open point closes along rates.
+    /// Checks that rates close no open point.
     fn check_closing(&self, problem: &PathProblem, rate: &PathRate) -> Result<(), String> {
         let least = RATE * greatest(&rate.gap);
         for (contact, modes) in self.modes.iter().enumerate() {
@@ -136,7 +137,7 @@ impl RateProblem<'_> {
     }
 }
 
-/// The rate at which an open point closes; 0 for closed ones.
+/// Returns the rate at which an open point closes; 0 for closed points.
 fn closing_rate(contact: &Contact, modes: &[ModeCone], gap: [f64; 2]) -> f64 {
     let Some(facets) = contact.law.facets() else { return 0.0 };
     match modes[0].mode {
@@ -146,8 +147,8 @@ fn closing_rate(contact: &Contact, modes: &[ModeCone], gap: [f64; 2]) -> f64 {
     }
 }
 
-/// The multiplier of an opening facet in a gap that flows along it and at most one other active facet: the least if there
-/// are several, −∞ if no facet fits.
+/// Returns the multiplier of an opening facet in a gap that flows along it and at most one other active facet: the
+/// least if there are several, −∞ if no facet fits.
 pub(super) fn opening_of(facets: &[Facet], active: &[usize], opening: usize, gap: [f64; 2]) -> f64 {
     let d = facets[opening].flow;
     let alone = -dot(gap, d) / dot(d, d);

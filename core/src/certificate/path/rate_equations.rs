@@ -4,18 +4,20 @@
 //! E ṙ + K q̇ + λ̇ p = 0        ġ = C ṙ + G q̇ + λ̇ g_p
 //! ```
 //!
-//! They are stored by columns, one for each rate of a force, of a motion and of λ. With small displacements E = Gᵀ and K = 0.
+//! They are stored by columns, one for each rate of a force, of a motion and of λ. With small displacements E = Gᵀ, K =
+//! 0.
 
 use super::displaced_rates::residual_rates;
 use crate::path::{Contact, LoadStepEnd, PathProblem, PathRate, PathState};
 
-/// Most unknowns for which the equations of finite displacements are derived; each is one pass over all contact points.
+/// Greatest number of unknowns with finite displacements; each unknown needs one pass over all contact points.
 const MAX_FINITE_UNKNOWNS: usize = 3000;
 
 /// An entry of a column.
 type Entry = (usize, f64);
 
-/// One column: entries of E, K or p by 3 × body + component, and of C, G or g_p by 2 × contact point + component.
+/// One column: entries of E, K or p by index 3 × body + component, and of C, G or g_p by index 2 × contact point +
+/// component.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Column {
     pub equilibrium: Vec<Entry>,
@@ -25,15 +27,15 @@ pub(super) struct Column {
 /// The equations of rates.
 #[derive(Debug)]
 pub struct RateEquations {
-    /// Columns of ṙ, by 2 × contact point + component.
+    /// Columns of ṙ, by index 2 × contact point + component.
     pub(super) forces: Vec<Column>,
-    /// Columns of q̇, by 3 × body + component; empty for held bodies.
+    /// Columns of q̇, by index 3 × body + component; empty for held bodies.
     pub(super) motions: Vec<Column>,
     /// The column of λ̇, with the motion of supports.
     pub(super) load: Column,
     /// 1 if the load step raises λ, else −1.
     pub sense: f64,
-    /// Set for bodies that move by settlement only.
+    /// True for bodies that move by settlement only.
     pub(super) held: Vec<bool>,
     /// Motion of held bodies per λ.
     pub(super) settlements: Vec<[f64; 3]>,
@@ -42,10 +44,10 @@ pub struct RateEquations {
 }
 
 impl RateEquations {
-    /// The equations at a state. An error is the reason why they cannot be derived.
+    /// Derives the equations at a state.
     ///
     /// # Errors
-    /// Finite displacements with too many unknowns.
+    /// With finite displacements, if there are too many unknowns.
     pub fn new(problem: &PathProblem, state: &PathState, finite: bool) -> Result<Self, String> {
         let step = &problem.load_steps[state.load_step];
         let mut settlements = vec![[0.0; 3]; problem.bodies.len()];
@@ -74,7 +76,7 @@ impl RateEquations {
         Ok(equations)
     }
 
-    /// Columns with small displacements.
+    /// Derives the columns for small displacements.
     fn derive_small(&mut self, problem: &PathProblem, state: &PathState) {
         let mut on_body = vec![Vec::new(); problem.bodies.len()];
         for (index, contact) in problem.contacts.iter().enumerate() {
@@ -134,7 +136,7 @@ impl RateEquations {
         column
     }
 
-    /// Columns with finite displacements, each a derivative along one unknown.
+    /// Derives the columns for finite displacements; each is a derivative with respect to one unknown.
     fn derive_finite(&mut self, problem: &PathProblem, state: &PathState) -> Result<(), String> {
         let (contacts, bodies) = (problem.contacts.len(), problem.bodies.len());
         if 2 * contacts + 3 * bodies > MAX_FINITE_UNKNOWNS {
@@ -168,8 +170,8 @@ impl RateEquations {
         Ok(())
     }
 
-    /// The sum of a row over all columns, and the sum of its sizes: `rates` has the columns of forces, then of motions,
-    /// then of λ̇. Rows of equilibrium come first, 3 a body, then gaps, 2 a contact point.
+    /// Returns the sum of each row over all columns, and the sum of the sizes of its terms. Rows of equilibrium come
+    /// first, 3 per body, then rows of gaps, 2 per contact point.
     pub(super) fn products(&self, rate: &PathRate) -> Vec<[f64; 2]> {
         let bodies = self.held.len();
         let mut rows = vec![[0.0; 2]; 3 * bodies + self.forces.len()];

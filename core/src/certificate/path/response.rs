@@ -1,15 +1,14 @@
-//! Laws of tractions from gaps, recomputed from recorded states: the forces they give, and motions that
-//! leave those alone.
+//! Responses recomputed from recorded states: their forces, and motions that do not change these forces.
 
 use crate::certificate::MechanismPlace;
 use crate::law::TractionPoint;
 use crate::path::{PathProblem, PathState};
 
-/// Contact points with their answers, and the states of all laws after them.
+/// Results of contact points, and the states of all responses after them.
 type Updated = (Vec<(usize, TractionPoint)>, Vec<f64>);
 
-/// One update of every contact point with a law of tractions from gaps, from `before`: contact
-/// point, answer and the states after it. `None` where `before` has the wrong length or an update fails.
+/// Updates every contact point with a response once, from the state `before`. Returns contact points with results, and
+/// the states after them. `None` if `before` has the wrong length or an update fails.
 pub(super) fn updated(problem: &PathProblem, gaps: &[[f64; 2]], before: &[f64]) -> Option<Updated> {
     let (mut after, mut points) = (before.to_vec(), Vec::new());
     if before.len() != problem.memory_size() {
@@ -26,11 +25,10 @@ pub(super) fn updated(problem: &PathProblem, gaps: &[[f64; 2]], before: &[f64]) 
     Some((points, after))
 }
 
-/// How far forces are from what laws of tractions from gaps give, relative to the greatest contact
-/// force, and the laws' states afterwards. `None` where there is no such law. Granted is the rounding
-/// of a gap, a difference of displacements (of positions, where they are `finite`), times the
-/// law's stiffness. `least` is the least force \[N\] that anything is
-/// compared with. A `before` that does not fit is that of untouched joints.
+/// Returns the difference between forces and the forces of responses, relative to the greatest contact force, and the
+/// states of the responses afterwards. `None` if there is no response. The rounding of a gap times the stiffness of the
+/// law is allowed; a gap is a difference of displacements, or of positions if displacements are `finite`. `least` is
+/// the least force \[N\] used as scale. A `before` of the wrong length is replaced by the initial state.
 pub fn law_residual(
     problem: &PathProblem,
     state: &PathState,
@@ -62,15 +60,16 @@ pub fn law_residual(
     Some((if worst <= 0.0 { 0.0 } else { worst / scale.max(1e-300) }, after))
 }
 
-/// Returns true if forces rest along the mechanism of a path, so that its flow can be checked at its one state. They do not with
-/// finite displacements, in blocks that yield, and behind the limit point of laws with a history.
+/// Returns true if forces are constant along the mechanism of a path, so that its flow can be checked at one state.
+/// They are not constant with finite displacements, in blocks that yield, and after the limit point of laws with a
+/// history.
 pub fn forces_rest(problem: &PathProblem, finite: bool, place: Option<MechanismPlace>) -> bool {
     let softens = problem.memory_size() > 0 && place == Some(MechanismPlace::Peak);
     !finite && !problem.yields() && !softens
 }
 
-/// How much a motion that goes on far (up to the scene's length) changes the forces of laws of
-/// tractions from gaps, relative to the greatest contact force: 0 for a mechanism.
+/// Returns the change of the forces of responses along a motion of up to the length of the scene, relative to the
+/// greatest contact force: 0 for a mechanism.
 pub fn leaves_forces(problem: &PathProblem, state: &PathState, motion: &[[f64; 3]]) -> f64 {
     let jump = |contact: usize| {
         let mut jump = [0.0; 2];
@@ -84,7 +83,7 @@ pub fn leaves_forces(problem: &PathProblem, state: &PathState, motion: &[[f64; 3
     };
     let mut jumps: Vec<[f64; 2]> = (0..problem.contacts.len()).map(jump).collect();
     let size = jumps.iter().map(|j| j[0].hypot(j[1])).fold(0.0, f64::max);
-    // Rounding of the motion is no movement.
+    // Motions within rounding count as zero.
     jumps.iter_mut().flatten().filter(|j| j.abs() <= 1e-7 * size).for_each(|j| *j = 0.0);
     let largest = state.force.iter().flatten().fold(0.0, |a: f64, f| a.max(f.abs()));
     let Some((_, after)) = updated(problem, &state.gap, &state.memory) else { return 0.0 };

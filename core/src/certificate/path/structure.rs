@@ -1,9 +1,10 @@
-//! The structure that a path is checked against, read from the assembly and the stages alone: areas, initial
-//! gaps, laws, compliances, masses, loads and settlements.
+//! The structure that a path is checked against, derived from the assembly and the stages alone: areas, initial gaps,
+//! laws, compliances, masses, loads and settlements.
 //!
-//! Nothing here is shared with the building of a solver's problem. Both use the elastic library (element boundaries
-//! on a joint, bodies condensed on their points) and the rule by which a contact point slides ([`Sliding`]).
-//! Order is the convention between the two: bodies by their first block, contact points joint by joint along each.
+//! This code shares nothing with the code that builds the solver's problem. Both use the elastic library (element
+//! boundaries on a joint, bodies condensed onto their points) and the rule by which a contact point slides
+//! ([`Sliding`]). They also share the convention of the order: bodies by their first block, contact points joint by
+//! joint and along each joint.
 
 use crate::elastic::{Condenser, breaks_on_joint, union_breaks};
 use crate::law::{Facet, PlanarUpdate};
@@ -13,7 +14,8 @@ use crate::model::{Assembly, Bond, Joint, Stage, Target};
 use crate::path::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem, PointLaw, Sliding};
 use std::sync::Arc;
 
-/// Gauss–Lobatto rules on \[0, 1\] by order of the elements: places and shares, exact for degree 2 × order − 1.
+/// Returns the Gauss–Lobatto rule on \[0, 1\] for elements of an order: points and weights, exact for degree 2 × order
+/// − 1.
 fn rule(order: usize) -> (Vec<f64>, Vec<f64>) {
     let inner = (1.0 - 0.2f64.sqrt()) / 2.0;
     match order {
@@ -23,10 +25,11 @@ fn rule(order: usize) -> (Vec<f64>, Vec<f64>) {
     }
 }
 
-/// How many times stiffer than a block as high as the joint are springs between meshes that do not match.
+/// Stiffness of the springs between meshes that do not match, relative to the stiffness of a block as high as the
+/// joint.
 const REGULARISATION: f64 = 1e5;
 
-/// The structure and its load steps. An error says what cannot be read.
+/// Returns the structure and its load steps. An error names the feature that is not supported.
 pub fn path_structure(assembly: &Assembly, stages: &[Stage]) -> Result<PathProblem, String> {
     let (bodies, body_of) = bodies(assembly, stages);
     let (contacts, load_steps, counters) = (Vec::new(), Vec::new(), Counters::new());
@@ -45,8 +48,8 @@ pub fn path_structure(assembly: &Assembly, stages: &[Stage]) -> Result<PathProbl
     Ok(read)
 }
 
-/// Rigid blocks that are bonded have the label of the first of them; every label is a body. A support that moves has
-/// its pole where it first turns about, any other body at the centroid of its mass.
+/// Returns the bodies. Bonded rigid blocks have the label of the first of them; each label is a body. A moving support
+/// has its pole at the point about which it first rotates, any other body at the centroid of its mass.
 fn bodies(assembly: &Assembly, stages: &[Stage]) -> (Vec<PathBody>, Vec<usize>) {
     let rigid = |block: usize| !assembly.is_deformable(block);
     let mut label: Vec<usize> = (0..assembly.bodies.len()).collect();
@@ -81,8 +84,8 @@ fn bodies(assembly: &Assembly, stages: &[Stage]) -> (Vec<PathBody>, Vec<usize>) 
     (bodies.collect(), body_of)
 }
 
-/// Where on a joint contact points are, as shares of its height, each with its share of the area: a rule on every
-/// segment between element boundaries. A rigid joint without compliance has its two ends.
+/// Returns the positions of contact points on a joint as shares of its height, each with its share of the area. There
+/// is a rule on every segment between element boundaries. A rigid joint without compliance has its two ends.
 fn places(assembly: &Assembly, joint: &Joint) -> Result<Vec<(f64, f64)>, String> {
     let compliant = assembly.law(joint).is_some_and(|law| law.stiffness().is_some());
     let deformable = [joint.minus, joint.plus].into_iter().filter(|side| assembly.is_deformable(*side));
@@ -109,7 +112,7 @@ fn places(assembly: &Assembly, joint: &Joint) -> Result<Vec<(f64, f64)>, String>
     Ok(found)
 }
 
-/// The contact points of one joint; those on deformable blocks become points of their bodies.
+/// Returns the contact points of one joint; contact points on deformable blocks become points of their bodies.
 fn contact_points(
     read: &mut PathProblem,
     assembly: &Assembly,
@@ -153,8 +156,8 @@ fn contact_points(
     Ok(found)
 }
 
-/// Springs between the bodies of joints on which two meshes do not match, or which meet another joint in a point:
-/// such points are more than there are nodes.
+/// Adds springs at joints on which two meshes do not match, or which meet another joint in a point: there are more such
+/// points than nodes.
 fn stiffen_shared_places(read: &mut PathProblem, assembly: &Assembly) -> Result<(), String> {
     let grid = 1e-7 * read.length;
     let place = |c: &Contact| ((c.position.x / grid).round() as i64, (c.position.y / grid).round() as i64);
@@ -185,7 +188,7 @@ fn stiffen_shared_places(read: &mut PathProblem, assembly: &Assembly) -> Result<
     Ok(())
 }
 
-/// Of each stage its change of gravity, then its loads, where there are any.
+/// Returns for each stage the change of gravity, then its loads, if there are any.
 fn load_steps_of(read: &mut PathProblem, assembly: &Assembly, stages: &[Stage]) -> Vec<LoadStep> {
     let mut steps: Vec<LoadStep> = Vec::new();
     let mut before = Vec2::zeros();
@@ -231,7 +234,7 @@ fn load_steps_of(read: &mut PathProblem, assembly: &Assembly, stages: &[Stage]) 
     steps
 }
 
-/// Weight and least pressure of the fill under a gravity, as loads.
+/// Adds weight and least pressure of the fill under a gravity as loads.
 fn fill_at_gravity(read: &mut PathProblem, assembly: &Assembly, gravity: Vec2, loading: &mut Loading) {
     let Some(bridge) = &assembly.bridge else { return };
     let weights = bridge.masses.iter().map(|fill| (fill.body, fill.point, gravity * fill.mass));
@@ -249,7 +252,8 @@ fn fill_at_gravity(read: &mut PathProblem, assembly: &Assembly, gravity: Vec2, l
     }
 }
 
-/// Reactions of the fill: what they may press beyond their least force, on ground that does not move.
+/// Adds the reactions of the fill: the force above the least force acts between the block and ground that does not
+/// move.
 fn read_fill(read: &mut PathProblem, assembly: &Assembly, stages: &[Stage]) -> Result<(), String> {
     let reactions = assembly.fill_reactions();
     if reactions.is_empty() {
@@ -292,7 +296,7 @@ fn read_fill(read: &mut PathProblem, assembly: &Assembly, stages: &[Stage]) -> R
     Ok(())
 }
 
-/// What deformable blocks do under forces on their points.
+/// Computes the flexibilities of deformable blocks at their points.
 fn condense(read: &mut PathProblem, assembly: &Assembly) -> Result<(), String> {
     let mut condenser = Condenser::new(assembly.plane, assembly.width);
     let mut laws: Vec<(usize, Arc<PlanarUpdate>)> = Vec::new();

@@ -1,18 +1,18 @@
-//! How large the residuals of a path may be.
+//! Tolerances of the residuals of paths.
 
-/// How large a residual may be.
+/// The tolerance of a residual.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tolerance {
     /// Name of the residual.
     pub name: &'static str,
-    /// In a result.
+    /// Tolerance in a result.
     pub result: f64,
-    /// Where a solver checks what it is about to claim: infinite where the claim's one state does not
-    /// show it.
+    /// Tolerance for a solver that checks its own claim: infinite if the one state of the claim does not show the
+    /// residual.
     pub claim: f64,
 }
 
-/// The tolerances of all residuals of paths that have one.
+/// The tolerances of all residuals of paths that have a tolerance.
 #[rustfmt::skip]
 pub const TOLERANCES: &[Tolerance] = &[
     Tolerance { name: "path_equilibrium", result: 1e-9, claim: 1e-8 },
@@ -31,7 +31,7 @@ pub const TOLERANCES: &[Tolerance] = &[
     Tolerance { name: "path_ray", result: 1e-9, claim: 1e-6 },
 ];
 
-/// The tolerance of a residual: infinite where it has none.
+/// Returns the tolerance of a residual: infinite if it has none.
 pub fn tolerance(name: &str) -> Tolerance {
     let free = Tolerance { name: "", result: f64::INFINITY, claim: f64::INFINITY };
     TOLERANCES.iter().copied().find(|t| t.name == name).unwrap_or(free)

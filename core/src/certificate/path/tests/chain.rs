@@ -20,7 +20,7 @@ fn weight() -> PathState {
     }
 }
 
-/// The block after a slip along +x; with dilatancy it rises by as much.
+/// The block after a slip along +x; with dilatancy it rises by `dilatancy` times the slip.
 fn slipped(slip: f64, dilatancy: f64) -> PathState {
     let mut state = stuck(LIMIT);
     state.gap = vec![[dilatancy * slip, -slip]; 2];
@@ -42,7 +42,7 @@ fn with_displacement(problem: &PathProblem, state: &PathState) -> PathState {
     PathState { displacement: problem.load_displacement(growing, &state.motion, moved), ..state.clone() }
 }
 
-/// A state whose load has moved otherwise than its motions say breaks the chain.
+/// A state whose displacement of the load does not follow from its motions breaks the chain.
 #[test]
 fn the_displacement_of_the_load_follows_from_the_motions() {
     let problem = sliding_block(0.0);
@@ -52,7 +52,7 @@ fn the_displacement_of_the_load_follows_from_the_motions() {
     assert!(chain.broken().is_some_and(|why| why.contains("displacement of the load")), "{:?}", chain.broken());
 }
 
-/// The mechanism with p·q̇ = 1, and the proof that it makes: its slip opens the joint as the normal of the facet says.
+/// The mechanism with p·q̇ = 1 as a proof: its slip opens the joint along the normal of the facet.
 fn proof(state: &PathState) -> Witness {
     let tree = ModeTree::Leaf(FarkasVector {
         equilibrium: vec![[0.0; 3], [-1.0, -FRICTION, 0.0]],
@@ -74,9 +74,9 @@ fn the_collapse_of_a_sliding_block_is_proved() {
         assert_eq!(chain.check_none_rises(&end, &[&proof(&end)]), Ok(()));
         assert_eq!(chain.check_collapse(&end, &motion, &[&proof(&end)]), Ok(()));
         assert_eq!(chain.check_collapse(&states[3], &motion, &[&proof(&states[3])]), Ok(()));
-        // With associated flow the mechanism proves by itself that no rate rises.
+        // With associated flow the mechanism itself proves that no rate rises.
         assert_eq!(chain.check_collapse(&end, &motion, &[]).is_ok(), dilatancy > 0.0);
-        // It does not lift, slip back, or move with half of the power.
+        // Mechanisms that lift, slip back, have half of the power or rotate are refused.
         for forged in
             [[1.0, dilatancy + 0.1, 0.0], [-1.0, dilatancy, 0.0], [0.5, 0.5 * dilatancy, 0.0], [1.0, dilatancy, 0.1]]
         {
@@ -101,7 +101,7 @@ fn states_that_do_not_follow_each_other_break_a_chain() {
         assert!(chain.broken().is_some_and(|said| said.contains(why)), "{why}: {:?}", chain.broken());
         assert!(chain.states().count() <= states.len());
     };
-    // A stuck point that slips, one that slips back, a load without its weight.
+    // Refused: a stuck point that slips, a point that slips back, a load without its weight.
     let mut crept = stuck(3.0);
     crept.gap[0][1] = -1e-6;
     breaks(&[weight(), crept], "does not flow");
@@ -119,7 +119,7 @@ fn states_that_do_not_follow_each_other_break_a_chain() {
     breaks(&[weight(), stuck(1.0), earlier], "load step");
 }
 
-/// A slip with dilatancy raises the surface: a block above it is open, and carries nothing there.
+/// A block above a surface that slip with dilatancy has raised is open and carries no force there.
 #[test]
 fn an_open_point_carries_nothing() {
     let problem = sliding_block(FRICTION);

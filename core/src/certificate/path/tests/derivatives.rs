@@ -1,4 +1,4 @@
-//! Rates of residuals against differences of the residuals of states.
+//! Rates of residuals, compared with differences of the residuals of states.
 
 use super::scenes::{dry, point, structure};
 use crate::certificate::path::displaced::Displaced;
@@ -10,7 +10,7 @@ use crate::path::{Attachment, PathProblem, PathRate, PathState, Sliding};
 use nalgebra::DMatrix;
 use std::sync::Arc;
 
-/// Numbers without pattern in [−½, ½).
+/// Pseudo-random numbers in [−½, ½).
 struct Numbers(f64);
 
 impl Numbers {
@@ -24,7 +24,7 @@ impl Numbers {
     }
 }
 
-/// A block with three points on the ground, which is a flexible body too, and a load at a fourth point.
+/// A block with three points on flexible ground; the block is flexible too and has a load at a fourth point.
 fn flexible(numbers: &mut Numbers) -> PathProblem {
     let at = |x: f64| point(Vec2::new(x, 0.1 * x), Vec2::new(0.6, 0.8), dry(0.3), [1e-3, 2e-3]);
     let mut problem = structure(Vec2::new(0.2, 0.7), vec![at(-1.0), at(0.0), at(1.0)], Vec2::new(3.0, -2.0));
@@ -93,8 +93,8 @@ fn rates_of_residuals_are_their_differences() {
     }
 }
 
-/// The columns of small displacements are differences of residuals; those of finite displacements, at rest without forces,
-/// are the same.
+/// The columns of small displacements are differences of residuals; at rest without forces the columns of finite
+/// displacements are the same.
 #[test]
 fn columns_are_those_of_residuals() {
     let mut numbers = Numbers(0.7);
@@ -117,7 +117,7 @@ fn columns_are_those_of_residuals() {
         let displaced = Displaced::new(&problem, &state, false);
         (displaced.gaps(), displaced.unbalanced())
     });
-    // The dead load is the same in both.
+    // The dead load is the same in both states.
     let rows = RateEquations::new(&problem, &zero, false).expect("equations").products(&along);
     for i in 0..3 {
         assert!((rows[3 + i][0] - (after.1[1][i] - before.1[1][i])).abs() < 1e-13);
@@ -126,7 +126,7 @@ fn columns_are_those_of_residuals() {
             assert!((rows[6 + 2 * i + k][0] - (after.0[i][k] - before.0[i][k])).abs() < 1e-13);
         }
     }
-    // Without forces nothing depends on the turn of bodies.
+    // Without forces nothing depends on the rotation of bodies.
     let mut bare = problem.clone();
     bare.load_steps[0].loading.acceleration = Vec2::zeros();
     along.factor = 0.0;

@@ -1,4 +1,4 @@
-//! Ends of a path: a point that a spring wedges so that no rate leads on, and a block that slides off its face.
+//! Ends of a path: a point that a spring wedges so that no rate continues, and a block that slides off its face.
 
 use super::scenes::{FRICTION, dry, point, sliding_block, structure, stuck};
 use crate::certificate::path::chain::PathChain;
@@ -8,18 +8,19 @@ use crate::path::{
 };
 use std::sync::Arc;
 
-/// Cosine and sine of the spring.
+/// Cosine and sine of the direction of the spring.
 const SPRING: [f64; 2] = [0.5, -0.866_025_403_784_438_6];
-/// Its stiffness along itself \[N/m\].
+/// Stiffness along the spring \[N/m\].
 const STIFF: f64 = 1e6;
 
-/// Its stiffness across itself, for which slip changes normal and shear force so that the distance to friction stays.
+/// Stiffness across the spring, for which slip changes normal and shear force without changing the distance to
+/// friction.
 fn across() -> f64 {
     let [c, s] = SPRING;
     STIFF * (FRICTION * (c * s).abs() - c * c) / (s * s + FRICTION * (c * s).abs())
 }
 
-/// A point on the ground that an inclined spring wedges, under a force that lifts it by λ.
+/// A point on the ground that an inclined spring wedges, under a force λ that lifts it.
 fn lifted() -> PathProblem {
     let spring = Vec2::new(SPRING[0], SPRING[1]);
     let contacts = vec![
@@ -29,7 +30,7 @@ fn lifted() -> PathProblem {
     structure(Vec2::zeros(), contacts, Vec2::new(0.0, 1.0))
 }
 
-/// The state at λ with the shear force at the ground.
+/// The state at λ with the given shear force at the ground.
 fn state(load_step: usize, factor: f64, shear: f64) -> PathState {
     let force = vec![[10.0, shear], [1.0, 1.0]];
     let motion = vec![[0.0; 3]; 2];
@@ -48,7 +49,7 @@ fn chain(problem: &PathProblem, finite: bool, states: &[PathState]) -> PathChain
     chain
 }
 
-/// y along the normal of the facet, while the spring rests.
+/// Multipliers with y along the normal of the facet, without force in the spring.
 fn along_normal(sign: f64) -> FarkasVector {
     let [c, s] = SPRING;
     let (stiff, soft) = (STIFF, across());
@@ -91,19 +92,20 @@ fn verdict(states: &[PathState], proof: NoneContinues) -> Result<(), String> {
     chain.check_none_continues(&[Witness { state, claim: RateClaim::NoneContinues(proof) }])
 }
 
-/// The point reaches friction as it is lifted. It cannot carry more, its slip does no work, and to go back is no continuation.
+/// A wedged point has no continuation: it reaches friction as it is lifted, it cannot carry more, its slip does no
+/// work, and the way back is not a continuation.
 #[test]
 fn a_wedged_point_has_no_continuation() {
     let limit = FRICTION * 10.0;
     let rising = [state(0, 1.0, 2.0), state(1, 0.5, 5.0), state(1, 1.0, limit)];
     assert_eq!(verdict(&rising, proof()), Ok(()));
-    // Before friction is reached the load rises.
+    // Before friction is reached the load can rise.
     let early = [state(0, 1.0, 2.0), state(1, 0.5, 5.0), state(1, 1.0, 0.9 * limit)];
     assert!(verdict(&early, proof()).is_err());
-    // On a path that falls the modes that it had are the way on.
+    // On a falling path the modes of the piece before are the continuation.
     let falling = [state(0, 1.0, 2.0), state(1, 1.5, limit), state(1, 1.0, limit)];
     assert!(verdict(&falling, proof()).is_err_and(|why| why.contains("may go on")));
-    // A point that has slipped before may slip on.
+    // A point that has slipped before may continue to slip.
     let slipping = [state(0, 1.0, 2.0), state(1, 0.5, limit), state(1, 1.0, limit)];
     let slips = NoneContinues { falls: ModeTree::Before, ..proof() };
     assert_eq!(verdict(&slipping, slips.clone()), Ok(()));
@@ -121,7 +123,7 @@ fn each_forged_part_of_the_proof_is_refused() {
     for work in [0.0, -1.0, f64::NAN] {
         refused(NoneContinues { stands: ModeTree::Leaf(carried(work)), ..proof() });
     }
-    // κ p that nothing carries, and a part of it.
+    // Refused: no force that carries κ p, half of it, and a force with a shear component.
     for gap in [[0.0, 0.0], [-0.5, 0.0], [-1.0, 0.1]] {
         let forged = FarkasVector { gap: vec![gap, [0.0; 2]], ..carried(1.0) };
         refused(NoneContinues { stands: ModeTree::Leaf(forged), ..proof() });
@@ -130,7 +132,7 @@ fn each_forged_part_of_the_proof_is_refused() {
     assert!(chain.check_none_continues(&[]).is_err_and(|why| why.contains("no witness")));
 }
 
-/// The sliding block of finite displacements, after a slip along +x.
+/// The state of the sliding block with finite displacements after a slip along +x.
 fn slipped(slip: f64) -> PathState {
     let mut state = stuck(10.0 * FRICTION);
     state.gap = vec![[0.0, -slip]; 2];
@@ -138,7 +140,7 @@ fn slipped(slip: f64) -> PathState {
     state
 }
 
-/// A block loses its joint where its points leave the face of the ground, on the way out and nowhere else.
+/// A block loses its joint if its points leave the face of the ground, and only on the way out.
 #[test]
 fn a_joint_is_lost_at_the_end_of_its_face() {
     let mut problem = sliding_block(0.0);
@@ -155,10 +157,10 @@ fn a_joint_is_lost_at_the_end_of_its_face() {
     };
     assert!(lost(&problem, true, &[0.2, 0.5]));
     assert!(!lost(&problem, true, &[0.2, 0.4]));
-    // At the bound without slip, and with small displacements, which have no faces.
+    // Not lost: at the bound without slip, and with small displacements, which have no faces.
     assert!(!lost(&problem, true, &[0.5, 0.5]));
     assert!(!lost(&problem, false, &[0.2, 0.5]));
-    // A point away from all corners is paired for less, and its blocks do not come apart.
+    // The rule of a point away from all corners ends at a small slip, but its blocks do not separate.
     let with = |corners| Sliding { slip: [-1e-4, 1e-4], corners, ..Sliding::fixed(0.5) };
     problem.contacts.iter_mut().for_each(|contact| contact.sliding = with([0.5; 2]));
     assert!(!lost(&problem, true, &[1e-5, 1e-4]));

@@ -7,7 +7,7 @@ use crate::path::{
     Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem, PathState, PointLaw, Sliding,
 };
 
-/// Friction of all structures here.
+/// Coefficient of friction of all structures here.
 pub const FRICTION: f64 = 0.8;
 
 /// A contact point between the ground and body 1.
@@ -73,8 +73,9 @@ pub fn stuck(factor: f64) -> PathState {
     }
 }
 
-/// A point that slides on the ground, held by an inclined spring. Its stiffness K is such that slip presses it to the
-/// ground faster than friction allows: with friction that is not associated no rate raises a force along +x.
+/// A point that slides on the ground, held by an inclined spring. The stiffness K of the spring is such that slip
+/// increases the pressure on the ground faster than friction allows: with non-associated friction no rate raises a
+/// force along +x.
 pub fn wedged(live: Vec2) -> PathProblem {
     let spring = Vec2::new(0.5, -(0.75f64.sqrt()));
     let up = Vec2::new(0.0, 1.0);

@@ -1,4 +1,4 @@
-//! A block that hangs on two points whose bond softens: its chain, its limit point, and forged ones.
+//! A block that hangs on two points with a softening bond: its chain, its limit point, and forged rates.
 
 use super::scenes::{point, structure};
 use crate::certificate::path::chain::PathChain;
@@ -13,7 +13,7 @@ const BOND: [f64; 3] = [1e6, 20.0, 2e5];
 /// Opening at the strength \[m\].
 const PEAK: f64 = BOND[1] / BOND[0];
 
-/// A bond that unloads to its origin; it remembers its greatest opening. With a slope < 0 it hardens.
+/// A bond that unloads to its origin; its state is its greatest opening. With a slope < 0 it hardens.
 #[derive(Debug)]
 struct Bond {
     slope: f64,
@@ -24,7 +24,7 @@ impl Bond {
         if opening <= PEAK { BOND[0] * opening } else { (BOND[1] - self.slope * (opening - PEAK)).max(0.0) }
     }
 
-    /// Energy dissipated up to a greatest opening.
+    /// Returns the energy dissipated up to a greatest opening.
     fn dissipated(&self, opening: f64) -> f64 {
         let area = 0.5 * BOND[1] * PEAK + 0.5 * (BOND[1] + self.envelope(opening)) * (opening - PEAK);
         area - 0.5 * self.envelope(opening) * opening
@@ -58,14 +58,14 @@ impl InterfaceResponse for Bond {
     }
 }
 
-/// A block of 10 N on two points, which a force λ lifts.
+/// A block of 10 N on two points, lifted by a force λ.
 fn hanging(slope: f64) -> PathProblem {
     let law = PointLaw::Response(Arc::new(Bond { slope }));
     let at = |x: f64| point(Vec2::new(x, 0.0), Vec2::new(0.0, 1.0), law.clone(), [0.0; 2]);
     structure(Vec2::zeros(), vec![at(-1.0), at(1.0)], Vec2::new(0.0, 1.0))
 }
 
-/// The state in which both points are open by as much.
+/// The state in which both points have this opening.
 fn opened(opening: f64, slope: f64) -> PathState {
     let pull = Bond { slope }.envelope(opening);
     PathState {
@@ -98,7 +98,7 @@ fn chain(slope: f64, openings: &[f64]) -> PathChain {
     chain
 }
 
-/// The rate with a velocity of both points; `stiff`: the slope of their forces.
+/// The rate with these velocities of both points; `stiff` is the slope of their forces.
 fn rate(velocity: [f64; 2], stiff: [f64; 2]) -> PathRate {
     let force = [0, 1].map(|k| [-stiff[k] * velocity[k], 0.0]);
     PathRate {
@@ -119,12 +119,12 @@ fn a_softening_chain_follows_its_law() {
     let [_, _, slope] = BOND;
     let softens = [0.5 * PEAK, PEAK, 1.5 * PEAK, 2.0 * PEAK];
     assert_eq!(chain(slope, &softens).broken(), None);
-    // A step over the peak loses energy, and the unbroken bond cannot come after a broken one.
+    // A step over the peak loses energy, and an intact bond cannot follow a broken one.
     let jumps = chain(slope, &[0.5 * PEAK, 2.0 * PEAK]);
     assert!(jumps.broken().is_some_and(|why| why.contains("work")), "{:?}", jumps.broken());
     let back = chain(slope, &[PEAK, 2.0 * PEAK, PEAK]);
     assert!(back.broken().is_some_and(|why| why.contains("law of tractions")), "{:?}", back.broken());
-    // A peak that the states pass by is found between them.
+    // A peak between two states is added between them.
     let mut passed = chain(slope, &[0.5 * PEAK, 0.999 * PEAK, 1.002 * PEAK]);
     assert_eq!(passed.broken(), None);
     passed.add_peak(&opened(PEAK, slope));
@@ -134,7 +134,8 @@ fn a_softening_chain_follows_its_law() {
     assert_eq!(passed.states().count(), states);
 }
 
-/// At its strength both points soften, or one of them: no rate of either set raises the load.
+/// The strength of a bond is a limit point of a loading set: both points soften, or one of them, and no rate of either
+/// set raises the load.
 #[test]
 fn the_strength_of_a_bond_is_a_limit_point_of_a_loading_set() {
     let [stiff, _, slope] = BOND;
@@ -143,12 +144,12 @@ fn the_strength_of_a_bond_is_a_limit_point_of_a_loading_set() {
     for (velocity, own) in [([1.0, 1.0], [-slope; 2]), ([2.0, 1.9], [-slope; 2])] {
         assert_eq!(verdict(&softening, &limit, rate(velocity, own)), Ok(()));
     }
-    // To unload proves nothing, nor does a rate of no size.
+    // Unloading proves nothing; a rate of zero size proves nothing.
     let unloads = verdict(&softening, &limit, rate([-1.0; 2], [stiff; 2]));
     assert!(unloads.clone().is_err_and(|why| why.contains("unload")), "{unloads:?}");
     assert!(verdict(&softening, &limit, rate([0.0; 2], [stiff; 2])).is_err());
     assert!(verdict(&softening, &limit, rate([f64::NAN, 1.0], [stiff; 2])).is_err());
-    // Before the strength the load rises, whatever the witness says.
+    // Below the strength the load rises, whatever the witness claims.
     let before = opened(0.5 * PEAK, slope);
     assert!(verdict(&softening, &before, rate([1.0; 2], [-slope; 2])).is_err());
     assert!(verdict(&softening, &before, rate([-1.0; 2], [stiff; 2])).is_err());

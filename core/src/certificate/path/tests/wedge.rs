@@ -1,4 +1,4 @@
-//! A point wedged by an inclined spring: rates, and the proof that none rises, with two leaves.
+//! A point wedged by an inclined spring: rates, and the proof with two leaves that none rises.
 
 use super::scenes::{FRICTION, stiffness, wedged};
 use crate::certificate::path::none_rises::RateProblem;
@@ -25,7 +25,7 @@ fn modes(problem: &PathProblem, state: &PathState, active: bool) -> Vec<Vec<Mode
     points.map(|(contact, force)| point_modes(contact, *force, false, slack)).collect()
 }
 
-/// Multipliers for which y of the point is along the normal of its facet, and its spring stays at rest.
+/// Multipliers with y of the point along the normal of its facet, without force in its spring.
 fn multipliers() -> FarkasVector {
     let [kxx, kxy] = stiffness();
     let kyy = 1e6 * 0.75 + 1e4 * 0.25;
@@ -46,7 +46,7 @@ fn proof() -> ModeTree {
     ModeTree::Split { contact: 0, branches: vec![(PointMode::Stick, leaf()), (PointMode::Facet(1), leaf())] }
 }
 
-/// The verdict of a proof at the slipping state under a force λ `live`.
+/// Returns the verdict of a proof at the slipping state under a force λ `live`.
 fn verdict(live: Vec2, tree: &ModeTree, active: bool) -> Result<usize, String> {
     let (problem, state) = (wedged(live), slipping());
     let equations = RateEquations::new(&problem, &state, false).expect("equations");
@@ -58,7 +58,7 @@ fn verdict(live: Vec2, tree: &ModeTree, active: bool) -> Result<usize, String> {
 fn a_wedged_point_has_no_rate_that_rises() {
     let right = Vec2::new(1.0, 0.0);
     assert_eq!(verdict(right, &proof(), true), Ok(2));
-    // The other way there is a rate.
+    // In the opposite direction there is a rate.
     assert!(verdict(-right, &proof(), true).is_err());
     // A point with slack in its facets sticks, and the load rises.
     assert!(verdict(right, &proof(), false).is_err());
@@ -72,7 +72,7 @@ fn each_forged_part_of_a_proof_is_refused() {
         |kept: PointMode| ModeTree::Split { contact: 0, branches: vec![(kept, ModeTree::Leaf(multipliers()))] };
     assert!(verdict(right, &missing(PointMode::Stick), true).is_err_and(|why| why.contains("not complete")));
     assert!(verdict(right, &missing(PointMode::Facet(1)), true).is_err());
-    // The wrong facet, twice the same mode, a point that is decided twice, a point that does not exist.
+    // Refused: the wrong facet, the same mode twice, a point decided twice, a point that does not exist.
     let leaf = || ModeTree::Leaf(multipliers());
     let split =
         |contact, modes: [PointMode; 2]| ModeTree::Split { contact, branches: modes.map(|mode| (mode, leaf())).into() };
@@ -82,7 +82,7 @@ fn each_forged_part_of_a_proof_is_refused() {
     let ModeTree::Split { contact, mut branches } = proof() else { unreachable!() };
     branches[0].1 = proof();
     assert!(verdict(right, &ModeTree::Split { contact, branches }, true).is_err_and(|why| why.contains("twice")));
-    // Each entry.
+    // Every entry of the multipliers matters.
     let size = 1e-6;
     for place in 0..2 {
         for entry in [0, 1] {
@@ -90,7 +90,7 @@ fn each_forged_part_of_a_proof_is_refused() {
                 let mut forged = multipliers();
                 let row = if gap { &mut forged.gap[place][entry] } else { &mut forged.equilibrium[place][entry] };
                 if !gap && place == 0 {
-                    // Those of the ground are not read.
+                    // The entries of the ground are not read.
                     continue;
                 }
                 *row += size * if gap { 1e6 } else { 1.0 };
@@ -111,7 +111,7 @@ fn each_forged_part_of_a_proof_is_refused() {
     assert!(verdict(right, &ModeTree::Leaf(nothing), true).is_err());
 }
 
-/// A tree without end is refused before it is read.
+/// A tree with too many leaves is refused before it is read.
 #[test]
 fn a_tree_with_too_many_leaves_is_refused() {
     let mut tree = ModeTree::Leaf(FarkasVector::default());
@@ -122,7 +122,8 @@ fn a_tree_with_too_many_leaves_is_refused() {
     assert!(verdict(Vec2::new(1.0, 0.0), &tree, true).is_err_and(|why| why.contains("leaves")));
 }
 
-/// With the force the other way the point slips back: K u̇ − λ̇ p on its facet.
+/// A rate is checked with its mode and its sign: with the opposite force the point slips back, K u̇ − λ̇ p on its
+/// facet.
 #[test]
 fn a_rate_is_checked_with_its_mode_and_its_sign() {
     let (problem, state) = (wedged(Vec2::new(-1.0, 0.0)), slipping());
@@ -148,7 +149,7 @@ fn a_rate_is_checked_with_its_mode_and_its_sign() {
         gap: rate.gap.iter().map(back).collect(),
         motion: rate.motion.iter().map(|v| v.map(|x| -x)).collect(),
     };
-    // Its reverse is a slip against friction.
+    // The reversed rate is a slip against friction.
     assert!(rates.check_rate(&turned).is_err_and(|why| why.contains("no mode")));
     let wrong = PathRate { factor: 1.001, ..rate.clone() };
     assert!(rates.check_rate(&wrong).is_err());
