@@ -11,6 +11,8 @@ mod page;
 mod parts;
 mod series;
 mod study;
+#[cfg(test)]
+mod truth_tables;
 mod types;
 mod typing;
 mod value;
