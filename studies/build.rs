@@ -5,13 +5,13 @@ use std::process::Command;
 use std::{env, fs};
 
 /// Folders and files of the workspace that decide the numbers of a result.
-const SOURCES: [&str; 5] = ["Cargo.lock", "core/src", "laws", "solvers/src", "studies/src"];
+const SOURCES: [&str; 5] = ["Cargo.lock", "core", "laws", "solvers", "studies/src"];
 
 fn main() {
     let studies = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").unwrap_or_default());
     println!("cargo::rerun-if-changed=build.rs");
     set("TARGET", &env::var("TARGET").unwrap_or_else(|_| "unknown".into()));
-    set("COMMIT", &commit(&studies).unwrap_or_else(|| "unknown".into()));
+    set("COMMIT", &commit(&studies).or_else(|| packed(&studies)).unwrap_or_else(|| "unknown".into()));
     set("SOURCES", &studies.parent().and_then(sources).unwrap_or_else(|| "unknown".into()));
 }
 
@@ -38,6 +38,13 @@ fn commit(studies: &Path) -> Option<String> {
     git(studies, &["rev-parse", "HEAD"])
 }
 
+/// The commit that Cargo wrote into a package: `{"git": {"sha1": "…"}}`.
+fn packed(studies: &Path) -> Option<String> {
+    let text = fs::read_to_string(studies.join(".cargo_vcs_info.json")).ok()?;
+    let after = text.split("\"sha1\"").nth(1)?;
+    after.split('"').nth(1).filter(|commit| commit.len() == 40).map(Into::into)
+}
+
 /// A hash of all sources; `None` where the crates of the workspace are not beside each other.
 fn sources(workspace: &Path) -> Option<String> {
     let mut files = Vec::new();
@@ -58,8 +65,11 @@ fn sources(workspace: &Path) -> Option<String> {
     Some(format!("{hash:016x}"))
 }
 
-/// The file, or all files below the folder.
+/// The file, or all files below the folder. Licences are links, which not every system checks out as such.
 fn collect(path: &Path, files: &mut Vec<PathBuf>) -> Option<()> {
+    if path.file_name()?.to_string_lossy().starts_with("LICENSE") {
+        return Some(());
+    }
     if path.is_file() {
         files.push(path.into());
         return Some(());

@@ -5,10 +5,11 @@ use super::print::say;
 use std::path::Path;
 use voussoir_core::plugin::{PluginKind, card};
 
-/// The example's law, its page, and its test.
-const LAW: &str = include_str!("../../examples/my_law/src/keyed.rs");
-const PAGE: &str = include_str!("../../examples/my_law/src/keyed.md");
-const TEST: &str = include_str!("../../examples/my_law/tests/keyed.rs");
+/// The law of `studies/examples/my_law`, its page, and its test. They are copies, because Cargo leaves a crate inside another one
+/// out of its package; a test of the architecture compares them.
+const LAW: &str = include_str!("../../templates/keyed.rs");
+const PAGE: &str = include_str!("../../templates/keyed.md");
+const TEST: &str = include_str!("../../templates/test.rs");
 
 /// Why a word cannot be the tag of a new law.
 fn unfit(tag: &str) -> Option<String> {
