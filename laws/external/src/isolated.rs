@@ -1,8 +1,8 @@
 //! `isolate = true`: the behaviour runs in a process of its own, so that a crash of it ends one case and not the program.
 //!
-//! The other process is a program that calls [`serve`], as the command line does; [`isolate_with`] says which. Both talk through
-//! a socket that is the other's standard input: what a library prints goes nowhere. First a line of JSON each way says which
-//! behaviour is meant and what its state is; then each step is a row of numbers each way.
+//! The other process is a program that calls [`serve`], as the command line does; [`isolate_with`] names it. Both are
+//! connected by a socket, the other's standard input, or by a port of this machine on systems without such sockets. The output of
+//! a library is dropped. First a line of JSON each way names the behaviour and its state; then each step is a row of numbers each way.
 
 use crate::behaviour::{Behaviour, Family, INELASTIC, Request, Step, Wrong, check_step, message, names, wrong};
 use crate::library::{allow, allowed};
@@ -80,13 +80,14 @@ const LONGEST_STEP: Duration = Duration::from_secs(10);
 /// Longest line and longest message of a process \[bytes\].
 const MAX_LINE: u64 = 1 << 20;
 
+const NO_WORKER: &str = "isolate = true needs the command line, or a program that has called isolate_with";
+
 #[cfg(unix)]
 fn started() -> io::Result<Process> {
     use std::os::fd::OwnedFd;
     use std::os::unix::net::UnixStream;
     use std::process::{Command, Stdio};
-    let none = "isolate = true needs the command line, or a program that has called isolate_with";
-    let (program, arguments) = WORKER.get().ok_or_else(|| io::Error::other(none))?;
+    let (program, arguments) = WORKER.get().ok_or_else(|| io::Error::other(NO_WORKER))?;
     let (own, other) = UnixStream::pair()?;
     let child = Command::new(program).args(arguments).stdin(OwnedFd::from(other)).stdout(Stdio::null()).spawn()?;
     own.set_read_timeout(Some(LONGEST_STEP))?;
@@ -97,7 +98,18 @@ fn started() -> io::Result<Process> {
 
 #[cfg(not(unix))]
 fn started() -> io::Result<Process> {
-    Err(io::Error::other("isolate = true works on Unix only"))
+    use std::process::{Command, Stdio};
+    let (program, arguments) = WORKER.get().ok_or_else(|| io::Error::other(NO_WORKER))?;
+    let door = crate::loopback::Door::open()?;
+    let mut child = Command::new(program).args(arguments).stdin(Stdio::piped()).stdout(Stdio::null()).spawn()?;
+    if let Some(mut input) = child.stdin.take() {
+        input.write_all(door.invitation()?.as_bytes())?;
+    }
+    let own = door.accept(LONGEST_STEP)?;
+    own.set_read_timeout(Some(LONGEST_STEP))?;
+    own.set_write_timeout(Some(LONGEST_STEP))?;
+    let from = BufReader::new(Box::new(own.try_clone()?) as Box<dyn Channel>);
+    Ok(Process { child, to: Box::new(own), from })
 }
 
 fn numbers(from: &mut impl Read, count: usize) -> io::Result<Vec<f64>> {
@@ -216,11 +228,8 @@ fn ending(mut process: Process) -> String {
 }
 
 /// Runs a behaviour for another process, until that has no more steps: the whole life of a program that [`isolate_with`] names.
-#[cfg(unix)]
 pub fn serve() -> io::Result<()> {
-    use std::os::fd::AsFd;
-    use std::os::unix::net::UnixStream;
-    let socket = UnixStream::from(io::stdin().as_fd().try_clone_to_owned()?);
+    let socket = connected()?;
     let mut from = BufReader::new(socket.try_clone()?);
     let mut to = BufWriter::new(socket);
     let mut line = String::new();
@@ -233,10 +242,19 @@ pub fn serve() -> io::Result<()> {
     }
 }
 
-/// Runs a behaviour for another process: on Unix only.
+/// The connection to the process that started this one: its standard input is a socket.
+#[cfg(unix)]
+fn connected() -> io::Result<std::os::unix::net::UnixStream> {
+    use std::os::fd::AsFd;
+    Ok(io::stdin().as_fd().try_clone_to_owned()?.into())
+}
+
+/// The connection to the process that started this one: its standard input gives the address.
 #[cfg(not(unix))]
-pub fn serve() -> io::Result<()> {
-    Err(io::Error::other("isolate = true works on Unix only"))
+fn connected() -> io::Result<std::net::TcpStream> {
+    let mut invitation = String::new();
+    io::stdin().read_line(&mut invitation)?;
+    crate::loopback::enter(&invitation)
 }
 
 fn serve_steps<const N: usize>(

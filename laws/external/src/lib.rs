@@ -11,6 +11,8 @@ mod data;
 mod isolated;
 mod joint;
 mod library;
+#[cfg(any(not(unix), test))]
+mod loopback;
 mod material;
 mod runner;
 
