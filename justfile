@@ -1,17 +1,17 @@
 # Chores of the project: `just` lists them (https://just.systems). Each line also works in a shell.
 
+# Tests compile the large crate without optimisation. Use the same flags each time, or everything is compiled again.
+light := "--config profile.release.package.voussoir.opt-level=0 --config profile.release.package.voussoir.codegen-units=256 --config profile.release.incremental=true"
+
 # The list.
 default:
     @just --list
 
-# The inner loop: does it compile, is it formatted?
-check:
+# The inner loop: less than a minute once compiled.
+fast:
     cargo fmt --all --check
-    cargo check --workspace --all-targets
-
-# Unit tests of all crates, without the long tests of the folder tests.
-unit:
-    cargo test --release -p voussoir-core -p voussoir-laws -p voussoir-solvers
+    cargo test --release --locked {{light}} -p voussoir-core -p voussoir-laws -p voussoir-solvers -p voussoir --lib
+    cargo test --release --locked {{light}} -p voussoir-tests --test architecture --test messages
 
 # All tests.
 test:
@@ -21,13 +21,27 @@ test:
 ci:
     .ci/run
 
-# The long stress tests that CI leaves out.
+# Everything that CI leaves out: long stress tests, benches, mutants, the workspace for Windows, processors under emulation.
+# It takes hours.
+everything: ci stress bench mutants windows package
+    .ci/extra features
+    .ci/processors
+
+# The long stress tests.
 stress:
-    cargo test --release -p voussoir-tests --test stress -- --ignored
+    cargo test --release --locked -p voussoir-tests -- --ignored
 
 # Run time of limit analysis, paths and laws at a point.
 bench:
-    cargo bench -p voussoir-benches
+    cargo bench --locked -p voussoir-benches
+
+# Small faults are planted in the keys, the reports and the store; tests must find at least 80 % of them.
+mutants:
+    .ci/mutants
+
+# Does it compile for Windows?
+windows:
+    .ci/extra windows
 
 # The tables of docs/notebook/performance.md.
 goals:
@@ -42,6 +56,6 @@ book:
 dist:
     cargo build --profile dist --locked -p voussoir --features png
 
-# Packages of all crates, built from what they contain.
+# Packages of all crates in order, each built from what its package contains.
 package:
-    cargo package --locked -p voussoir-core -p voussoir-laws -p voussoir-solvers -p voussoir-external -p voussoir
+    cargo package --workspace --locked --exclude voussoir-tests --exclude voussoir-benches
