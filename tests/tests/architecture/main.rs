@@ -3,5 +3,8 @@
 mod arrows;
 mod graph;
 mod house;
+mod links;
 mod measures;
+mod packages;
 mod source;
+mod wording;
