@@ -163,7 +163,6 @@ fn result(entry: &Json, path: &str) -> Value {
             ("open", _) => return Value::unknown("a case is open"),
             (_, Some(number)) => return Value::Number(number),
             ("stalled", _) => return Value::unknown("a case stalled"),
-            ("no_equilibrium", _) => return Value::none("no equilibrium"),
             _ if path == "first_limit_point" => return result(entry, "load_factor"),
             (word, _) => return Value::none(word.replace('_', " ")),
         }

@@ -1,5 +1,6 @@
 //! Truth tables of expressions: every operator and function for every kind of value, with the whole answer.
 
+use super::claims::Claim;
 use super::evaluate::{FUNCTIONS, evaluate};
 use super::expression::Expression;
 use super::series::Selection;
@@ -62,6 +63,8 @@ fn named(name: &str) -> Option<Value> {
         "bare" => Some(Value::List(Vec::new())),
         "far" => Some(Value::Series(vec![(1.0, Value::Number(10.0)), (7.0, Value::Number(20.0))])),
         "near" => Some(Value::Series(vec![(1.0 + 5e-10, Value::Number(30.0)), (7.0, Value::Number(40.0))])),
+        "large" => Some(Value::Series(vec![(1000.0, Value::Number(1.0))])),
+        "large_near" => Some(Value::Series(vec![(1000.0 + 5e-7, Value::Number(2.0))])),
         "off" => Some(Value::Series(vec![(1.0 + 1e-6, Value::Number(30.0))])),
         _ => None,
     }
@@ -194,6 +197,7 @@ fn series_are_joined_by_abscissa() {
         ("up - flat", "{0: -1, 1: 0}"),
         ("far + near", "{1: 40, 7: 60}"),
         ("far + off", "{}"),
+        ("large + large_near", "{1000: 3}"),
         ("gap > 2", "{0: false, 1: false, 2: true}"),
         ("gap + none", "{0: none (no equilibrium), 1: none (no equilibrium), 2: none (no equilibrium)}"),
         ("hole > 0", "{0: true, 1: unknown (a case stalled), 2: true}"),
@@ -561,6 +565,8 @@ fn entries_of_a_selection() {
         (json!({ "where": { "rise": 2.0, "friction": 0.5 } }), "{0: 20, 0: 21}"),
         (json!({ "variant": "a", "where": { "rise": 2.0 }, "over": "friction" }), "{0.5: 20, 0.6: 26}"),
         (json!({ "variant": "c" }), "unknown (s has no such results)"),
+        (json!({ "where": { "status": "collapse", "variant": "b" } }), "{2: 21}"),
+        (json!({ "where": { "status": "open" } }), "unknown (s has no such results)"),
         (json!({ "study": "t" }), "unknown (t has no results)"),
         (json!({ "points": [[1.0, 2.0], [3.0, 4.0]] }), "{1: 2, 3: 4}"),
     ] {
@@ -621,4 +627,59 @@ fn expressions_are_read() {
     assert_eq!(wrong(""), "a number, a name or \"(\" is missing at its end");
     assert!(Expression::parse(&format!("{}1", "-".repeat(59))).is_ok());
     assert!(Expression::parse(&format!("{}1", "-".repeat(60))).is_err());
+}
+
+/// The verdict of a claim from its tests: all hold, none holds, some hold, or a number is missing; its words and its entry.
+#[test]
+fn verdicts_of_claims() {
+    for (conditions, words, verdict) in [
+        (["value > 0", "yes"], "reproduced", "reproduced"),
+        (["value < 0", "no"], "refuted", "refuted"),
+        (["value > 0", "no"], "depends on the strength", "depends_on"),
+        (["value < 0", "yes"], "depends on the strength", "depends_on"),
+        (["value > 0", "stalled > 1"], "undecided", "undecided"),
+        (["no", "stalled > 1"], "undecided", "undecided"),
+        (["value > 0", "value"], "undecided", "undecided"),
+        (["value > 0", "1 +"], "undecided", "undecided"),
+    ] {
+        let test = |holds: &str| json!({ "of": "arch", "value": "max(up)", "unit": "kN", "holds": holds });
+        let claim: Claim = serde_json::from_value(json!({
+            "id": "3", "claim": "it carries", "source": "p. 4", "depends_on": "the strength", "remark": "",
+            "tests": [test(conditions[0]), test(conditions[1])],
+        }))
+        .expect("a claim");
+        let answer = claim.answer(&named);
+        assert_eq!(answer.words(), words, "{conditions:?}");
+        let entry = answer.entry();
+        let depends_on = if verdict == "depends_on" { json!("the strength") } else { json!(null) };
+        assert_eq!([&entry["verdict"], &entry["depends_on"]], [&json!(verdict), &depends_on], "{conditions:?}");
+        let first = &entry["tests"][0];
+        assert_eq!(
+            [&first["value"], &first["unit"], &first["condition"]],
+            [&json!(4.0), &json!("kN"), &json!(conditions[0])]
+        );
+        assert_eq!(
+            [&entry["id"], &entry["claim"], &entry["source"]],
+            [&json!("3"), &json!("it carries"), &json!("p. 4")]
+        );
+    }
+    for (value, entry) in [
+        ("max(up)", json!(4.0)),
+        ("yes", json!(true)),
+        ("inf", json!("unbounded")),
+        ("stalled", json!("a case stalled")),
+        ("1 +", json!("a number, a name or \"(\" is missing at its end")),
+    ] {
+        let claim: Claim = serde_json::from_value(json!({
+            "id": "1", "claim": "", "source": "", "remark": "",
+            "tests": [{ "of": "", "value": value, "unit": "", "holds": "no" }],
+        }))
+        .expect("a claim");
+        let answer = claim.answer(&named);
+        assert_eq!(answer.entry()["tests"][0]["value"], entry, "{value}");
+        assert_eq!(
+            (answer.entry()["tests"][0]["holds"].clone(), answer.words()),
+            (json!(false), "refuted".to_string())
+        );
+    }
 }
