@@ -1,5 +1,5 @@
-//! Limit analysis: both solvers on the 14-joint arch, the chain solver against the number of joints,
-//! the conic solver on walls. Times include the certificate.
+//! Limit analysis: both solvers on the 14-joint arch, the chain solver against the number of joints, the conic solver
+//! on walls. Times include the certificate.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;

@@ -1,5 +1,5 @@
-//! Newton path and exact path: dead and live load of the 14-joint arch, rigid voussoirs with compliant
-//! joints and elastic ones, condensation included; cost against the number of voussoirs.
+//! Newton path and exact path: dead and live load of the 14-joint arch, with rigid voussoirs on compliant joints and
+//! with elastic voussoirs, condensation included; cost against the number of voussoirs.
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
@@ -66,8 +66,8 @@ fn exact_arch(c: &mut Criterion) {
     group.finish();
 }
 
-/// Whole paths to collapse. Events grow with the voussoirs; on rigid ones each looks at few joints, on elastic ones
-/// at every contact point.
+/// Whole paths to collapse. The number of events grows with the number of voussoirs. On rigid voussoirs an event
+/// involves few joints, on elastic voussoirs every contact point.
 fn to_collapse(c: &mut Criterion) {
     let (newton, events) = (&NewtonPath {} as &dyn PathSolver, &EventPath {} as &dyn PathSolver);
     for (name, solver, elastic, sizes) in [

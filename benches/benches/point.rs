@@ -1,5 +1,5 @@
-//! Updates of laws at a point by region and size of the batch: throughput is updates per second on one
-//! core, consistent tangent included. The stone is that of Drosopoulos et al. (2008).
+//! Updates of laws at a point by region and size of the batch. Throughput is in updates per second on one core,
+//! consistent tangent included. The stone is that of Drosopoulos et al. (2008).
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
@@ -68,8 +68,8 @@ fn joints(c: &mut Criterion) {
     group.finish();
 }
 
-/// The same law, from a study's table through the registry and written out, per batch of 64. Facets, which know no formula, are
-/// measured beside it.
+/// The same law from a study's table through the registry, and written out, per batch of 64. A facet law without its
+/// own formula is measured too.
 fn boundary(c: &mut Criterion) {
     let gaps = gaps();
     let mut group = c.benchmark_group("plug-in boundary, batches of 64");

@@ -1,7 +1,7 @@
-//! Run time against error: every solver over what makes it more or less accurate, on a set of scenes. Writes
+//! Run time against error: every solver on a set of scenes, over the parameters that control its accuracy. Writes
 //! `bench.csv`, `bench.svg` and `profile.svg` into `target/work_precision`, or into the folder named by WORK_PRECISION.
 //!
-//! `cargo bench -p voussoir-benches --bench work_precision`; with a word only scenes that hold it.
+//! `cargo bench -p voussoir-benches --bench work_precision`; a further word selects the scenes whose names contain it.
 
 use std::path::PathBuf;
 use std::{env, fs};
@@ -10,7 +10,8 @@ use voussoir::cli::processor_time;
 use voussoir_tests::known::peers_ring;
 use voussoir_tests::{Arch, Wall, compliant, crushing, elastic, friction, study};
 
-/// Names and studies: arches (shallow, deep, strong, of many voussoirs), walls, elastic, crushing, compliant, finite.
+/// Names and studies: arches (shallow, deep, strong, many voussoirs), walls, elastic, crushing, compliant, finite
+/// displacements.
 fn scenes() -> Vec<(&'static str, String)> {
     let stone = || elastic(5e9, 0.3);
     let finite = |arch: Arch| arch.study().replacen("[[stages]]", "kinematics = \"finite\"\n[[stages]]", 1);
@@ -30,7 +31,7 @@ fn scenes() -> Vec<(&'static str, String)> {
 }
 
 fn main() {
-    // Cargo hands on `--bench`.
+    // Cargo passes `--bench`.
     let word = env::args().skip(1).find(|word| !word.starts_with('-')).unwrap_or_default();
     let told = |own: &Measurement| {
         eprintln!("  {}: {:.3e} s", own.contestant, own.seconds);

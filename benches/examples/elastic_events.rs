@@ -1,4 +1,4 @@
-//! Whole paths of elastic rings to collapse: events and processor time per number of voussoirs.
+//! Prints events and processor time per number of voussoirs for whole paths of elastic rings to collapse.
 //!
 //! `cargo run --release -p voussoir-benches --example elastic_events -- 13 40 130`
 

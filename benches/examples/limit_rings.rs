@@ -1,7 +1,8 @@
-//! Rings of n voussoirs by limit analysis: processor time of the solution alone and of the certified case, and counters.
+//! Limit analysis of rings of n voussoirs: processor time of the solution alone and of the certified case, and
+//! counters.
 //!
-//! `cargo run --release -p voussoir-benches --example limit_rings -- 13 1000 5000`; with `--once 13 100` the ring of 13 is
-//! solved alone a hundred times and no more, for a profiler; with `--certified 13 100` its case.
+//! `cargo run --release -p voussoir-benches --example limit_rings -- 13 1000 5000`. For a profiler, `--once 13 100`
+//! only solves the ring of 13 a hundred times, and `--certified 13 100` its case.
 
 use voussoir::core::limit::{LimitProblem, LimitQuestion, LimitSolver};
 use voussoir::core::model::stage_loads;
@@ -52,7 +53,8 @@ fn measure(voussoirs: usize) {
     );
 }
 
-/// Seconds of one of very many runs, least of five batches: the system may count processor time in hundredths of a second.
+/// Seconds of one of many runs, the least of five batches: the system may count processor time in hundredths of a
+/// second.
 fn least<T>(voussoirs: usize, work: impl Fn() -> T) -> f64 {
     let times = (300_000 / voussoirs).max(20);
     let batch = || (0..times).for_each(|_| drop(std::hint::black_box(work())));

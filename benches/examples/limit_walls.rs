@@ -1,4 +1,4 @@
-//! Walls of n × n bricks by limit analysis: processor time of the solution alone and of the certified case, counters
+//! Limit analysis of walls of n × n bricks: processor time of the solution alone and of the certified case, counters,
 //! and the gap between the bounds.
 //!
 //! `cargo run --release -p voussoir-benches --example limit_walls -- 10 20 40`

@@ -1,7 +1,8 @@
-//! Batches of 64 updates of dry friction, to count the instructions of one:
+//! Runs batches of 64 updates of dry friction, to count the instructions of one batch:
 //!
-//! `valgrind --tool=callgrind target/release/examples/plugin_boundary KIND BATCHES`, KIND one of `facets`, `response`, `written`;
-//! the difference between two numbers of batches is theirs alone. The three agree, which is checked first.
+//! `valgrind --tool=callgrind target/release/examples/plugin_boundary KIND BATCHES`, where KIND is `facets`, `response`
+//! or `written`. The difference between two numbers of batches is the cost of the batches alone. The program first
+//! checks that the three kinds agree.
 
 use std::hint::black_box;
 use voussoir::core::law::TractionPoint;

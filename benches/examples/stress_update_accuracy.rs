@@ -1,7 +1,8 @@
-//! Run time against error of the stress update: one return per increment ("full") and step halving with
-//! extrapolation inside each increment ("adaptive"), on a path of four straight increments of strain that turn
-//! while they yield. "Full" divides the increments equally. The reference is the path in 2^17 returns, extrapolated. Prints a table (Markdown) and writes
-//! the figure: `cargo run --release -p voussoir-benches --example stress_update_accuracy -- FIGURE.svg`.
+//! Run time against error of the stress update: one return per increment ("full") and step halving with extrapolation
+//! inside each increment ("adaptive"). The path has four straight increments of strain, which change direction while
+//! the material yields. "Full" divides the increments equally. The reference is the path in 2^17 returns, extrapolated.
+//! The program prints a Markdown table and writes the figure: `cargo run --release -p voussoir-benches --example
+//! stress_update_accuracy -- FIGURE.svg`.
 
 use std::time::Instant;
 use voussoir::core::law::{BulkMaterial, StressUpdate, UpdateContext};
@@ -10,7 +11,7 @@ use voussoir_benches::point::{ordinary_stone, paper_stone, states};
 
 type Strain = [f64; 6];
 
-/// Increments of the path, as a program of finite elements would give them: straight each.
+/// Increments of the path, each straight, as a finite-element program would give them.
 const INCREMENTS: u32 = 4;
 
 /// The path: straight between the ends of its increments.
@@ -21,7 +22,7 @@ fn path(size: f64, s: f64) -> Strain {
     between(&at(corner), &at(corner + 1.0), along - corner)
 }
 
-/// Compression with shear that turns: into cap and shear surface.
+/// Compression with shear that changes direction: reaches cap and shear surface.
 fn curve(size: f64, s: f64) -> Strain {
     let turn = 2.0 * s;
     let axial = -size * s;
@@ -53,9 +54,9 @@ impl Walk<'_> {
         self.state = new;
     }
 
-    /// Parts of the increment, each as one return and as two; their difference controls the next part, and
-    /// twice the state of two less that of one goes on (implicit Euler extrapolated to second order; the
-    /// stress is that of a return of no length from there).
+    /// Divides an increment into parts. Each part is computed as one return and as two; their difference controls the
+    /// size of the next part. The result is twice the state of two returns minus that of one (implicit Euler
+    /// extrapolated to second order); the stress is that of a return of zero length from there.
     fn adaptive(&mut self, from: &Strain, to: &Strain, tolerance: f64, scale: f64) {
         let (mut done, mut part) = (0.0, 1.0_f64);
         let size = self.state.len();
@@ -67,8 +68,8 @@ impl Walk<'_> {
             let old = self.state.clone();
             let a = self.one(&last, &old, &mut coarse);
             self.one(&middle, &old, &mut half);
-            // Yield begins in the second half: both answers are one return and their difference says
-            // nothing. The elastic half is exact; go on from there with half the part.
+            // Yield begins in the second half: both results are then one return and their difference gives no
+            // information. The elastic half is exact; continue from there with half the part.
             if half == old && coarse != old && part > 1e-6 {
                 done = 0.5 * (done + end);
                 part *= 0.5;
@@ -95,7 +96,7 @@ fn start(update: &dyn StressUpdate) -> Walk<'_> {
     Walk { update, state: states(update, 1), stress: [0.0; 6], calls: 0 }
 }
 
-/// Stress at the end, returns used, seconds of one walk.
+/// Returns the stress at the end, the number of returns, and the seconds of one walk.
 fn full(update: &dyn StressUpdate, size: f64, steps: u32) -> (Strain, u64, f64) {
     timed(|| {
         let mut walk = start(update);
@@ -116,7 +117,7 @@ fn adaptive(update: &dyn StressUpdate, size: f64, tolerance: f64, scale: f64) ->
     })
 }
 
-/// The least time of several repetitions.
+/// Returns the least time of several repetitions.
 fn timed(work: impl Fn() -> (Strain, u64)) -> (Strain, u64, f64) {
     let (mut best, mut out) = (f64::INFINITY, ([0.0; 6], 0));
     for _ in 0..7 {

@@ -1,13 +1,13 @@
-//! The plug-in boundary: dry friction as a plug-in, and the same formula written out where it is called.
+//! The plug-in boundary: dry friction as a plug-in, and the same formula written out at the place of the call.
 
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::sync::Arc;
 use voussoir::core::law::{Effect, InterfaceLaw, InterfaceResponse, TractionPoint, UpdateBranch, UpdateFailure};
 
-/// \[k_n, k_t\] \[Pa/m\].
+/// Stiffness \[k_n, k_t\] \[Pa/m\].
 pub const STIFFNESS: [f64; 2] = [1e10, 5e9];
-/// μ.
+/// Coefficient of friction μ.
 pub const FRICTION: f64 = 0.6;
 
 /// 64 gaps \[m\]: half of the points stick, a quarter slides, a quarter is open.
@@ -21,7 +21,7 @@ pub fn gaps() -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// A law of this tag with that friction, as a study's table makes it.
+/// Creates a law with this tag and friction from the table of a study.
 pub fn through_the_registry(tag: &str) -> Arc<dyn InterfaceResponse> {
     let table = json!({
         "law": tag, "friction": FRICTION, "normal_stiffness": STIFFNESS[0], "shear_stiffness": STIFFNESS[1],
@@ -30,8 +30,8 @@ pub fn through_the_registry(tag: &str) -> Arc<dyn InterfaceResponse> {
     law.response().expect("tractions from gaps")
 }
 
-/// Dry friction at a point, written out where it is called: what the plug-in boundary is measured against. The same
-/// operations, in the same order, as the law gives; tractions, tangent, energies and state.
+/// Dry friction at a point, written out at the place of the call, to measure the cost of the plug-in boundary. It has
+/// the same operations in the same order as the law; it gives tractions, tangent, energies and state.
 #[inline(always)]
 pub fn inlined(
     [k_n, k_t]: [f64; 2],
@@ -62,7 +62,7 @@ pub fn inlined(
     Ok((TractionPoint { traction, tangent, branch, stored: stored(traction), dissipated }, old - slip))
 }
 
-/// A batch without a plug-in.
+/// Computes a batch without a plug-in.
 #[inline(always)]
 pub fn written_out(
     stiffness: [f64; 2],
@@ -78,15 +78,15 @@ pub fn written_out(
     Ok(())
 }
 
-/// [`inlined`] as a plug-in, so that the same formula is on both sides of the boundary.
+/// [`inlined`] as a plug-in, so that both sides of the boundary have the same formula.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BenchFriction {
-    /// μ.
+    /// Coefficient of friction μ.
     pub friction: f64,
-    /// k_n \[Pa/m\].
+    /// Normal stiffness k_n \[Pa/m\].
     pub normal_stiffness: f64,
-    /// k_t \[Pa/m\].
+    /// Shear stiffness k_t \[Pa/m\].
     pub shear_stiffness: f64,
 }
 

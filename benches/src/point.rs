@@ -4,12 +4,12 @@ use voussoir::core::law::{StressUpdate, UpdateContext};
 use voussoir::laws::cohesive::Cohesive;
 use voussoir::laws::drucker_prager_cap::DruckerPragerCap;
 
-/// β = 70°, d = 1 GPa, R = 0.005, α = 0.03, p_b = 10 MPa.
+/// The parameters β = 70°, d = 1 GPa, R = 0.005, α = 0.03, p_b = 10 MPa.
 pub fn paper_stone() -> DruckerPragerCap {
     DruckerPragerCap::drosopoulos_2008(10e6)
 }
 
-/// The same model in the range of a soft stone, with hardening.
+/// The same model with parameters of a soft stone, with hardening.
 pub fn ordinary_stone() -> DruckerPragerCap {
     DruckerPragerCap {
         cap_friction_angle: 30.0,
@@ -35,19 +35,19 @@ pub fn cohesive() -> Cohesive {
     }
 }
 
-/// States of `count` untouched points.
+/// Initial states of `count` points.
 pub fn states(update: &dyn StressUpdate, count: usize) -> Vec<f64> {
     let mut one = vec![0.0; update.state_size()];
     update.initial_state(&mut one);
     one.iter().copied().cycle().take(count * one.len()).collect()
 }
 
-/// `count` strains that all return to the region of this name, spread over it; panics where it has none.
+/// Returns `count` strains that all return to the region with this name, spread over it. Panics if there are none.
 pub fn strains(update: &dyn StressUpdate, region: &str, count: usize) -> Vec<[f64; 6]> {
     let old = states(update, 1);
     let mut new = old.clone();
     let mut out = Vec::with_capacity(count);
-    // A low-discrepancy walk over mean strain, shear and size.
+    // A low-discrepancy sequence over mean strain, shear and size.
     for i in 1..4_000_000_u32 {
         let share = |step: f64| (f64::from(i) * step).fract();
         let size = 10f64.powf(-4.0 + 4.0 * share(0.754_877_666));

@@ -1,4 +1,4 @@
-//! A behaviour: what it says of itself, checked against what the study gives, and a step of it.
+//! A behaviour: its description, checked against the study, and the integration of a step.
 
 use crate::buffers::{Buffer, Buffers};
 use crate::data::{API_VERSION, BehaviourData, CONSISTENT_TANGENT, Integrate, MESSAGE, State};
@@ -8,29 +8,29 @@ use std::sync::{LazyLock, Mutex, PoisonError};
 use voussoir_core::law::{Effect, UpdateBranch, UpdateFailure};
 use voussoir_core::plugin::nearest;
 
-/// What a study says of a behaviour.
+/// The description of a behaviour in a study.
 pub(crate) struct Request<'a> {
     pub library: &'a str,
     pub behaviour: &'a str,
     pub properties: &'a BTreeMap<String, f64>,
     pub variables: &'a BTreeMap<String, f64>,
-    /// \[K\].
+    /// Temperature \[K\].
     pub temperature: f64,
-    /// \[kg/m³\].
+    /// Density \[kg/m³\].
     pub density: f64,
 }
 
-/// Which behaviours a kind of law takes.
+/// The behaviours that a kind of law supports.
 pub(crate) struct Family {
     /// Modelling hypothesis.
     pub hypothesis: &'static str,
     /// `_BehaviourType` and `_BehaviourKinematic`.
     pub kind: [u16; 2],
-    /// In words.
+    /// Description in words.
     pub words: &'static str,
-    /// Gradient and force.
+    /// Names of gradient and force.
     pub names: [&'static str; 2],
-    /// Numbers of a scalar, a symmetric tensor, a vector and a tensor.
+    /// Numbers of components of a scalar, a symmetric tensor, a vector and a tensor.
     pub sizes: [usize; 4],
 }
 
@@ -41,17 +41,17 @@ pub(crate) struct Behaviour {
     properties: Vec<f64>,
     external: Vec<f64>,
     density: f64,
-    /// Numbers of its own state.
+    /// Number of its own state variables.
     internal: usize,
-    /// Where its own state holds the elastic strain, by MFront's name for it.
+    /// Place of the elastic strain in its own state, identified by MFront's name for it.
     elastic_strain: Option<usize>,
     /// Names of the whole state.
     pub names: &'static [&'static str],
-    /// Whether it says what it stores and dissipates.
+    /// True if it reports stored and dissipated energy.
     energies: bool,
 }
 
-/// What a step gives, in the order and sign of the interface.
+/// The result of a step, in the order and sign of the interface.
 pub(crate) struct Step<const N: usize> {
     pub forces: [f64; N],
     pub tangent: [[f64; N]; N],
@@ -74,17 +74,17 @@ struct End {
     dissipated: Buffer,
 }
 
-/// The state of the behaviour changed.
+/// True if the state of the behaviour changed.
 pub(crate) const INELASTIC: UpdateBranch = UpdateBranch::new("inelastic", Effect::Yielding);
 
-/// Key and what is wrong with it.
+/// Key of the study and the fault.
 pub(crate) type Wrong = Vec<(String, String)>;
 
 pub(crate) fn wrong<T>(key: &str, message: String) -> Result<T, Wrong> {
     Err(vec![(key.into(), message)])
 }
 
-/// Texts and lists of texts that live as long as the program, each only once.
+/// Texts and lists of texts with the lifetime of the program, each stored once.
 #[derive(Default)]
 struct Kept {
     texts: Vec<&'static str>,
@@ -113,21 +113,21 @@ impl Kept {
     }
 }
 
-/// Messages that are kept word by word; a library may number its own without end.
+/// Greatest number of messages that are stored word by word; a library may produce any number of different messages.
 const MESSAGES: usize = 1000;
 
-/// The list of texts, kept for ever.
+/// Returns the list of texts with the lifetime of the program.
 pub(crate) fn names(texts: &[String]) -> &'static [&'static str] {
     KEPT.lock().unwrap_or_else(PoisonError::into_inner).list(texts)
 }
 
-/// A text, kept for ever.
+/// Returns a text with the lifetime of the program.
 pub(crate) fn message(text: &str) -> &'static str {
     let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
     if kept.texts.len() < MESSAGES { kept.text(text) } else { "the external behaviour could not integrate the step" }
 }
 
-/// Values in the order of `names`, each given and no other.
+/// Returns the values in the order of `names`. Each must be given, and no other.
 fn ordered(key: &str, names: &[String], given: &BTreeMap<String, f64>) -> Result<Vec<f64>, Wrong> {
     let mut complaints = Vec::new();
     for name in given.keys().filter(|name| !names.contains(name)) {
@@ -145,7 +145,7 @@ fn ordered(key: &str, names: &[String], given: &BTreeMap<String, f64>) -> Result
     Ok(names.iter().map(|name| given[name]).collect())
 }
 
-/// The tangent of the untouched behaviour, from a step from rest to rest.
+/// Returns the tangent in the initial state, from a step without strain.
 pub(crate) fn check_rest<const N: usize>(step: Result<Step<N>, UpdateFailure>) -> Result<[[f64; N]; N], Wrong> {
     match step {
         Err(why) => wrong("behaviour", format!("it refuses a step from rest to rest: {why}")),
@@ -159,7 +159,7 @@ pub(crate) fn check_rest<const N: usize>(step: Result<Step<N>, UpdateFailure>) -
     }
 }
 
-/// What a step is given: finite numbers, and states of the behaviour's `size`.
+/// Checks the input of a step: finite numbers, and states of the behaviour's `size`.
 pub(crate) fn check_step(gradients: &[f64], old: &[f64], new: &[f64], size: usize) -> Result<(), UpdateFailure> {
     if !gradients.iter().chain(old).all(|x| x.is_finite()) {
         return Err(UpdateFailure::NotFinite);
@@ -171,7 +171,7 @@ pub(crate) fn check_step(gradients: &[f64], old: &[f64], new: &[f64], size: usiz
 }
 
 impl Behaviour {
-    /// Opens and checks.
+    /// Opens the library and checks the behaviour.
     pub fn load<const N: usize>(request: &Request, family: &Family) -> Result<Self, Wrong> {
         let library = open(request.library).or_else(|why| wrong("library", why))?;
         let symbols = Symbols { library, behaviour: request.behaviour, hypothesis: family.hypothesis };
@@ -225,7 +225,8 @@ impl Behaviour {
         Ok(behaviour)
     }
 
-    /// A step. State: the behaviour's own, then gradients, forces and energies at the start of the step.
+    /// Integrates a step. The state consists of the behaviour's own state, then gradients, forces and energies at the
+    /// start of the step.
     pub fn step<const N: usize>(
         &self,
         gradients: [f64; N],
@@ -255,7 +256,7 @@ impl Behaviour {
         let (forces, tangent, mut stored, mut dissipated) = answer.map_err(UpdateFailure::Law)?;
         let work: f64 = (0..N).map(|i| 0.5 * (rest[N + i] + forces[i]) * (gradients[i] - before[i])).sum();
         if !self.energies {
-            // Nothing is known of what is dissipated: all work counts as stored.
+            // The dissipated energy is not known: all work counts as stored.
             (stored, dissipated) = (rest[2 * N] + work, 0.0);
         }
         let lost = dissipated - rest[2 * N + 1];
@@ -271,7 +272,7 @@ impl Behaviour {
         Ok(Step { forces, tangent, branch, stored, dissipated: lost })
     }
 
-    /// Calls the library; the buffers of the end of the step.
+    /// Calls the library; returns the buffers of the end of the step.
     fn call(
         &self,
         buffers: &mut Buffers,
@@ -324,8 +325,9 @@ impl Behaviour {
                 external_variables: at(&external),
             },
         };
-        // SAFETY: every pointer is to as many numbers as the description of the library gives (`load`), alive until after the call,
-        // in memory of this call only; the library reads the start and writes the end of the step, as its interface says.
+        // SAFETY: every pointer refers to as many numbers as the description of the library gives (`load`). They live
+        // until after the call, in memory of this call only. By its interface the library reads the start and writes
+        // the end of the step.
         let code = unsafe { (self.integrate)(&raw mut data) };
         if let Some(why) = buffers.misused() {
             return Err(why);
@@ -333,8 +335,8 @@ impl Behaviour {
         if code == 1 { Ok(end) } else { Err(refusal(code, buffers.numbers(&message))) }
     }
 
-    /// Whether the behaviour's own state says that something irreversible happened: any number of it changed, but that
-    /// the elastic strain may follow the strain, to rounding.
+    /// Returns true if the behaviour's own state shows an irreversible change: any number of it changed, except that
+    /// the elastic strain may follow the strain, within rounding.
     fn inelastic(&self, before: &[f64], gradients: &[f64], old: &[f64], new: &[f64]) -> bool {
         let strain = self.elastic_strain.map_or(0..0, |start| start..start + before.len());
         let size = before.iter().chain(gradients).fold(0.0_f64, |size, x| size.max(x.abs()));
@@ -347,7 +349,8 @@ impl Behaviour {
     }
 }
 
-/// Why a step was refused; `message` holds the characters that the library wrote, up to the first zero.
+/// Returns the reason why a step was refused; `message` holds the characters that the library wrote, up to the first
+/// zero.
 fn refusal(code: i32, message_numbers: &[f64]) -> &'static str {
     let bytes: Vec<u8> =
         message_numbers.iter().flat_map(|eight| eight.to_ne_bytes()).take_while(|byte| *byte != 0).collect();
@@ -367,7 +370,7 @@ fn missing(symbol: &str) -> Wrong {
     )]
 }
 
-/// Whether the behaviour says its energies; an error where it is of another kind.
+/// Returns true if the behaviour reports its energies. An error if they are of another kind.
 fn check_family(symbols: &Symbols, request: &Request, family: &Family) -> Result<bool, Wrong> {
     let name = request.behaviour;
     if symbols.text("mfront_ept").is_none() || symbols.number("mfront_mkt") != Some(1) {

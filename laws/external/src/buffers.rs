@@ -1,26 +1,26 @@
-//! The numbers that a library reads and writes, between guards that tell when it writes anywhere else.
+//! The numbers that a library reads and writes, between guards that detect writes outside the buffers.
 
 use std::cell::RefCell;
 use std::ops::Range;
 
 /// Numbers of a guard on each side of a buffer.
 const GUARD: usize = 8;
-/// A number that no behaviour computes.
+/// Value of guards, a number that no behaviour computes.
 const CANARY: u64 = 0x7ff4_dead_beef_cafe;
 
-/// A buffer: where its numbers are, and whether the library may write them.
+/// A buffer: the range of its numbers, and true if the library may write them.
 #[derive(Clone)]
 pub(crate) struct Buffer {
     place: Range<usize>,
     may_write: bool,
 }
 
-/// All buffers of a call, in one allocation: a write beyond the end of one meets a guard.
+/// All buffers of a call in one allocation: a write beyond the end of a buffer overwrites a guard.
 #[derive(Default)]
 pub(crate) struct Buffers {
     numbers: Vec<f64>,
     all: Vec<Buffer>,
-    /// The numbers of the buffers that the library may only read.
+    /// Copy of the numbers of the buffers that the library may only read.
     given: Vec<f64>,
 }
 
@@ -29,7 +29,7 @@ thread_local! {
 }
 
 impl Buffers {
-    /// Empty buffers; the memory of the last call of this thread is used again.
+    /// Creates empty buffers in the memory of the last call of this thread.
     pub fn empty() -> Buffers {
         let mut own = KEPT.take();
         own.numbers.clear();
@@ -39,7 +39,7 @@ impl Buffers {
         own
     }
 
-    /// Keeps the memory for the next call of this thread.
+    /// Stores the memory for the next call of this thread.
     pub fn keep(self) {
         KEPT.set(self);
     }
@@ -48,13 +48,13 @@ impl Buffers {
         self.numbers.extend([f64::from_bits(CANARY); GUARD]);
     }
 
-    /// A buffer that the library reads.
+    /// Adds a buffer that the library reads.
     pub fn read(&mut self, numbers: &[f64]) -> Buffer {
         self.given.extend_from_slice(numbers);
         self.add(numbers, false)
     }
 
-    /// A buffer that the library writes.
+    /// Adds a buffer that the library writes.
     pub fn write(&mut self, numbers: &[f64]) -> Buffer {
         self.add(numbers, true)
     }
@@ -68,13 +68,13 @@ impl Buffers {
         buffer
     }
 
-    /// The address of a buffer; valid until the next buffer is added.
+    /// Returns the address of a buffer; valid until the next buffer is added.
     pub fn pointer(&mut self, buffer: &Buffer) -> *mut f64 {
-        // From the whole vector, so that a pointer may move over all guards.
+        // The pointer comes from the whole vector, so that it may move over all guards.
         self.numbers.as_mut_ptr().wrapping_add(buffer.place.start)
     }
 
-    /// The numbers of a buffer.
+    /// Returns the numbers of a buffer.
     pub fn numbers(&self, buffer: &Buffer) -> &[f64] {
         &self.numbers[buffer.place.clone()]
     }

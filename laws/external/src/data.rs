@@ -1,4 +1,4 @@
-//! What goes through the interface: plain C structures in the order that the generic interface of MFront documents.
+//! Data of the interface: plain C structures in the order that MFront's generic interface documents.
 
 use std::ffi::{c_char, c_int};
 
@@ -15,13 +15,13 @@ pub(crate) struct State {
     pub external_variables: *const f64,
 }
 
-/// A step to be integrated.
+/// A step to integrate.
 #[repr(C)]
 pub(crate) struct BehaviourData {
-    /// At least [`MESSAGE`] characters.
+    /// Buffer of at least [`MESSAGE`] characters.
     pub error_message: *mut c_char,
     pub time_step: f64,
-    /// What is asked for in its first entry, then the tangent.
+    /// The request in its first entry, then the tangent.
     pub tangent: *mut f64,
     pub time_step_factor: *mut f64,
     pub speed_of_sound: *mut f64,
@@ -29,12 +29,12 @@ pub(crate) struct BehaviourData {
     pub end: State,
 }
 
-/// Integrates a step: 1 where it could, 0 where the result is not reliable, −1 where it could not.
+/// Integrates a step. Returns 1 on success, 0 if the result is not reliable, −1 on failure.
 pub(crate) type Integrate = unsafe extern "C" fn(*mut BehaviourData) -> c_int;
 
-/// Room for an error message.
+/// Size of an error message.
 pub(crate) const MESSAGE: usize = 512;
 /// The first entry of the tangent on entry: integrate, with the consistent tangent.
 pub(crate) const CONSISTENT_TANGENT: f64 = 4.0;
-/// The version of the interface that these structures are.
+/// Version of the interface with these structures.
 pub(crate) const API_VERSION: u16 = 1;

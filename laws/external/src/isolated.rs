@@ -1,8 +1,9 @@
-//! `isolate = true`: the behaviour runs in a process of its own, so that a crash of it ends one case and not the program.
+//! `isolate = true`: the behaviour runs in a separate process, so that its crash ends one case and not the program.
 //!
-//! The other process is a program that calls [`serve`], as the command line does; [`isolate_with`] names it. Both are
-//! connected by a socket, the other's standard input, or by a port of this machine on systems without such sockets. The output of
-//! a library is dropped. First a line of JSON each way names the behaviour and its state; then each step is a row of numbers each way.
+//! The other process is a program that calls [`serve`], as the command line does; [`isolate_with`] sets it. The two
+//! processes communicate through a socket that is the standard input of the other process, or through a port of this
+//! machine on systems without such sockets. The output of a library is discarded. First one line of JSON in each direction
+//! describes the behaviour and its state. Then each step is a row of numbers in each direction.
 
 use crate::behaviour::{Behaviour, Family, INELASTIC, Request, Step, Wrong, check_step, message, names, wrong};
 use crate::library::{allow, allowed};
@@ -17,18 +18,18 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::Duration;
 use voussoir_core::law::{UpdateBranch, UpdateFailure};
 
-/// The program that behaviours run in, and its arguments.
+/// The program that runs behaviours, and its arguments.
 static WORKER: OnceLock<(PathBuf, Vec<OsString>)> = OnceLock::new();
 
-/// Says which program, with which arguments, calls [`serve`]; the first call counts.
+/// Sets the program, with its arguments, that calls [`serve`]. Only the first call has an effect.
 pub fn isolate_with(program: PathBuf, arguments: Vec<OsString>) {
     let _ = WORKER.set((program, arguments));
 }
 
-/// What the other process is asked for first.
+/// The first request to the other process.
 #[derive(Serialize, Deserialize)]
 struct Asked {
-    /// Numbers of a gradient: 2 of joints, 6 of materials.
+    /// Numbers of a gradient: 2 for joints, 6 for materials.
     size: usize,
     library: String,
     behaviour: String,
@@ -38,12 +39,12 @@ struct Asked {
     density: f64,
 }
 
-/// What it says to that.
+/// Its reply to this request.
 #[derive(Serialize, Deserialize)]
 enum Answered {
     /// Names of the state.
     Names(Vec<String>),
-    /// Keys and what is wrong with them.
+    /// Keys and faults.
     Wrong(Wrong),
 }
 
@@ -60,7 +61,7 @@ impl<T: Read + Write + Send + std::fmt::Debug> Channel for T {}
 
 impl Drop for Process {
     fn drop(&mut self) {
-        // A process that waits for a step has nothing to lose.
+        // A process that waits for a step has no data to lose.
         drop(self.child.kill());
         drop(self.child.wait());
     }
@@ -69,13 +70,13 @@ impl Drop for Process {
 /// A behaviour in another process.
 #[derive(Debug)]
 pub(crate) struct Isolated {
-    /// `None` once it has ended.
+    /// `None` after it has ended.
     process: Mutex<Option<Process>>,
     /// Names of the whole state.
     pub names: &'static [&'static str],
 }
 
-/// A process that gives no answer in this time is ended.
+/// Time after which a process without an answer is ended.
 const LONGEST_STEP: Duration = Duration::from_secs(10);
 /// Longest line and longest message of a process \[bytes\].
 const MAX_LINE: u64 = 1 << 20;
@@ -132,7 +133,7 @@ impl Process {
         Ok(serde_json::from_str(&line)?)
     }
 
-    /// A step: the new state is written to `new`; the inner error is what the behaviour says.
+    /// Integrates a step and writes the new state to `new`. The inner error is the error of the behaviour.
     fn step<const N: usize>(&mut self, row: &[u8], new: &mut [f64]) -> io::Result<Result<Step<N>, String>> {
         self.to.write_all(row)?;
         let mut first = [0];
@@ -174,7 +175,7 @@ const UNCHANGED: u8 = 1;
 const CHANGED: u8 = 2;
 
 impl Isolated {
-    /// Starts the process and lets it open and check the behaviour.
+    /// Starts the process, which opens and checks the behaviour.
     pub fn load<const N: usize>(request: &Request) -> Result<Self, Wrong> {
         let library = allowed(request.library).or_else(|why| wrong("library", why))?;
         let asked = Asked {
@@ -194,7 +195,7 @@ impl Isolated {
         }
     }
 
-    /// A step, as of [`Behaviour::step`].
+    /// Integrates a step, as [`Behaviour::step`].
     pub fn step<const N: usize>(
         &self,
         gradients: [f64; N],
@@ -220,14 +221,15 @@ impl Isolated {
     }
 }
 
-/// How a process ended that does not answer.
+/// Describes the end of a process that does not answer.
 fn ending(mut process: Process) -> String {
-    // One that has closed its side without ending would be waited for in vain.
+    // Do not wait for a process that has closed its side without ending.
     drop(process.child.kill());
     process.child.wait().map_or_else(|error| error.to_string(), |status| status.to_string())
 }
 
-/// Runs a behaviour for another process, until that has no more steps: the whole life of a program that [`isolate_with`] names.
+/// Runs a behaviour for another process until it sends no more steps. This is the whole work of a program that
+/// [`isolate_with`] names.
 pub fn serve() -> io::Result<()> {
     let socket = connected()?;
     let mut from = BufReader::new(socket.try_clone()?);
@@ -242,14 +244,14 @@ pub fn serve() -> io::Result<()> {
     }
 }
 
-/// The connection to the process that started this one: its standard input is a socket.
+/// Returns the connection to the process that started this one: its standard input is a socket.
 #[cfg(unix)]
 fn connected() -> io::Result<std::os::unix::net::UnixStream> {
     use std::os::fd::AsFd;
     Ok(io::stdin().as_fd().try_clone_to_owned()?.into())
 }
 
-/// The connection to the process that started this one: its standard input gives the address.
+/// Returns the connection to the process that started this one: its standard input gives the address.
 #[cfg(not(unix))]
 fn connected() -> io::Result<std::net::TcpStream> {
     let mut invitation = String::new();
@@ -263,7 +265,7 @@ fn serve_steps<const N: usize>(
     from: &mut impl Read,
     to: &mut impl Write,
 ) -> io::Result<()> {
-    // Whoever started this process has allowed it.
+    // The process that started this one has allowed the library.
     allow(Path::new(&asked.library))?;
     let Asked { library, behaviour, properties, variables, temperature, density, .. } = asked;
     let (temperature, density) = (*temperature, *density);

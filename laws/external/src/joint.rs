@@ -1,4 +1,4 @@
-//! `external` of joints: a cohesive zone model. Openings and tractions of the library are positive in tension.
+//! `external` for joints: a cohesive zone model. Openings and tractions of the library are positive in tension.
 
 use crate::behaviour::{Family, Request, Wrong};
 use crate::runner::Runner;
@@ -8,7 +8,7 @@ use std::sync::Arc;
 use voussoir_core::law::{InterfaceLaw, InterfaceResponse, TractionPoint, UpdateFailure};
 use voussoir_core::plugin::{Capability, Card, Need, Parameter, PluginKind, Quantity, Range, Shape, check_as};
 
-/// A cohesive zone model of a shared library.
+/// A cohesive zone model from a shared library.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ExternalJoint {
@@ -25,7 +25,7 @@ pub struct ExternalJoint {
     /// External state variables by their names in the library, without the temperature.
     #[serde(default)]
     pub variables: BTreeMap<String, f64>,
-    /// Whether it runs in a process of its own.
+    /// True if it runs in a separate process.
     #[serde(default)]
     pub isolate: bool,
 }
@@ -130,7 +130,7 @@ pub(crate) const ISOLATE: Parameter = Parameter {
     need: Need::Default("false"),
 };
 
-/// Why there is no behaviour, for cards.
+/// The reason why there is no behaviour, for cards.
 fn complaints(law: &ExternalJoint) -> Vec<(String, String)> {
     law.load().err().unwrap_or_default()
 }

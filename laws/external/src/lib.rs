@@ -1,8 +1,9 @@
-//! Compiled behaviours of other people as laws: `law = "external"` of joints and of materials.
+//! Compiled behaviours of other projects as laws: `law = "external"` for joints and for materials.
 //!
-//! A behaviour is a C function of a shared library that keeps to MFront's generic interface, version 1 (TFEL 4 and later;
-//! Helfer et al. 2020, J. Open Source Softw. 5(48)). The library says of itself what it needs; all of that is checked before it
-//! is called. Running somebody's library is running somebody's program: none is opened that [`allow`] has not named.
+//! A behaviour is a C function of a shared library with MFront's generic interface, version 1 (TFEL 4 and later; Helfer
+//! et al. 2020, J. Open Source Softw. 5(48)). The library describes its requirements; all of them are checked before it
+//! is called. To run a library of another project is to run its program: only libraries that [`allow`] has named are
+//! opened.
 #![doc = include_str!("external.md")]
 
 mod behaviour;

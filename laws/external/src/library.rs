@@ -1,4 +1,4 @@
-//! Shared libraries: which may be opened, and what their symbols hold.
+//! Shared libraries: the libraries that may be opened, and the values of their symbols.
 
 use crate::data::Integrate;
 use libloading::Library;
@@ -8,16 +8,16 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
 
-/// Libraries that studies of this process may name, as they are on disk.
+/// Libraries that studies of this process may name, by their canonical paths.
 static ALLOWED: LazyLock<Mutex<Vec<PathBuf>>> = LazyLock::new(Mutex::default);
-/// Libraries that are open; none is closed, since laws hold functions of it.
+/// Open libraries. They are never closed, since laws hold their functions.
 static OPEN: LazyLock<Mutex<BTreeMap<PathBuf, &'static Library>>> = LazyLock::new(Mutex::default);
 
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Lets studies of this process name a library. Nothing of it is run yet.
+/// Allows studies of this process to name a library. This does not run any of its code.
 pub fn allow(path: &Path) -> io::Result<()> {
     let path = path.canonicalize()?;
     let mut allowed = locked(&ALLOWED);
@@ -27,7 +27,7 @@ pub fn allow(path: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// The place of a library that is allowed.
+/// Returns the path of a library that is allowed.
 pub(crate) fn allowed(name: &str) -> Result<PathBuf, String> {
     let path = Path::new(name).canonicalize().map_err(|error| format!("cannot read {name}: {error}"))?;
     if !locked(&ALLOWED).contains(&path) {
@@ -36,14 +36,14 @@ pub(crate) fn allowed(name: &str) -> Result<PathBuf, String> {
     Ok(path)
 }
 
-/// A library that is allowed, open.
+/// Opens a library that is allowed.
 pub(crate) fn open(name: &str) -> Result<&'static Library, String> {
     let path = allowed(name)?;
     let mut open = locked(&OPEN);
     if let Some(library) = open.get(&path) {
         return Ok(library);
     }
-    // SAFETY: opening runs the library's initialisers, which whoever allowed it has agreed to.
+    // SAFETY: opening runs the initialisers of the library; the caller of `allow` has agreed to this.
     let library = unsafe { Library::new(&path) }.map_err(|error| format!("cannot open {name}: {error}"))?;
     let library: &'static Library = Box::leak(Box::new(library));
     open.insert(path, library);
@@ -59,37 +59,37 @@ pub(crate) struct Symbols<'a> {
 }
 
 impl Symbols<'_> {
-    /// Address of `BEHAVIOUR_HYPOTHESIS_name`, or of `BEHAVIOUR_name`.
+    /// Returns the address of `BEHAVIOUR_HYPOTHESIS_name`, or of `BEHAVIOUR_name`.
     fn address<T>(&self, name: &str) -> Option<*const T> {
         let own = format!("{}_{}_{name}\0", self.behaviour, self.hypothesis);
         let general = format!("{}_{name}\0", self.behaviour);
         [own, general].iter().find_map(|symbol| {
-            // SAFETY: the symbol's address is taken as a pointer; nothing is read here.
+            // SAFETY: the address of the symbol is used as a pointer; nothing is read here.
             let found = unsafe { self.library.get::<*const T>(symbol.as_bytes()) }.ok()?;
             (!found.is_null()).then_some(*found)
         })
     }
 
-    /// The integration.
+    /// Returns the integration function.
     pub fn function(&self) -> Option<Integrate> {
         let symbol = format!("{}_{}\0", self.behaviour, self.hypothesis);
-        // SAFETY: the generic interface gives this symbol this type; `_mfront_interface` and `_api_version` say that it is so.
+        // SAFETY: the generic interface gives this symbol this type; `_mfront_interface` and `_api_version` confirm it.
         unsafe { self.library.get::<Integrate>(symbol.as_bytes()) }.ok().map(|found| *found)
     }
 
-    /// A small number.
+    /// Returns a small number.
     pub fn number(&self, name: &str) -> Option<u16> {
         // SAFETY: the interface declares these symbols as unsigned short.
         self.address::<u16>(name).map(|at| unsafe { at.read_unaligned() })
     }
 
-    /// A text.
+    /// Returns a text.
     pub fn text(&self, name: &str) -> Option<String> {
         // SAFETY: the interface declares these symbols as const char*.
         self.address::<*const c_char>(name).and_then(|at| text(unsafe { at.read_unaligned() }))
     }
 
-    /// The list of texts called `name`, as many as `nNAME` says. `None` where either is missing.
+    /// Returns the list of texts called `name`, with the length in `nNAME`. `None` if either symbol is missing.
     pub fn names(&self, name: &str) -> Option<Vec<String>> {
         let count = usize::from(self.number(&format!("n{name}"))?);
         if count == 0 {
@@ -100,7 +100,7 @@ impl Symbols<'_> {
         (0..count).map(|i| text(unsafe { at.add(i).read_unaligned() })).collect()
     }
 
-    /// The list of types that belongs to `names` of variables.
+    /// Returns the list of types of the variables `names`.
     pub fn types(&self, name: &str, count: usize) -> Option<Vec<i32>> {
         if count == 0 {
             return Some(Vec::new());

@@ -1,5 +1,5 @@
-//! `external` of materials: a behaviour of small strains in space. The library orders tensors xx, yy, zz, xy, xz, yz, with √2 on
-//! what is off the diagonal.
+//! `external` for materials: a behaviour with small strains in space. The library orders tensors xx, yy, zz, xy, xz, yz
+//! and multiplies off-diagonal components by √2.
 
 use crate::behaviour::{Family, Request, Wrong};
 use crate::joint::{BEHAVIOUR, ISOLATE, LIBRARY, PROPERTIES, TEMPERATURE, VARIABLES, room};
@@ -11,7 +11,7 @@ use std::sync::Arc;
 use voussoir_core::law::{BulkMaterial, Elasticity, StressPoint, StressUpdate, UpdateContext, UpdateFailure, Voigt};
 use voussoir_core::plugin::{Capability, Card, Parameter, PluginKind, Quantity, Range, check_as};
 
-/// A behaviour of small strains of a shared library.
+/// A behaviour with small strains from a shared library.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ExternalMaterial {
@@ -28,10 +28,10 @@ pub struct ExternalMaterial {
     /// External state variables by their names in the library, without the temperature.
     #[serde(default)]
     pub variables: BTreeMap<String, f64>,
-    /// Whether it runs in a process of its own.
+    /// True if it runs in a separate process.
     #[serde(default)]
     pub isolate: bool,
-    /// ρ \[kg/m³\].
+    /// Density ρ \[kg/m³\].
     pub density: f64,
 }
 
@@ -43,8 +43,8 @@ pub(crate) const FAMILY: Family = Family {
     sizes: [1, 6, 3, 9],
 };
 
-/// Place in the library's order of each of our components, and what our engineering strains are multiplied by to be the
-/// library's; its stresses are multiplied by the same to be ours.
+/// Place of each of our components in the order of the library, and the factor from our engineering strains to its
+/// strains; the same factor converts its stresses to ours.
 const PLACES: [(usize, f64); 6] =
     [(0, 1.0), (1, 1.0), (2, 1.0), (3, FRAC_1_SQRT_2), (5, FRAC_1_SQRT_2), (4, FRAC_1_SQRT_2)];
 
@@ -121,7 +121,7 @@ impl StressUpdate for ExternalUpdate {
     }
 }
 
-/// Why there is no behaviour, for cards.
+/// The reason why there is no behaviour, for cards.
 fn complaints(law: &ExternalMaterial) -> Vec<(String, String)> {
     law.load().err().unwrap_or_default()
 }

@@ -1,10 +1,10 @@
-//! A behaviour in this process or in one of its own.
+//! A behaviour in this process or in a separate process.
 
 use crate::behaviour::{Behaviour, Family, Request, Step, Wrong, check_rest};
 use crate::isolated::Isolated;
 use voussoir_core::law::UpdateFailure;
 
-/// Where a behaviour runs.
+/// The process in which a behaviour runs.
 #[derive(Debug)]
 pub(crate) enum Runner {
     Here(Behaviour),
@@ -12,7 +12,7 @@ pub(crate) enum Runner {
 }
 
 impl Runner {
-    /// Opens and checks.
+    /// Opens the library and checks the behaviour.
     pub fn load<const N: usize>(request: &Request, family: &Family, isolate: bool) -> Result<Self, Wrong> {
         if isolate {
             Isolated::load::<N>(request).map(Runner::Apart)
@@ -21,7 +21,7 @@ impl Runner {
         }
     }
 
-    /// Names of the whole state.
+    /// Returns the names of the whole state.
     pub fn names(&self) -> &'static [&'static str] {
         match self {
             Runner::Here(behaviour) => behaviour.names,
@@ -29,13 +29,14 @@ impl Runner {
         }
     }
 
-    /// The tangent of the untouched behaviour.
+    /// Returns the tangent in the initial state.
     pub fn at_rest<const N: usize>(&self) -> Result<[[f64; N]; N], Wrong> {
         let old = vec![0.0; self.names().len()];
         check_rest(self.step([0.0; N], 0.0, &old, &mut old.clone()))
     }
 
-    /// A step. State: the behaviour's own, then gradients, forces and energies at the start of the step.
+    /// Integrates a step. The state consists of the behaviour's own state, then gradients, forces and energies at the
+    /// start of the step.
     pub fn step<const N: usize>(
         &self,
         gradients: [f64; N],
