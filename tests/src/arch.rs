@@ -1,10 +1,10 @@
-//! The reference arch with its variations, and as blocks.
+//! The reference arch with its variations, also as a scene of blocks.
 
 use crate::{first_case, friction};
 use voussoir::core::model::Assembly;
 use voussoir::core::model::geometry::Vec2;
 
-/// The reference arch with its variations: everything a test may want to change.
+/// The reference arch with all parameters that tests change.
 #[derive(Debug, Clone)]
 pub struct Arch {
     /// Intrados span \[m\].
@@ -13,30 +13,30 @@ pub struct Arch {
     pub rise: f64,
     /// Ring thickness \[m\].
     pub thickness: f64,
-    /// Out of plane \[m\].
+    /// Width out of plane \[m\].
     pub width: f64,
     /// Number of voussoirs.
     pub voussoirs: usize,
-    /// `bonded` or `jointed`.
+    /// Joints at the ends: `bonded` or `jointed`.
     pub ends: &'static str,
-    /// Law of the blocks and its parameters but for the density.
+    /// Law of the blocks and its parameters, without the density.
     pub material: String,
-    /// Table of the mesh, without brackets; nothing for the default one.
+    /// Table of the mesh, without brackets; empty for the default mesh.
     pub mesh: String,
     /// Table of the joint law, without brackets.
     pub joint: String,
-    /// Load position along the span.
+    /// Position of the load as a fraction of the span.
     pub span_fraction: f64,
     /// Downward load for factor 1 \[N\].
     pub load: f64,
-    /// ρ \[kg/m³\].
+    /// Density ρ \[kg/m³\].
     pub density: f64,
-    /// Solver tag.
+    /// Tag of the solver.
     pub solver: &'static str,
 }
 
 impl Default for Arch {
-    /// The Strathmashie bridge of Drosopoulos et al. (2008), 15 voussoirs, bonded ends, μ 0.6.
+    /// The Strathmashie bridge of Drosopoulos et al. (2008) with 15 voussoirs, bonded ends, μ = 0.6.
     fn default() -> Self {
         Arch {
             span: 9.42,
@@ -61,7 +61,7 @@ impl Arch {
         if self.mesh.is_empty() { String::new() } else { format!("[scene.mesh]\n{}\n", self.mesh) }
     }
 
-    /// The scene and its laws without stages.
+    /// Returns the scene and its laws without stages.
     fn head(&self) -> String {
         format!(
             r#"name = "arch"
@@ -99,7 +99,7 @@ gravity = 9.81
         )
     }
 
-    /// The study with a point load grown until collapse.
+    /// Returns the study with a point load that grows until collapse.
     pub fn study(&self) -> String {
         format!(
             "{}[[stages]]\nname = \"live\"\nuntil = \"collapse\"\nloads = [{{ kind = \"point\", span_fraction = {:?}, force = [0.0, {:?}] }}]\n",
@@ -109,14 +109,14 @@ gravity = 9.81
         )
     }
 
-    /// The study under its own weight only.
+    /// Returns the study under its own weight only.
     pub fn dead_study(&self) -> String {
         self.head()
     }
 }
 
-/// A `blocks` study of the same blocks and laws as the arch, every point sent through `map`, gravity
-/// and load through `turn`; `order` gives the order of the blocks.
+/// Returns a `blocks` study with the same blocks and laws as the arch. `map` transforms points, `turn` gravity and
+/// load; `order` is the order of the blocks.
 pub fn as_blocks(arch: &Arch, map: impl Fn(Vec2) -> Vec2, turn: impl Fn(Vec2) -> Vec2, order: &[usize]) -> String {
     let case = first_case(&arch.study());
     let assembly: &Assembly = &case.assembly;

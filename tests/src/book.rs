@@ -1,5 +1,5 @@
-//! The book: the pages of `docs/`, with those that nobody writes by hand. Plug-ins come from their cards, the keys of a study
-//! file from its schema, the table of verification from the tests themselves, so none of them can be out of date.
+//! The book: the pages of `docs/` and generated pages. Cards give the pages of plug-ins, the schema gives the keys of a
+//! study file, and the tests give the table of verification, so that these pages are always up to date.
 
 pub mod gallery;
 
@@ -110,8 +110,8 @@ const PLUGINS: [(&str, &str, &[PluginKind]); 5] = [
     ("reference/outputs.md", "Study kinds and writers", &[PluginKind::StudyKind, PluginKind::Writer]),
 ];
 
-/// The book's sources by file name. Figures are not among them: links lead to the files below `docs/`, and [`gallery`]
-/// names the figures that the program `book` draws.
+/// Returns the sources of the book by file name, without figures: links lead to the files below `docs/`, and
+/// [`gallery`] names the figures that the program `book` draws.
 pub fn book() -> BTreeMap<String, String> {
     let docs = tree().join("docs");
     let mut files = Vec::new();
@@ -146,7 +146,7 @@ fn summary(pages: &BTreeMap<String, String>) -> String {
         text += &format!("\n# {part}\n\n");
         chapters.iter().for_each(|(file, title)| text += &format!("- [{title}]({file})\n"));
     }
-    // Pages that no part names yet, by their own headings.
+    // Pages that no part lists yet, with their own headings.
     let listed =
         |file: &str| file == "index.md" || PARTS.iter().any(|(_, all)| all.iter().any(|(own, _)| *own == file));
     let mut more = pages.iter().filter(|(file, _)| !listed(file)).peekable();
@@ -160,7 +160,7 @@ fn summary(pages: &BTreeMap<String, String>) -> String {
     text
 }
 
-/// The file of the book that a link of a page leads to.
+/// Returns the file of the book for a link of a page.
 pub fn target(page: &str, link: &str) -> String {
     let file = link.split('#').next().unwrap_or_default();
     if let Some((_, below)) = file.rsplit_once("docs/") {
@@ -178,7 +178,7 @@ pub fn target(page: &str, link: &str) -> String {
     parts.join("/")
 }
 
-/// Links between pages and to figures are kept. Other links into the tree become the name of the file.
+/// Keeps links between pages and to figures. Replaces other links into the tree by the name of the file.
 fn own_links(file: &str, page: &str, known: &BTreeSet<String>) -> String {
     let mut text = String::new();
     let mut rest = page;
@@ -223,7 +223,7 @@ fn of_card(card: &Card, key: &str) -> String {
         text += "\n| key | unit | | |\n|---|---|---|---|\n";
         card.parameters.iter().for_each(|parameter| text += &row(parameter));
     }
-    // The page's own heading is the tag, which stands above.
+    // The heading of the page is the tag, which is already above.
     let page = card.page.trim_start();
     let body = if page.starts_with('#') { page.split_once('\n').map_or("", |(_, body)| body) } else { page };
     format!("{text}\n{}\n", body.trim())
@@ -299,7 +299,7 @@ fn shape_word(value: &Json) -> String {
     value["type"].as_str().unwrap_or("any").to_string()
 }
 
-/// What a folder of tests is for.
+/// The purpose of each folder of tests.
 const FOLDERS: [(&str, &str); 8] = [
     ("verification", "somebody else's answers: closed forms, published numbers, independent programs"),
     ("invariance", "what must not matter: units, places, mirror images, numbering"),
@@ -341,14 +341,14 @@ fn verification() -> String {
     text
 }
 
-/// All files below a folder.
+/// Collects all files below a folder.
 fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("a file").path()) {
         if entry.is_dir() { collect(&entry, files) } else { files.push(entry) }
     }
 }
 
-/// Words that tell whose number a test is held against, and what the table says then; the first that is found counts.
+/// Words that show the source of the number in a test, and the words for it in the table. The first match counts.
 const SOURCES: [(&[&str], &str); 8] = [
     (&["independent", "another program", "other program", "external program"], "another program"),
     (&["closed form", "by hand", "statics", "patch test", "exact", "timoshenko", "theory", " = "], "closed form"),
@@ -360,7 +360,7 @@ const SOURCES: [(&[&str], &str); 8] = [
     (&["mirror", "units", "numbering"], "what must not matter"),
 ];
 
-/// Whether a text cites somebody by a year in parentheses: `Milankovitch (1907)`, `(Livesley 1978)`.
+/// Returns true if a text cites a year in parentheses: `Milankovitch (1907)`, `(Livesley 1978)`.
 fn cites(text: &str) -> bool {
     let year = |part: &str| {
         let digits: String = part.chars().take(4).collect();
@@ -374,7 +374,7 @@ fn cites(text: &str) -> bool {
     open.into_iter().any(|inside| inside.split([' ', ',']).any(year))
 }
 
-/// Whose number a test is held against, by its own words.
+/// Returns the source of the number in a test, from its comment.
 fn whose(folder: &str, said: &str) -> &'static str {
     match folder {
         "regression" => return "our own last",
@@ -391,7 +391,7 @@ fn whose(folder: &str, said: &str) -> &'static str {
     found(said).unwrap_or("its file says")
 }
 
-/// A row for each test of a file.
+/// Returns a row for each test of a file.
 fn tests_of(source: &str, folder: &str) -> Vec<String> {
     let lines: Vec<&str> = source.lines().collect();
     let mut rows = Vec::new();
@@ -412,7 +412,7 @@ fn tests_of(source: &str, folder: &str) -> Vec<String> {
     rows
 }
 
-/// The greatest third argument of `assert_close` that is a number.
+/// Returns the greatest third argument of `assert_close` that is a number.
 fn widest(body: &str) -> Option<f64> {
     let calls = body.split("assert_close(").skip(1);
     let arguments =

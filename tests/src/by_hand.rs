@@ -1,5 +1,5 @@
-//! Path problems written by hand: bodies, contact points and load steps without an assembly. What a test does not
-//! name is as simple as can be: rigid weightless bodies, points of area 1 that touch, loads from zero.
+//! Path problems written by hand: bodies, contact points and load steps without an assembly. Defaults are rigid
+//! weightless bodies, points of area 1 that touch, and loads from zero.
 
 use std::iter::once;
 use voussoir::core::law::Facet;
@@ -9,7 +9,7 @@ use voussoir::core::path::{
     Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem, PointLaw, Sliding,
 };
 
-/// A free rigid body without mass. `index` is its place among the bodies.
+/// Returns a free rigid body without mass. `index` is its place in the list of bodies.
 pub fn body(index: usize, pole: Vec2) -> PathBody {
     PathBody {
         members: vec![index],
@@ -22,12 +22,12 @@ pub fn body(index: usize, pole: Vec2) -> PathBody {
     }
 }
 
-/// The ground, as [`body`].
+/// Returns the ground, as [`body`].
 pub fn ground(index: usize, pole: Vec2) -> PathBody {
     PathBody { held: true, ..body(index, pole) }
 }
 
-/// A point between two rigid bodies, minus and plus, on a joint without compliance; t is n turned by +90°.
+/// Returns a point between two rigid bodies, minus and plus, on a joint without compliance; t is n rotated by +90°.
 pub fn contact(joint: usize, position: Vec2, normal: Vec2, [minus, plus]: [usize; 2], law: PointLaw) -> Contact {
     Contact {
         joint,
@@ -49,17 +49,17 @@ pub fn dry_friction(friction: f64) -> PointLaw {
     PointLaw::Facets(once(Facet::opening(0.0)).chain(Facet::friction(friction, 0.0, 0.0)).collect())
 }
 
-/// Loads of a stage that grow from zero.
+/// Returns the loads of a stage that grow from zero.
 pub fn load_step(stage: usize, loading: Loading, end: LoadStepEnd) -> LoadStep {
     LoadStep { stage, gravity: false, loading, start: 0.0, end }
 }
 
-/// Forces on bodies: (body, slot of the point where the body is elastic, point, force).
+/// Returns forces on bodies: (body, index of the point in an elastic body, point, force).
 pub fn forces(forces: Vec<(usize, Option<usize>, Vec2, Vec2)>) -> Loading {
     Loading { forces, ..Loading::default() }
 }
 
-/// The problem of these parts.
+/// Returns the problem with these parts.
 pub fn problem(bodies: Vec<PathBody>, contacts: Vec<Contact>, load_steps: Vec<LoadStep>, length: f64) -> PathProblem {
     let body_of = (0..bodies.len()).collect();
     let counters = Counters::new();

@@ -1,9 +1,9 @@
-//! No certificate passes above its gate: the gates as docs/theory/verifying.md lists them, stated here once more, not asked of the
-//! program.
+//! Checks that no certificate passes above its gate. The gates of docs/theory/verifying.md are repeated here,
+//! independent of the program.
 
 use voussoir::results::CaseResult;
 
-/// Residuals of limit analysis that should be rounding.
+/// Residuals of limit analysis that are zero except for rounding.
 const ROUNDING: [&str; 10] = [
     "equilibrium",
     "strength",
@@ -16,10 +16,10 @@ const ROUNDING: [&str; 10] = [
     "associated_equilibrium",
     "associated_strength",
 ];
-/// Differences of factors, which the tolerance of the study bounds.
+/// Differences of factors, with the tolerance of the study as gate.
 const FACTORS: [&str; 4] = ["gap", "above_associated", "associated_gap", "interval_gap"];
 
-/// How large a residual of a result may be; `None` of one that is not known.
+/// Returns the greatest allowed residual of a result; `None` if the name is not known.
 fn gate(name: &str, solver: &str, tolerance: f64) -> Option<f64> {
     Some(match name {
         _ if ROUNDING.contains(&name) => 1e-10,
@@ -37,8 +37,8 @@ fn gate(name: &str, solver: &str, tolerance: f64) -> Option<f64> {
     })
 }
 
-/// Residuals of a result above their gates, and what is not known; nothing of a result that does not claim to be proven.
-/// `uncertain`: what rounding of enormous strengths may add to the difference of the bounds.
+/// Returns the residuals of a result above their gates, and unknown names; empty if the result does not claim to be
+/// proved. `uncertain` is the rounding of very large strengths that the difference of the bounds may contain.
 pub fn above_gates(result: &CaseResult, tolerance: f64, uncertain: f64) -> Vec<String> {
     if !result.certificate.passed {
         return Vec::new();
@@ -46,7 +46,7 @@ pub fn above_gates(result: &CaseResult, tolerance: f64, uncertain: f64) -> Vec<S
     let residuals = &result.certificate.residuals;
     let above = |(name, value): (&String, &f64)| {
         let fine = match (name.as_str(), gate(name, &result.solver, tolerance)) {
-            // The work that the loads do beyond what is dissipated.
+            // The work of the loads minus the dissipation.
             ("excess_power", _) => *value > 1e-13,
             ("gap" | "interval_gap", Some(gate)) => *value <= gate.max(uncertain),
             (_, Some(gate)) => *value <= gate,

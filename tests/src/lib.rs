@@ -1,9 +1,9 @@
-//! What tests share: reading a study from text, answering it, and scenes in several disguises.
+//! Code that tests share: reading a study from text, solving it, and scenes in equivalent forms.
 //!
-//! One binary a folder of `tests/tests/`: `verification` holds other people's answers, `regression` our own last
-//! ones, `invariance` what must not matter, `stress` random scenes, `conformance` every plug-in, `files` studies and
-//! results read back, `messages` the exact text of every error, `architecture` the house itself. One file of one:
-//! `cargo test --release -p voussoir-tests --test verification arch::`.
+//! There is one binary for each folder of `tests/tests/`: `verification` has answers from other sources, `regression`
+//! our last answers, `invariance` changes that must not matter, `stress` random scenes, `conformance` every plug-in,
+//! `files` studies and results read back, `messages` the exact text of every error, `architecture` the structure of the
+//! code. To run one file: `cargo test --release -p voussoir-tests --test verification arch::`.
 
 mod arch;
 pub mod book;
@@ -31,22 +31,22 @@ use voussoir::results::CaseResult;
 use voussoir::solve_case;
 use voussoir::study::{Case, Study, load};
 
-/// Reads a study that must be right.
+/// Reads a study that must be valid.
 pub fn study(text: &str) -> Study {
     load(text, "test.toml", &[]).unwrap_or_else(|wrong| panic!("the test's study is wrong:\n{wrong}\n{text}"))
 }
 
-/// The first case of a study.
+/// Returns the first case of a study.
 pub fn first_case(text: &str) -> Case {
     study(text).cases.swap_remove(0)
 }
 
-/// Answers the first case of a study. No certificate passes above its gate.
+/// Solves the first case of a study. Panics if a certificate passes above its gate.
 pub fn answered(text: &str) -> CaseResult {
     answered_within(text, 0.0)
 }
 
-/// The same where rounding of enormous strengths may leave so much between the bounds.
+/// The same, if rounding of very large strengths may leave the difference `uncertain` between the bounds.
 pub fn answered_within(text: &str, uncertain: f64) -> CaseResult {
     let case = first_case(text);
     let result = solve_case(&case);
@@ -54,12 +54,13 @@ pub fn answered_within(text: &str, uncertain: f64) -> CaseResult {
     result
 }
 
-/// The certificate of a result is good.
+/// Asserts that the certificate of a result passes.
 pub fn passes(result: &CaseResult) {
     assert!(result.certificate.passed, "{:?} {:?}", result.certificate, result.notes);
 }
 
-/// Whether a result names a bifurcation. That a branch was lost, or a step fell on another one, names none.
+/// Returns true if a result names a bifurcation. A note about a lost branch, or about a step to another branch, does
+/// not count.
 pub fn names_bifurcation(result: &CaseResult) -> bool {
     let lost = ["the branch after the peak", "to another branch"];
     let names = |note: &String| {
@@ -69,7 +70,7 @@ pub fn names_bifurcation(result: &CaseResult) -> bool {
     result.notes.iter().any(names)
 }
 
-/// The load factor of a case that must collapse, with a certificate.
+/// Returns the load factor of a case that must collapse with a certificate.
 pub fn collapse_factor(text: &str) -> f64 {
     let result = answered(text);
     assert_eq!(result.status, Status::Collapse, "{:?} {:?}", result.notes, result.certificate);
@@ -77,7 +78,7 @@ pub fn collapse_factor(text: &str) -> f64 {
     result.load_factor.expect("a collapse has a factor")
 }
 
-/// What a path with small displacements is asked for where nothing else is.
+/// Returns the settings of a path with small displacements and defaults otherwise.
 pub fn small_displacements() -> PathSettings {
     PathSettings {
         finite: false,
@@ -94,28 +95,28 @@ pub fn assert_close(a: f64, b: f64, tolerance: f64) {
     assert!((a - b).abs() <= tolerance * b.abs(), "{a:.16} is not {b:.16}: relative difference {:.2e}", (a - b) / b);
 }
 
-/// The text with something else in the place of `from`, which must be there.
+/// Returns the text with `from` replaced by `to`. Panics if `from` is not in the text.
 pub fn changed(text: &str, from: &str, to: &str) -> String {
     assert!(text.contains(from), "nothing to change: {from:?} is not in\n{text}");
     text.replace(from, to)
 }
 
-/// Associated Coulomb friction.
+/// Returns a law of associated Coulomb friction.
 pub fn friction(mu: f64) -> String {
     format!("law = \"coulomb_associated\"\nfriction = {mu:?}")
 }
 
-/// Friction with a crushing strength \[Pa\].
+/// Returns a law of friction with a crushing strength \[Pa\].
 pub fn crushing(mu: f64, strength: f64) -> String {
     format!("law = \"mohr_coulomb\"\nfriction = {mu:?}\ncompressive_strength = {strength:?}")
 }
 
-/// A linear elastic material without its density.
+/// Returns a linear elastic material without its density.
 pub fn elastic(young_modulus: f64, poisson_ratio: f64) -> String {
     format!("law = \"elastic\"\nyoung_modulus = {young_modulus:?}\npoisson_ratio = {poisson_ratio:?}")
 }
 
-/// A joint law with compliance \[Pa/m\].
+/// Returns a joint law with compliance \[Pa/m\].
 pub fn compliant(joint: &str, normal_stiffness: f64, shear_stiffness: f64) -> String {
     format!("{joint}\nnormal_stiffness = {normal_stiffness:?}\nshear_stiffness = {shear_stiffness:?}")
 }

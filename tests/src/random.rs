@@ -1,13 +1,13 @@
-//! Random elastic scenes for the stress tests of path solvers: walls, rings and arches with joints of
-//! several laws, blocks of very different stiffness, and histories before the load that grows.
+//! Random elastic scenes for the stress tests of path solvers: walls, rings and arches with joints of several laws,
+//! blocks of very different stiffness, and load histories before the load that grows.
 
 use crate::Arch;
 use proptest::prelude::*;
 
-/// What the joints do.
+/// The law of the joints.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Law {
-    /// No slip at all.
+    /// No slip.
     Stuck,
     /// Slip along the normal of the friction cone.
     Associated,
@@ -20,12 +20,12 @@ pub enum Law {
 }
 
 impl Law {
-    /// Whether the last load is that of limit analysis, to rounding.
+    /// Returns true if the last load is that of limit analysis, within rounding.
     pub fn is_sure(self) -> bool {
         matches!(self, Law::Stuck | Law::Associated)
     }
 
-    /// Whether flow is associated or slip impossible: every step is a convex problem.
+    /// Returns true if flow is associated or slip is impossible: every step is then a convex problem.
     pub fn is_monotone(self) -> bool {
         !matches!(self, Law::Coulomb | Law::Dilatant)
     }
@@ -46,25 +46,25 @@ impl Law {
     }
 }
 
-/// What happens between the dead load and the load that grows until collapse.
+/// The load history between the dead load and the load that grows until collapse.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum History {
-    /// Nothing.
+    /// The load grows directly after the dead load.
     None,
-    /// The load grows to a share of its limit and falls back to nothing.
+    /// The load grows to a share of its limit and falls back to zero.
     Unloading,
     /// A support settles.
     Settlement,
 }
 
-/// A scene: [`RandomScene::study`] writes it down for a solver.
+/// A scene; [`RandomScene::study`] writes it for a solver.
 #[derive(Debug, Clone)]
 pub struct RandomScene {
     /// Law of all joints.
     pub law: Law,
-    /// Whether it is a wall.
+    /// True if it is a wall.
     pub is_wall: bool,
-    /// What happens before the load grows.
+    /// Load history before the load grows.
     pub history: History,
     head: String,
     joint: String,
@@ -74,8 +74,8 @@ pub struct RandomScene {
 }
 
 impl RandomScene {
-    /// The study for a solver. `limit`, the limit load, is needed for a history of unloading; without
-    /// it nothing happens between dead load and live load.
+    /// Returns the study for a solver. A history of unloading needs the limit load `limit`; without it the live load
+    /// follows the dead load directly.
     pub fn study(&self, solver: &str, limit: Option<f64>) -> String {
         let mut stages = String::from("[[stages]]\nname = \"dead\"\ngravity = 9.81\n");
         if let (History::Unloading, Some(limit)) = (self.history, limit) {
@@ -92,7 +92,7 @@ impl RandomScene {
         )
     }
 
-    /// The study of limit analysis, slip associated.
+    /// Returns the study for limit analysis with associated slip.
     pub fn associated(&self) -> String {
         let joint: Vec<String> = self
             .joint
@@ -104,7 +104,7 @@ impl RandomScene {
     }
 }
 
-/// Numbers of a random scene; the first is its place in the series.
+/// The numbers that define a random scene, as `numbers` draws them.
 pub type Numbers = (Law, f64, f64, u8, usize, f64, usize, f64, f64, u8);
 
 /// Random numbers for [`scene`].
@@ -119,7 +119,7 @@ pub fn numbers() -> impl Strategy<Value = Numbers> {
     (laws, -1.3f64..0.3, 0.0f64..6.0, 0u8..9, 2usize..5, 0.2f64..0.8, 0usize..4, 0.1f64..0.9, 0.05f64..0.95, 0u8..6)
 }
 
-/// Materials m0 … m3 whose stiffnesses spread over `spread` powers of ten.
+/// Returns materials m0 … m3 whose stiffnesses differ by up to `spread` powers of ten.
 fn materials(spread: f64) -> String {
     (0..4)
         .map(|k| {
@@ -139,7 +139,7 @@ fn blocks_head(blocks: &[String], spread: f64, elements: [usize; 2], order: usiz
     )
 }
 
-/// The scene of some numbers; `None` where they give none that can be read.
+/// Returns the scene with these numbers; `None` if they give no valid scene.
 pub fn scene(numbers: Numbers) -> Option<RandomScene> {
     let (law, exponent, spread, kind, size, shift, seed, rise, place, history) = numbers;
     let joint = law.joint(10f64.powf(exponent));
@@ -169,7 +169,7 @@ pub fn scene(numbers: Numbers) -> Option<RandomScene> {
         };
         (blocks_head(&blocks, spread, [1, 3], 1 + seed % 3), point(-1000.0), point(1000.0))
     } else {
-        // A strip of load on an arch with bedded joints.
+        // A strip load on an arch with compliant joints.
         let stiffness = 10f64.powf(11.0 - 0.5 * spread);
         let arch = Arch {
             voussoirs: 2 * size + 2 + seed,
@@ -195,7 +195,7 @@ fn readable(scene: RandomScene) -> Option<RandomScene> {
     voussoir::study::load(&scene.study("event_path", Some(1.0)), "random.toml", &[]).is_ok().then_some(scene)
 }
 
-/// A wall in running bond with joints off the middle.
+/// Returns a wall in running bond with head joints off the middle.
 fn wall(courses: usize, bricks: usize, shift: f64, seed: usize) -> Vec<String> {
     let (length, height) = (0.4, 0.2);
     let total = bricks as f64 * length;
@@ -224,7 +224,7 @@ fn wall(courses: usize, bricks: usize, shift: f64, seed: usize) -> Vec<String> {
     blocks
 }
 
-/// A segmental ring between two fixed blocks.
+/// Returns a segmental ring between two fixed blocks.
 fn ring(voussoirs: usize, rise: f64, thickness: f64, seed: usize) -> Vec<String> {
     let (span, outer) = (4.0, thickness);
     let radius = (span * span / 4.0 + rise * rise) / (2.0 * rise);

@@ -1,9 +1,9 @@
-//! What tests keep of a path: its states, with or without the certificate of them all.
+//! Observers that store the states of a path, with or without a certificate of all states.
 
 use voussoir::core::certificate::PathChecker;
 use voussoir::core::path::{PathObserver, PathProblem, PathState};
 
-/// Keeps every state.
+/// Stores every state.
 #[derive(Default)]
 pub struct Record(pub Vec<PathState>);
 
@@ -14,12 +14,12 @@ impl PathObserver for Record {
     }
 }
 
-/// Keeps every state, with the certificate of them all.
+/// Stores every state, with the certificate of all states.
 #[derive(Default)]
 pub struct Seen {
-    /// In order.
+    /// States in order.
     pub states: Vec<PathState>,
-    /// Small displacements, unless it is made otherwise.
+    /// The checker, for small displacements by default.
     pub checker: PathChecker,
 }
 
@@ -31,7 +31,8 @@ impl PathObserver for Seen {
 }
 
 impl Seen {
-    /// Asserts that what the path solver itself must keep, forces and yielding, is kept to 1e-8 at every state.
+    /// Asserts that the residuals that the path solver itself must satisfy (forces and yielding) are at most 1e-8 at
+    /// every state.
     pub fn is_certified(&self) {
         for name in ["path_equilibrium", "path_kinematics", "path_inner_equilibrium", "path_yield", "path_strength"] {
             let value = self.checker.worst[name];

@@ -1,5 +1,5 @@
-//! Random arches and piers whose supports move before a load grows: the scenes of the energy program, of the
-//! comparison of strategies and of the stress family of settlements.
+//! Random arches and piers whose supports move before a load grows: the scenes of the energy program, of the comparison
+//! of strategies and of the stress family of settlements.
 
 use proptest::prelude::Rng;
 use proptest::test_runner::{RngAlgorithm, TestRng};
@@ -8,70 +8,70 @@ use proptest::test_runner::{RngAlgorithm, TestRng};
 pub struct Random(TestRng);
 
 impl Random {
-    /// The series of a seed.
+    /// Creates the series of a seed.
     pub fn new(seed: u64) -> Self {
         let mut bytes = [0; 32];
         bytes[..8].copy_from_slice(&seed.to_le_bytes());
         Random(TestRng::from_seed(RngAlgorithm::ChaCha, &bytes))
     }
 
-    /// Uniform between `low` and `high`.
+    /// Returns a number uniformly distributed between `low` and `high`.
     pub fn uniform(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// A whole number from `low` to `high`, both possible.
+    /// Returns a whole number from `low` to `high`, both included.
     pub fn whole(&mut self, low: usize, high: usize) -> usize {
         low + (self.0.next_u64() % (high - low + 1) as u64) as usize
     }
 }
 
-/// How the supports move.
+/// The motion of the supports.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Settling {
-    /// The left support towards the other.
+    /// The left support moves towards the other.
     In,
-    /// The left support away from the other.
+    /// The left support moves away from the other.
     Out,
-    /// The left support downwards.
+    /// The left support moves downwards.
     Down,
-    /// The left support turns.
+    /// The left support rotates.
     Rotation,
-    /// Both supports move and turn.
+    /// Both supports move and rotate.
     Both,
 }
 
 impl Settling {
-    /// All of them.
+    /// All motions.
     pub const ALL: [Settling; 5] = [Settling::In, Settling::Out, Settling::Down, Settling::Rotation, Settling::Both];
 }
 
-/// What deforms.
+/// The parts that deform.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Deforming {
-    /// Nothing.
+    /// No part deforms.
     Rigid,
-    /// Joints.
+    /// The joints deform.
     Compliant,
-    /// Blocks.
+    /// The blocks deform.
     Elastic,
 }
 
-/// An arch, or a stack of blocks on one that moves.
+/// An arch, or a stack of blocks on a moving block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shape {
-    /// Segmental.
+    /// A segmental arch.
     Arch,
     /// A pier under a horizontal load at its top.
     Pier,
 }
 
-/// A scene with a support that moves: [`SettledScene::study`] writes it down.
+/// A scene with a support that moves; [`SettledScene::study`] writes it.
 #[derive(Debug, Clone)]
 pub struct SettledScene {
-    /// What stands there.
+    /// The shape.
     pub shape: Shape,
-    /// Diagonal or span that settlements are measured in \[m\].
+    /// Diagonal or span, the unit of settlements \[m\].
     pub span: f64,
     scene: String,
     mirrored: String,
@@ -83,56 +83,56 @@ pub struct SettledScene {
     mirrored_load: String,
     /// Settlement and load, each shifted by 1e-6 of the scene.
     shifted: [String; 2],
-    /// Scene, settlement and load with the blocks in another order, where there is such a form.
+    /// Scene, settlement and load with the blocks in another order, if such a form exists.
     renumbered: Option<[String; 3]>,
 }
 
-/// What to draw a scene from.
+/// The parameters of a random scene.
 #[derive(Debug, Clone, Copy)]
 pub struct Draw {
-    /// What stands there.
+    /// The shape.
     pub shape: Shape,
-    /// What deforms.
+    /// The parts that deform.
     pub deforming: Deforming,
-    /// How supports move.
+    /// The motion of the supports.
     pub settling: Settling,
     /// Settlement in spans (rotations in rad are four times that).
     pub size: f64,
-    /// No slip at all, else Coulomb friction.
+    /// True for joints without slip, false for Coulomb friction.
     pub stuck: bool,
 }
 
 impl SettledScene {
-    /// The study: dead load, settlement, load until collapse, with these lines under `[solver]`.
+    /// Returns the study: dead load, settlement, load until collapse, with these lines under `[solver]`.
     pub fn study(&self, solver: &str) -> String {
         self.written(solver, false, true)
     }
 
-    /// The same without the load.
+    /// Returns the study without the load.
     pub fn settlement_only(&self, solver: &str) -> String {
         self.written(solver, false, false)
     }
 
-    /// The study without its settlement, slip associated.
+    /// Returns the study without its settlement, with associated slip.
     pub fn unmoved(&self, solver: &str) -> String {
         let text = self.study(solver);
         let stage = format!("[[stages]]\nname = \"settle\"\nsettlement = [{}]\n", self.settlement);
         text.replace(&stage, "").replace("law = \"coulomb\"", "law = \"coulomb_associated\"")
     }
 
-    /// The mirror image of [`study`](Self::study), blocks numbered from the other end.
+    /// Returns the mirror image of [`study`](Self::study), with blocks numbered from the other end.
     pub fn mirrored(&self, solver: &str) -> String {
         self.written(solver, true, true)
     }
 
-    /// The study with the load, or else the settled support, shifted by 1e-6 of the scene.
+    /// Returns the study with the load, or the settled support, shifted by 1e-6 of the scene.
     pub fn shifted(&self, solver: &str, load: bool) -> String {
         let (settlement, live) =
             if load { (&self.settlement, &self.shifted[1]) } else { (&self.shifted[0], &self.load) };
         self.text(solver, [&self.scene, settlement, live], true)
     }
 
-    /// The study with its blocks in another order; `None` where ends are bonded.
+    /// Returns the study with its blocks in another order; `None` if ends are bonded.
     pub fn renumbered(&self, solver: &str) -> Option<String> {
         let [scene, settlement, load] = self.renumbered.as_ref()?;
         Some(self.text(solver, [scene, settlement, load], true))
@@ -162,7 +162,7 @@ fn motion(support: &str, [x, y, turn]: [f64; 3]) -> String {
     format!("{{ support = \"{support}\", displacement = [{x:?}, {y:?}], rotation = {turn:?} }}")
 }
 
-/// Motions of left and right support.
+/// Returns the motions of the left and the right support.
 fn motions(random: &mut Random, settling: Settling, size: f64) -> [[f64; 3]; 2] {
     let sign = |random: &mut Random| if random.whole(0, 1) == 0 { 1.0 } else { -1.0 };
     let mut left = [0.0; 3];
@@ -190,7 +190,7 @@ fn mirror([x, y, turn]: [f64; 3]) -> [f64; 3] {
     [0.0 - x, y, 0.0 - turn]
 }
 
-/// A scene of some draw.
+/// Returns a random scene with these parameters.
 pub fn settled_scene(random: &mut Random, draw: Draw) -> SettledScene {
     let stiffness = 10f64.powf(random.uniform(9.5, 11.0));
     let friction = random.uniform(0.5, 0.9);
@@ -316,7 +316,7 @@ fn pier(random: &mut Random, draw: Draw, materials: String, joint: String) -> Se
     }
 }
 
-/// The arch as blocks, those of odd places first, its supports as blocks of their own: scene, settlement, load.
+/// Returns scene, settlement and load of the arch as blocks, odd places first, with its supports as separate blocks.
 fn as_blocks(
     scene: &str,
     materials: &str,

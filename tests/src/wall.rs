@@ -2,24 +2,24 @@
 
 use crate::friction;
 
-/// A wall under gravity, pushed until it collapses: everything a test may want to change.
+/// A wall under gravity that is pushed until it collapses, with all parameters that tests change.
 #[derive(Debug, Clone)]
 pub struct Wall {
-    /// How bricks lie: [`Wall::of_rows`] or [`Wall::in_bond`].
+    /// Pattern of the bricks: [`Wall::of_rows`] or [`Wall::in_bond`].
     pub pattern: String,
     /// Length and height of a brick \[m\].
     pub brick: [f64; 2],
-    /// Out of plane \[m\].
+    /// Width out of plane \[m\].
     pub width: f64,
-    /// ρ \[kg/m³\].
+    /// Density ρ \[kg/m³\].
     pub density: f64,
     /// Table of the joint law, without brackets.
     pub joint: String,
     /// Table of the solver, without brackets.
     pub solver: String,
-    /// Downwards \[m/s²\].
+    /// Gravity, downwards \[m/s²\].
     pub gravity: f64,
-    /// What the wall is pushed by at factor 1 \[m/s²\].
+    /// Acceleration that pushes the wall at factor 1 \[m/s²\].
     pub push: [f64; 2],
 }
 
@@ -37,12 +37,13 @@ impl Wall {
         }
     }
 
-    /// Courses from the bottom; lengths of bricks in units of a whole one, a negative number is an opening.
+    /// Creates a wall from courses from the bottom; lengths of bricks in units of a whole brick, negative for an
+    /// opening.
     pub fn of_rows(rows: &[&[f64]]) -> Wall {
         Wall::new(format!("rows = {rows:?}"))
     }
 
-    /// 62 bricks around a window, of compliant joints that slide without dilatancy.
+    /// Creates a wall of 62 bricks around a window, with compliant joints that slide without dilatancy.
     pub fn around_a_window(friction: &str, solver: &str) -> Wall {
         let joint = crate::compliant(&format!("law = \"coulomb\"\n{friction}"), 1e10, 4e9);
         let solver = format!("solver = \"{solver}\"");
@@ -50,24 +51,24 @@ impl Wall {
         Wall { width: 0.24, brick: [0.5, 0.25], joint, solver, ..wall }
     }
 
-    /// A wall in running bond.
+    /// Creates a wall in running bond.
     pub fn in_bond(courses: usize, bricks: usize) -> Wall {
         Wall::new(format!("courses = {courses}\nbricks = {bricks}"))
     }
 
-    /// The wall with an opening between two corners \[m\].
+    /// Returns the wall with an opening between two corners \[m\].
     pub fn with_opening(mut self, from: [f64; 2], to: [f64; 2]) -> Wall {
         self.pattern += &format!("\nopenings = [{{ from = {from:?}, to = {to:?} }}]");
         self
     }
 
-    /// The study.
+    /// Returns the study.
     pub fn study(&self) -> String {
         let push = format!("loads = [{{ kind = \"body\", acceleration = {:?} }}]", self.push);
         format!("{}[[stages]]\nname = \"push\"\nuntil = \"collapse\"\n{push}\n", self.under_its_weight())
     }
 
-    /// The study without the stage that pushes it.
+    /// Returns the study without the stage that pushes it.
     pub fn under_its_weight(&self) -> String {
         format!(
             r#"name = "wall"

@@ -1,4 +1,4 @@
-//! Results as they are written, and what `verify` finds in them.
+//! Results as written to files, and the findings of `verify`.
 
 use crate::gates::above_gates;
 use crate::study;
@@ -11,7 +11,7 @@ use voussoir::solve::Unobserved;
 use voussoir::study::{Study, load};
 use voussoir::verify::{solve_again, verify_against};
 
-/// Results of a study, as they are written, and the study as it is read back from resolved.toml.
+/// Returns the study as read back from resolved.toml, and its results as written to a file.
 pub fn results(text: &str) -> (Study, Value) {
     let original = study(text);
     let resolved = toml::to_string(&original.resolved).expect("a study can be written");
@@ -25,7 +25,7 @@ pub fn results(text: &str) -> (Study, Value) {
     (again, serde_json::to_value(&results).expect("results can be written"))
 }
 
-/// The cases of a study solved again: once for all changes of its results that a test tries.
+/// Solves the cases of a study again, once for all changes of its results that a test tries.
 fn again(study: &Study, results: &StudyResults) -> Arc<Vec<CaseResult>> {
     static SOLVED: LazyLock<Mutex<HashMap<String, Arc<Vec<CaseResult>>>>> = LazyLock::new(Mutex::default);
     let key = format!("{} {:?}", study.resolved, results.only_cases);
@@ -36,7 +36,7 @@ fn again(study: &Study, results: &StudyResults) -> Arc<Vec<CaseResult>> {
     SOLVED.lock().expect("no test has panicked here").entry(key).or_insert(solved).clone()
 }
 
-/// What `verify` says of results; also where they cannot be read.
+/// Returns the findings of `verify` for results, also if they cannot be read.
 pub fn findings(study: &Study, results: &Value) -> Vec<String> {
     let read = match serde_json::from_value::<StudyResults>(results.clone()) {
         Ok(read) => read,

@@ -6,48 +6,48 @@ use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 
 /// Largest gradient at a stationary point, relative to the force scale.
 const TOLERANCE: f64 = 1e-9;
-/// Steps tried.
+/// Greatest number of steps.
 const MOST: usize = 400;
 
-/// Where a descent ended.
+/// The end of a descent.
 #[derive(Debug, Clone)]
 pub struct Landing {
     /// The unknowns.
     pub q: DVector<f64>,
-    /// What the energy is there.
+    /// The energy and its derivatives there.
     pub at: Derivatives,
     /// λ: given, or the multiplier of the held load point.
     pub factor: f64,
-    /// Size of the gradient that is left, relative to the force scale.
+    /// Size of the remaining gradient, relative to the force scale.
     pub residual: f64,
-    /// Whether E is a minimum with the loads constant.
+    /// True if E is a minimum with the loads constant.
     pub stable_under_load: bool,
-    /// Whether it is one with the load point held; the same where there is no live load.
+    /// True if E is a minimum with the load point held; the same value if there is no live load.
     pub stable_under_control: bool,
-    /// Steps it took.
+    /// Number of steps.
     pub steps: usize,
-    /// Whether Newton's method met an indefinite Hessian on the way.
+    /// True if Newton's method found an indefinite Hessian.
     pub met_indefinite: bool,
 }
 
 impl Landing {
-    /// Whether it is a stationary point.
+    /// Returns true if it is a stationary point.
     pub fn converged(&self) -> bool {
         self.residual <= TOLERANCE
     }
 
-    /// Least eigenvalue of the Hessian with the loads constant (displacements in m at the poles of the scene,
-    /// rotations in rad) \[N/m, N m\], and its direction.
+    /// Returns the least eigenvalue of the Hessian with the loads constant (displacements in m at the poles of the
+    /// scene, rotations in rad) \[N/m, N m\], and its direction.
     pub fn least_under_load(&self) -> (f64, DVector<f64>) {
         least(self.at.hessian.clone())
     }
 
-    /// The same on the motions that keep the load point where it is.
+    /// Returns the same for motions with the load point held.
     pub fn least_under_control(&self, scene: &EnergyScene) -> (f64, DVector<f64>) {
         least(constrained(scene, &self.at.hessian))
     }
 
-    /// The direction in which the state is softest under a control.
+    /// Returns the softest direction of the state under a control.
     pub fn softest(&self, scene: &EnergyScene, control: Control) -> DVector<f64> {
         match control {
             Control::Factor(_) => self.least_under_load().1,
@@ -56,12 +56,12 @@ impl Landing {
     }
 }
 
-/// What is kept: nothing but the factor, or the displacement of the load.
+/// The controlled quantity: the factor, or the displacement of the load.
 #[derive(Debug, Clone, Copy)]
 pub enum Control {
-    /// λ.
+    /// The factor λ.
     Factor(f64),
-    /// ℓ·q / |ℓ| as it is in the start.
+    /// ℓ·q / |ℓ| with its value at the start.
     Displacement,
 }
 
@@ -93,7 +93,7 @@ fn reduce(scene: &EnergyScene, held: &Held, q: &DVector<f64>, slip: Option<&[f64
     }
 }
 
-/// The Hessian on the motions orthogonal to v, with something stiff along v.
+/// Returns the Hessian on the motions orthogonal to v, with a large stiffness along v.
 pub(super) fn held_hessian(hessian: &DMatrix<f64>, v: &DVector<f64>) -> DMatrix<f64> {
     let stiff = hessian.diagonal().amax();
     let hv = hessian * v;
@@ -101,7 +101,8 @@ pub(super) fn held_hessian(hessian: &DMatrix<f64>, v: &DVector<f64>) -> DMatrix<
     hessian - v * hv.transpose() - &hv * v.transpose() + v * v.transpose() * (vhv + stiff)
 }
 
-/// The step of least model value within a radius: Newton's where it fits, else that of the shifted system.
+/// Returns the step of least model value within a radius: Newton's step if it fits, else the step of the shifted
+/// system.
 fn trust_step(gradient: &DVector<f64>, hessian: &DMatrix<f64>, radius: f64) -> DVector<f64> {
     if let Some(factor) = Cholesky::new(hessian.clone()) {
         let step = -factor.solve(gradient);
@@ -119,7 +120,7 @@ fn trust_step(gradient: &DVector<f64>, hessian: &DMatrix<f64>, radius: f64) -> D
     let mut low = (-least).max(0.0) + 1e-14 * scale;
     let mut y: DVector<f64>;
     if length(low) < radius {
-        // The hard case: the rest of the radius along the softest direction.
+        // The hard case: use the rest of the radius along the softest direction.
         y = DVector::from_iterator(g.len(), g.iter().zip(eigen.eigenvalues.iter()).map(|(g, e)| -g / (e + low)));
         if least < 0.0 {
             let softest = eigen.eigenvalues.imin();
@@ -148,8 +149,8 @@ fn trust_step(gradient: &DVector<f64>, hessian: &DMatrix<f64>, radius: f64) -> D
     &eigen.eigenvectors * y
 }
 
-/// Descends from `q` to a minimum of the energy (or, under [`Control::Displacement`], of the energy with the load point
-/// held where it is in `q`). A start that is a saddle is left along its softest direction.
+/// Descends from `q` to a minimum of the energy (under [`Control::Displacement`], of the energy with the load point
+/// held at its place in `q`). From a saddle point it starts along the softest direction.
 pub fn land(scene: &EnergyScene, held: &Held, q: &DVector<f64>, slip: Option<&[f64]>, control: Control) -> Landing {
     let scale = scene.force_scale();
     let mut q = q.clone();
@@ -167,7 +168,7 @@ pub fn land(scene: &EnergyScene, held: &Held, q: &DVector<f64>, slip: Option<&[f
         let next = &q + &step;
         let there = reduce(scene, held, &next, slip, control);
         let gained = here.value - there.value;
-        // Below rounding of the energy the gradient decides.
+        // Below the rounding of the energy the gradient decides.
         let noise = 1e-13 * here.value.abs().max(there.value.abs()).max(scale * 1e-6 * scene.size);
         let good = if promised.abs() <= 10.0 * noise {
             there.gradient.norm() <= size.max(TOLERANCE * scale)
@@ -191,7 +192,7 @@ pub fn land(scene: &EnergyScene, held: &Held, q: &DVector<f64>, slip: Option<&[f
     finished(scene, q, here, steps)
 }
 
-/// A stationary point near `q` by Newton's method on the gradient: stable or not, it is not left.
+/// Returns a stationary point near `q` by Newton's method on the gradient, stable or not.
 pub fn stationary(
     scene: &EnergyScene,
     held: &Held,
@@ -235,7 +236,7 @@ fn finished(scene: &EnergyScene, q: DVector<f64>, here: Reduced, steps: usize) -
     }
 }
 
-/// The Hessian with the load point held, where there is a load.
+/// Returns the Hessian with the load point held, if there is a load.
 fn constrained(scene: &EnergyScene, hessian: &DMatrix<f64>) -> DMatrix<f64> {
     if scene.load.norm() > 0.0 { held_hessian(hessian, &scene.load.normalize()) } else { hessian.clone() }
 }

@@ -1,7 +1,7 @@
-//! A second route for rigid blocks on elastic joints: equilibria as stationary points of the potential energy.
+//! An independent method for rigid blocks on elastic joints: equilibria as stationary points of the potential energy.
 //!
 //! Unknowns are the motions (u, θ) of the free blocks, with rotations of any size; contact forces are derived from
-//! them. Positions, tributary areas and joint stiffnesses are read from the assembly's path problem; contact modes,
+//! them. Positions, tributary areas and joint stiffnesses come from the path problem of the assembly. Contact modes,
 //! laws, equations and solvers of the program are not used.
 //!
 //! ```text
@@ -9,17 +9,17 @@
 //! g    = [n t]ᵀ R(θ_c)ᵀ (x⁺ − x⁻) + g_0,   θ_c = θ⁻ + β (θ⁺ − θ⁻),   x = P + u + R(θ)(X − P)
 //! ```
 //!
-//! k_n, k_t are the stiffnesses of a point's tributary area \[N/m\], ⟨ ⟩ the positive part, s the slip, ℓ the live
-//! load. E is once continuously differentiable, with a Hessian that jumps where a point opens or closes.
+//! k_n, k_t are the stiffnesses of a point's tributary area \[N/m\], ⟨ ⟩ is the positive part, s the slip, ℓ the live
+//! load. E is once continuously differentiable; its Hessian jumps when a point opens or closes.
 //!
-//! - `unilateral` with `tangential = "stuck"`: s = 0, at open points too, because that law bounds r_n only. There the
-//!   comparison with the program's paths is exact, and states have no history.
+//! - `unilateral` with `tangential = "stuck"`: s = 0, at open points too, because that law bounds r_n only. The
+//!   comparison with the program's paths is then exact, and states have no history.
 //! - `coulomb`: near the tip of a crack r_n → 0, so friction is reached there in every scene with shear, however large
-//!   μ is. With s = 0 the comparison is then approximate, by what those few points carry; slip is not followed.
+//!   μ is. With s = 0 the comparison is then approximate by the forces of those few points; slip is not followed.
 //!
 //! With the load point held (ℓ·q given) λ is the multiplier of that constraint, and minima are the states that are
-//! stable under control of the displacement. The pole P of a loaded block is its load point, so that ℓ·q is the
-//! displacement of that point along the load exactly, whatever the rotation.
+//! stable under displacement control. The pole P of a loaded block is its load point, so that ℓ·q is exactly the
+//! displacement of that point along the load, for any rotation.
 
 mod descent;
 mod potential;

@@ -4,14 +4,14 @@ use super::scene::{EnergyScene, Held};
 use nalgebra::{DMatrix, DVector, SMatrix, SVector};
 use voussoir::core::model::geometry::{Vec2, turned};
 
-/// The energy \[J\] at some motions and its derivatives by them \[N, N m; N/m …\].
+/// The energy \[J\] at given motions and its derivatives with respect to them \[N, N m; N/m …\].
 #[derive(Debug, Clone)]
 pub struct Derivatives {
-    /// E without the live load that is traced.
+    /// E without the live load that is followed.
     pub energy: f64,
     /// ∂E/∂q.
     pub gradient: DVector<f64>,
-    /// ∂²E/∂q²; of the closed side where a point is about to open.
+    /// ∂²E/∂q²; for a point that is about to open, the value of the closed side.
     pub hessian: DMatrix<f64>,
     /// (r_n, r_t) of every point \[N\], r_n ≥ 0 in compression, r_t on the plus block.
     pub force: Vec<[f64; 2]>,
@@ -22,7 +22,7 @@ pub struct Derivatives {
 type Six = SVector<f64, 6>;
 type SixBySix = SMatrix<f64, 6, 6>;
 
-/// A rotation by θ: sin θ and 1 − cos θ, which keeps its digits.
+/// A rotation by θ: sin θ and 1 − cos θ, which avoids cancellation.
 #[derive(Clone, Copy)]
 struct Rotation {
     sine: f64,
@@ -44,8 +44,8 @@ impl Rotation {
     }
 }
 
-/// One gap e(θ_c)·(x⁺ − x⁻) with its derivatives by (u⁻, θ⁻, u⁺, θ⁺): `arms` are R(θ)(X − P) of both sides, `jump` is
-/// x⁺ − x⁻, `shares` those of both sides in θ_c.
+/// Returns one gap e(θ_c)·(x⁺ − x⁻) with its derivatives with respect to (u⁻, θ⁻, u⁺, θ⁺). `arms` are R(θ)(X − P) of
+/// both sides, `jump` is x⁺ − x⁻, `shares` are the weights of both sides in θ_c.
 fn gap_derivatives(e: Vec2, jump: Vec2, arms: [Vec2; 2], shares: [f64; 2]) -> (f64, Six, SixBySix) {
     let de = turned(e);
     let (mut first, mut second) = (Six::zeros(), SixBySix::zeros());
@@ -73,7 +73,7 @@ fn gap_derivatives(e: Vec2, jump: Vec2, arms: [Vec2; 2], shares: [f64; 2]) -> (f
     (e.dot(&jump), first, second)
 }
 
-/// The energy at the unknowns `q`, slip `s` of every point.
+/// Returns the energy at the unknowns `q` and the slip `s` of every point.
 pub fn evaluate(scene: &EnergyScene, held: &Held, q: &DVector<f64>, slip: Option<&[f64]>) -> Derivatives {
     let place = scene.place(held, q);
     let size = scene.unknowns();

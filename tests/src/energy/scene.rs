@@ -1,4 +1,4 @@
-//! What the energy is made of: blocks, springs of the joints, loads, support motions.
+//! The data of the energy: blocks, springs of the joints, loads, motions of supports.
 
 use crate::first_case;
 use nalgebra::DVector;
@@ -9,13 +9,13 @@ use voussoir::study::Case;
 /// A block.
 #[derive(Debug, Clone)]
 pub struct RigidBlock {
-    /// P, about which u is measured \[m\].
+    /// Pole P, where u is measured \[m\].
     pub pole: Vec2,
     /// Centre of mass \[m\].
     pub centroid: Vec2,
-    /// \[kg\].
+    /// Mass \[kg\].
     pub mass: f64,
-    /// Index of its first unknown; `None` where the ground holds it.
+    /// Index of its first unknown; `None` if the ground holds it.
     pub unknown: Option<usize>,
 }
 
@@ -26,51 +26,51 @@ pub struct SpringPoint {
     pub joint: usize,
     /// Minus and plus block.
     pub sides: [usize; 2],
-    /// Where it is \[m\].
+    /// Position \[m\].
     pub position: Vec2,
-    /// n and t of the untouched joint.
+    /// n and t of the undeformed joint.
     pub axes: [Vec2; 2],
     /// k_n, k_t of its area \[N/m\].
     pub stiffness: [f64; 2],
-    /// g_0 \[m\].
+    /// Initial gap g_0 \[m\].
     pub gap: f64,
-    /// β: its axes turn by θ⁻ + β (θ⁺ − θ⁻).
+    /// β: its axes rotate by θ⁻ + β (θ⁺ − θ⁻).
     pub share: f64,
 }
 
-/// Motions of the held blocks and what acts besides the live load.
+/// Motions of the held blocks, and all loads except the live load.
 #[derive(Debug, Clone)]
 pub struct Held {
-    /// \[u_x, u_y, θ\] of every block about its pole; those of free blocks are not read.
+    /// \[u_x, u_y, θ\] of every block about its pole; the entries of free blocks are not read.
     pub motion: Vec<[f64; 3]>,
-    /// \[m/s²\].
+    /// Gravity \[m/s²\].
     pub gravity: Vec2,
-    /// λ of a live load that stays constant, besides the one that is traced.
+    /// λ of a constant live load, in addition to the one that is followed.
     pub constant: f64,
 }
 
 /// Rigid blocks on elastic unilateral joints.
 #[derive(Debug, Clone)]
 pub struct EnergyScene {
-    /// Blocks, those of bonded ends one with their support.
+    /// Blocks; a bonded end forms one block with its support.
     pub blocks: Vec<RigidBlock>,
     /// Springs.
     pub points: Vec<SpringPoint>,
-    /// ℓ \[N\], over the unknowns.
+    /// Live load ℓ \[N\], over the unknowns.
     pub load: DVector<f64>,
-    /// States of the supports: before any settlement, then after each stage that settles.
+    /// States of the supports: before any settlement, then after each stage with a settlement.
     pub settled: Vec<Vec<[f64; 3]>>,
     /// Gravity of the first stage \[m/s²\].
     pub gravity: Vec2,
-    /// Diagonal of the box around everything \[m\].
+    /// Diagonal of the bounding box \[m\].
     pub size: f64,
-    /// Clear span, or the size where it is no arch \[m\].
+    /// Clear span, or the size if the scene is not an arch \[m\].
     pub span: f64,
-    /// μ of the joints, where they slide.
+    /// μ of the joints, if they can slide.
     pub friction: Option<f64>,
 }
 
-/// Motions of all blocks at some unknowns.
+/// Motions of all blocks at given unknowns.
 #[derive(Debug, Clone)]
 pub struct Place {
     /// \[u_x, u_y, θ\] about each pole.
@@ -78,12 +78,12 @@ pub struct Place {
 }
 
 impl EnergyScene {
-    /// Of the first case of a study: dead load, stages that settle, a live load that grows.
+    /// Creates it from the first case of a study: dead load, stages with settlements, a live load that grows.
     pub fn of_study(text: &str) -> Self {
         Self::of_case(&first_case(text))
     }
 
-    /// Of a case whose blocks are rigid and whose joints are compliant.
+    /// Creates it from a case whose blocks are rigid and whose joints are compliant.
     pub fn of_case(case: &Case) -> Self {
         let problem = PathProblem::new(&case.assembly, &case.stages).expect("a path problem");
         let mut count = 0;
@@ -140,31 +140,31 @@ impl EnergyScene {
         EnergyScene { blocks, points, load, settled, gravity, size: problem.length, span, friction }
     }
 
-    /// The supports a `share` of the way from one state to the next, full gravity.
+    /// Returns the supports at a `share` between one state and the next, at full gravity.
     pub fn held(&self, from: usize, share: f64) -> Held {
         let (a, b) = (&self.settled[from], &self.settled[(from + 1).min(self.settled.len() - 1)]);
         let mix = |(a, b): (&[f64; 3], &[f64; 3])| [0, 1, 2].map(|k| a[k] + share * (b[k] - a[k]));
         Held { motion: a.iter().zip(b).map(mix).collect(), gravity: self.gravity, constant: 0.0 }
     }
 
-    /// The supports where the last settlement leaves them.
+    /// Returns the supports after the last settlement.
     pub fn settled_supports(&self) -> Held {
         self.held(self.settled.len() - 1, 0.0)
     }
 
-    /// Number of unknowns.
+    /// Returns the number of unknowns.
     pub fn unknowns(&self) -> usize {
         self.load.len()
     }
 
-    /// Motions of all blocks.
+    /// Returns the motions of all blocks.
     pub fn place(&self, held: &Held, q: &DVector<f64>) -> Place {
         let of =
             |(block, held): (&RigidBlock, &[f64; 3])| block.unknown.map_or(*held, |at| [q[at], q[at + 1], q[at + 2]]);
         Place { motion: self.blocks.iter().zip(&held.motion).map(of).collect() }
     }
 
-    /// Rotation of each joint's plus block relative to its minus block \[rad\], by joint.
+    /// Returns the rotation of each joint's plus block relative to its minus block \[rad\], by joint.
     pub fn joint_rotations(&self, held: &Held, q: &DVector<f64>) -> Vec<(usize, f64)> {
         let place = self.place(held, q);
         let mut out: Vec<(usize, f64)> = Vec::new();
@@ -176,8 +176,8 @@ impl EnergyScene {
         out
     }
 
-    /// The mirror image of some motions, of an arch whose blocks stand from left to right and whose supports have moved
-    /// symmetrically; `None` for anything else.
+    /// Returns the mirror image of motions of an arch whose blocks are ordered from left to right and whose supports
+    /// have moved symmetrically; `None` for other scenes.
     pub fn mirrored(&self, held: &Held, q: &DVector<f64>) -> Option<DVector<f64>> {
         let last = self.blocks.len() - 1;
         let held_ends = self.blocks.iter().enumerate().all(|(k, b)| b.unknown.is_none() == (k == 0 || k == last));
@@ -208,18 +208,18 @@ impl EnergyScene {
         Some(out)
     }
 
-    /// A force scale \[N\]: the weight, or the live load where nothing weighs.
+    /// Returns a force scale \[N\]: the weight, or the live load if blocks have no weight.
     pub fn force_scale(&self) -> f64 {
         let weight: f64 = self.blocks.iter().map(|b| b.mass * self.gravity.norm()).sum();
         weight.max(self.load.norm() * 1e-3)
     }
 }
 
-/// Point loads move the pole of their block to where they act; accelerations act at centroids.
+/// Adds live loads. A point load moves the pole of its block to its point of action; accelerations act at centroids.
 fn add_live_load(blocks: &mut [RigidBlock], load: &mut DVector<f64>, loading: &voussoir::core::path::Loading) {
     for (body, _, point, force) in &loading.forces {
         let Some(at) = blocks[*body].unknown else { continue };
-        // Several forces on one block act as their resultant on its line of action, where that exists.
+        // Several forces on one block act as their resultant on its line of action, if that exists.
         let total: Vec2 = loading.forces.iter().filter(|f| f.0 == *body).map(|f| f.3).sum();
         let moment: f64 = loading.forces.iter().filter(|f| f.0 == *body).map(|f| cross(f.2 - *point, f.3)).sum();
         let alone = loading.forces.iter().filter(|f| f.0 == *body).count() == 1;

@@ -1,15 +1,15 @@
-//! Paths of stable states: over the settlement of supports with the loads constant, and over the displacement of the
-//! load point.
+//! Paths of stable states: over the settlement of supports with constant loads, and over the displacement of the load
+//! point.
 
 use super::descent::{Control, Landing, held_hessian, land, stationary};
 use super::potential::evaluate;
 use super::scene::{EnergyScene, Held};
 use nalgebra::DVector;
 
-/// Step over a place where no stable state is near, far enough for the two sides of a bifurcation to differ: in shares
-/// of a settlement, and in spans.
+/// Step over a point without a stable state nearby, large enough for the two sides of a bifurcation to differ: in
+/// shares of a settlement, and in spans.
 const SNAP_STEPS: [f64; 2] = [1e-3, 1e-6];
-/// Branches of settlements that are followed.
+/// Greatest number of branches of settlements.
 const MOST_BRANCHES: usize = 4;
 
 /// A state in equilibrium.
@@ -17,69 +17,69 @@ const MOST_BRANCHES: usize = 4;
 pub struct State {
     /// Share of the settlement stage, or the displacement ℓ·q/|ℓ| \[m\].
     pub at: f64,
-    /// What the energy says.
+    /// The stationary point of the energy.
     pub landing: Landing,
 }
 
-/// A place where no stable state is near: the path goes on where damped descent leads.
+/// A point without a stable state nearby: the path continues at the state that damped descent reaches.
 #[derive(Debug, Clone)]
 pub struct Snap {
     /// Share of the settlement stage, or the displacement \[m\].
     pub at: f64,
     /// λ before and after.
     pub factors: [f64; 2],
-    /// Energy set free \[J\]; zero up to rounding at a bifurcation from which the path goes on continuously.
+    /// Released energy \[J\]; zero within rounding at a bifurcation with a continuous path.
     pub released: f64,
     /// Greatest difference of the unknowns \[m, rad\].
     pub jump: f64,
-    /// The twin: what descent to the other side of an unstable state leads to, where that differs.
+    /// The twin: the state that descent to the other side of an unstable state reaches, if it differs.
     pub twin: Option<Landing>,
 }
 
-/// A greatest load along the way.
+/// A maximum of the load along the path.
 #[derive(Debug, Clone)]
 pub struct Peak {
     /// Displacement of the load point since the live load began \[m\].
     pub displacement: f64,
-    /// λ.
+    /// Factor λ.
     pub factor: f64,
-    /// Whether the path snaps there.
+    /// True if the path snaps there.
     pub snaps: bool,
     /// The state.
     pub landing: Landing,
 }
 
-/// A path.
+/// A path of stable states.
 #[derive(Debug, Clone, Default)]
 pub struct Trace {
     /// States in order.
     pub states: Vec<State>,
-    /// Where it snaps or bifurcates.
+    /// Snaps and bifurcations.
     pub snaps: Vec<Snap>,
-    /// Greatest loads, in order; none for a settlement.
+    /// Maxima of the load, in order; empty for a settlement.
     pub peaks: Vec<Peak>,
-    /// Why it ended before its end, if it did.
+    /// The reason for an early end of the path, if it ended early.
     pub broken: Option<String>,
 }
 
 impl Trace {
-    /// The last state.
+    /// Returns the last state.
     pub fn last(&self) -> &State {
         &self.states[self.states.len() - 1]
     }
 
-    /// The greatest peak, if there is one.
+    /// Returns the greatest peak, if there is one.
     pub fn greatest(&self) -> Option<&Peak> {
         self.peaks.iter().max_by(|a, b| a.factor.total_cmp(&b.factor))
     }
 }
 
-/// How fine a path is, and how far it goes.
+/// Step length and range of a path.
 #[derive(Debug, Clone, Copy)]
 pub struct TraceLimits {
     /// Largest step, in spans (or in shares of the stage).
     pub largest: f64,
-    /// How far the load point moves at most, in spans.
+    /// Greatest displacement of the load point, in spans.
     pub farthest: f64,
 }
 
@@ -89,7 +89,7 @@ impl Default for TraceLimits {
     }
 }
 
-/// Something that moves with one parameter.
+/// A motion with one parameter.
 struct Motion<'a> {
     scene: &'a EnergyScene,
     held: Box<dyn Fn(f64) -> Held + 'a>,
@@ -99,7 +99,7 @@ struct Motion<'a> {
 }
 
 impl Motion<'_> {
-    /// The tangent predictor from a state.
+    /// Returns the tangent predictor from a state.
     fn predicted(&self, from: &State, step: f64) -> DVector<f64> {
         let (scene, q) = (self.scene, &from.landing.q);
         match self.control {
@@ -120,7 +120,7 @@ impl Motion<'_> {
         }
     }
 
-    /// The stable state near the prediction, with whether it is on the same branch.
+    /// Returns the stable state near the prediction, and true if it is on the same branch.
     fn step(&self, from: &State, step: f64) -> Option<(State, bool)> {
         let predicted = self.predicted(from, step);
         let held = (self.held)(from.at + step);
@@ -131,8 +131,8 @@ impl Motion<'_> {
         let moved = (&landing.q - &from.landing.q).norm();
         let off = (&landing.q - &predicted).norm();
         let on_branch = match self.control {
-            // Supports carry most blocks along: a twin state lies close in comparison, but the way to it from the
-            // prediction, which is on the branch that has become unstable, does not keep to minima.
+            // Supports move most blocks with them, so a twin state is close in comparison. But the way to it from the
+            // prediction, which is on the branch that has become unstable, meets states that are not minima.
             Control::Factor(_) => off <= 0.03 * moved && !landing.met_indefinite,
             Control::Displacement => {
                 let powers = [self.power(from.at, &from.landing), self.power(from.at + step, &landing)];
@@ -145,7 +145,7 @@ impl Motion<'_> {
         Some((State { at: from.at + step, landing }, on_branch))
     }
 
-    /// dE/dt of the parameter t \[J per unit\].
+    /// Returns dE/dt of the parameter t \[J per unit\].
     fn power(&self, at: f64, landing: &Landing) -> f64 {
         match self.control {
             Control::Displacement => landing.factor * self.scene.load.norm(),
@@ -164,8 +164,8 @@ impl Motion<'_> {
         }
     }
 
-    /// Where descent leads from the last state once the parameter has moved on by a step, and the twin: what descent to
-    /// the other side of an unstable state leads to.
+    /// Returns the state that descent from the last state reaches after a step of the parameter, and the snap with its
+    /// twin, the state that descent to the other side of an unstable state reaches.
     fn snap(&self, from: &State, step: f64) -> (State, Snap) {
         let at = from.at + step;
         let held = (self.held)(at);
@@ -173,7 +173,7 @@ impl Motion<'_> {
         let jumped = (&near.q - &from.landing.q).amax() > 1e-3 * self.scene.size;
         let start = if near.converged() && !jumped { near.clone() } else { from.landing.clone() };
         let soft = start.softest(self.scene, self.control);
-        // The load point stays where it has to be.
+        // The load point keeps its prescribed position.
         let shift = match self.control {
             Control::Displacement => {
                 let v = self.scene.load.normalize();
@@ -226,7 +226,7 @@ impl Motion<'_> {
                         step *= 0.4;
                         continue;
                     }
-                    // Even the smallest step lands elsewhere, or nowhere: a kink, a bifurcation or a snap.
+                    // Even the smallest step ends on another branch or fails: a kink, a bifurcation or a snap.
                     let by = SNAP_STEPS[usize::from(matches!(self.control, Control::Displacement))];
                     let (state, snap) = self.snap(&from, (by * self.unit).min(left));
                     let kink = snap.twin.is_none() && snap.jump <= 1e-4 * self.scene.size;
@@ -247,7 +247,7 @@ impl Motion<'_> {
     }
 }
 
-/// The minimum under dead load that belongs to the untouched shape.
+/// Returns the minimum under dead load that belongs to the undeformed shape.
 pub fn dead_load(scene: &EnergyScene) -> Landing {
     let mut held = scene.held(0, 0.0);
     held.gravity *= 0.01;
@@ -259,9 +259,9 @@ pub fn dead_load(scene: &EnergyScene) -> Landing {
     landing
 }
 
-/// The settlements of all stages one after the other, from the dead load on, loads constant. Each list is one branch,
-/// with a trace for each stage that settles; there is more than one where the way bifurcates, the one of least energy
-/// at the bifurcation first.
+/// Follows the settlements of all stages one after the other, from the dead load on, with constant loads. Each list is
+/// one branch with one trace for each stage with a settlement. There are several lists if the path bifurcates; the
+/// branch of least energy at the bifurcation comes first.
 pub fn settle(scene: &EnergyScene, limits: TraceLimits) -> Vec<Vec<Trace>> {
     let limits = TraceLimits { largest: 0.02, ..limits };
     let mut open = vec![(Vec::new(), 0, State { at: 0.0, landing: dead_load(scene) })];
@@ -300,7 +300,7 @@ pub fn settle(scene: &EnergyScene, limits: TraceLimits) -> Vec<Vec<Trace>> {
     done
 }
 
-/// Where scene and settlements are symmetric the mirror image of a branch is one too.
+/// If scene and settlements are symmetric, adds the mirror image of each branch.
 fn add_mirror_twins(scene: &EnergyScene, branches: &mut Vec<Vec<Trace>>) {
     for index in 0..branches.len() {
         let Some(last) = branches[index].last().filter(|trace| trace.broken.is_none()) else { continue };
@@ -316,9 +316,9 @@ fn add_mirror_twins(scene: &EnergyScene, branches: &mut Vec<Vec<Trace>>) {
     }
 }
 
-/// The path of the live load from a state with λ = 0, the supports where the last settlement left them: displacement
-/// of the load point held, until it has moved `limits.farthest` spans or λ has fallen to half of the last peak and the
-/// point moved by 2 % of the span since.
+/// Follows the live load from a state with λ = 0, with the supports after the last settlement and the displacement of
+/// the load point as parameter. It stops when the point has moved `limits.farthest` spans, or when λ has fallen to half
+/// of the last peak and the point has moved by 2 % of the span since.
 pub fn load_path(scene: &EnergyScene, from: &Landing, limits: TraceLimits) -> Trace {
     let held = scene.settled_supports();
     let v = scene.load.normalize();
@@ -348,7 +348,7 @@ pub fn load_path(scene: &EnergyScene, from: &Landing, limits: TraceLimits) -> Tr
     trace
 }
 
-/// Greatest loads, refined between the neighbours of the largest state by golden section.
+/// Returns the maxima of the load, refined by golden section between the neighbours of the greatest state.
 fn peaks(motion: &Motion<'_>, trace: &Trace) -> Vec<Peak> {
     let states = &trace.states;
     let factor = |i: usize| states[i].landing.factor;
@@ -399,7 +399,7 @@ fn peaks(motion: &Motion<'_>, trace: &Trace) -> Vec<Peak> {
     out
 }
 
-/// The last stable state with the load itself raised, from one at which the displacement turns back.
+/// Returns the last stable state under an increasing load, from a state at which the displacement turns back.
 fn highest(motion: &Motion<'_>, from: State) -> State {
     let scene = motion.scene;
     let held = (motion.held)(from.at);

@@ -1,7 +1,7 @@
 //! Five families of random scenes of three to nine blocks: random, mirror-symmetric, equal bricks, settlements, finite.
 //!
-//! Each scene is a list of blocks. It can be written as a study in several forms that must not change the answer: its mirror
-//! image, and its blocks in another order.
+//! Each scene is a list of blocks. It can be written as a study in several forms that must not change the answer: its
+//! mirror image, and its blocks in another order.
 
 mod shapes;
 mod written;
@@ -13,7 +13,7 @@ use crate::sequence::Sequence;
 pub enum Family {
     /// Stacks, portals, arches and walls of unequal blocks.
     Random,
-    /// The same shapes with a vertical axis of symmetry; several contact points change their mode at once.
+    /// The same shapes with a vertical axis of symmetry; several contact points change their mode at the same load.
     Symmetric,
     /// Walls, stacks and arches of equal blocks with round numbers.
     Bricks,
@@ -39,7 +39,7 @@ impl Family {
         }
     }
 
-    /// The family of a name.
+    /// Returns the family with this name.
     pub fn of_name(name: &str) -> Option<Family> {
         Family::ALL.into_iter().find(|family| family.name() == name)
     }
@@ -98,15 +98,15 @@ pub struct FamilyScene {
 /// A form of a scene that must not change the answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
-    /// As it was drawn.
+    /// The scene as it was drawn.
     Given,
-    /// Its mirror image.
+    /// The mirror image.
     Mirrored,
-    /// Its blocks in another order.
+    /// The blocks in another order.
     Renumbered,
 }
 
-/// Scene `seed` of a family.
+/// Returns scene `seed` of a family.
 pub fn family_scene(family: Family, seed: u64) -> FamilyScene {
     let salt = family as u64 + 1;
     let mut numbers = Sequence::new(seed.wrapping_mul(11).wrapping_add(salt).wrapping_add(7_000_000_000));
@@ -136,7 +136,8 @@ pub fn family_scene(family: Family, seed: u64) -> FamilyScene {
 }
 
 impl FamilyScene {
-    /// The scene with rigid blocks, joints without compliance, small displacements and supports at rest.
+    /// Returns the scene with rigid blocks, joints without compliance, small displacements and supports that do not
+    /// move.
     pub fn rigid(mut self) -> FamilyScene {
         (self.stiffness, self.finite) = (None, false);
         self.moduli.clear();
@@ -144,7 +145,7 @@ impl FamilyScene {
         self
     }
 
-    /// The scene with rigid blocks on compliant joints without slip, and finite displacements.
+    /// Returns the scene with rigid blocks on compliant joints without slip, and finite displacements.
     pub fn on_springs(mut self) -> FamilyScene {
         (self.law, self.finite) = (Law::Stuck, true);
         self.stiffness = self.stiffness.or_else(|| self.moduli.first().map(|modulus| [*modulus, 0.5 * modulus]));
@@ -157,22 +158,22 @@ impl FamilyScene {
         self.loads.iter().all(|load| matches!(load, Load::Point { .. }))
     }
 
-    /// The scene with small displacements.
+    /// Returns the scene with small displacements.
     pub fn small(self) -> FamilyScene {
         FamilyScene { finite: false, ..self }
     }
 
-    /// The scene with another law.
+    /// Returns the scene with another law.
     pub fn with_law(self, law: Law) -> FamilyScene {
         FamilyScene { law, ..self }
     }
 
-    /// μ, or `None` if joints do not slip.
+    /// Returns μ, or `None` if joints do not slip.
     pub fn friction(&self) -> Option<f64> {
         (self.law != Law::Stuck).then_some(self.friction)
     }
 
-    /// Opening per slip.
+    /// Returns the opening per slip.
     pub fn dilatancy(&self) -> f64 {
         match self.law {
             Law::Stuck | Law::Coulomb => 0.0,

@@ -26,7 +26,7 @@ fn scene(shape: &'static str, blocks: Vec<Block>, loads: Vec<Load>) -> FamilySce
     }
 }
 
-/// A scene of a family without law and stiffness.
+/// Returns a scene of a family without law and stiffness.
 pub fn drawn(family: Family, numbers: &mut Sequence) -> FamilyScene {
     match family {
         Family::Random => any(numbers, 1.0),
@@ -37,7 +37,7 @@ pub fn drawn(family: Family, numbers: &mut Sequence) -> FamilyScene {
     }
 }
 
-/// A shape of unequal blocks; a small `rise` makes arches shallow and stacks slender.
+/// Returns a shape of unequal blocks; a small `rise` makes arches shallow and stacks slender.
 fn any(numbers: &mut Sequence, rise: f64) -> FamilyScene {
     match numbers.whole(0, 3) {
         0 => stack(numbers, rise),
@@ -51,7 +51,7 @@ fn any(numbers: &mut Sequence, rise: f64) -> FamilyScene {
     }
 }
 
-/// Blocks on each other, a horizontal push on one of the upper ones.
+/// A stack of blocks with a horizontal push on one of the upper blocks.
 fn stack(numbers: &mut Sequence, slender: f64) -> FamilyScene {
     let mut blocks = vec![ground(-3.0, 3.0)];
     let (mut low, mut width, mut middle) = (0.0, numbers.between(0.5, 0.9) * slender.sqrt(), 0.0);
@@ -99,13 +99,13 @@ fn portal(numbers: &mut Sequence, two_grounds: bool) -> FamilyScene {
     scene("portal", blocks, vec![load])
 }
 
-/// Place of a polar point of an arch: 0 is the left springing, 1 the right one.
+/// Returns the position of a polar point of an arch: share 0 is the left springing, 1 the right one.
 fn polar(half: f64, share: f64, radius: f64) -> [f64; 2] {
     let angle = half * (1.0 - 2.0 * share);
     [-radius * angle.sin(), radius * angle.cos()]
 }
 
-/// Two springings and equal voussoirs; `half` is half the opening angle \[degrees\].
+/// Returns two springings and equal voussoirs; `half` is half the opening angle \[degrees\].
 fn ring(count: usize, radius: f64, thickness: f64, half: f64) -> Vec<Block> {
     let half = half.to_radians();
     let at = |k: f64, r: f64| polar(half, k / count as f64, r);
@@ -120,7 +120,7 @@ fn ring(count: usize, radius: f64, thickness: f64, half: f64) -> Vec<Block> {
     blocks
 }
 
-/// A force on the extrados of a block of a ring, at a share of its chord.
+/// Returns a force on the extrados of a block of a ring, at a share of its chord.
 fn on_extrados(blocks: &[Block], block: usize, share: f64, force: [f64; 2]) -> Load {
     let [a, _, _, b] = blocks[block].vertices;
     let point = [0, 1].map(|k| a[k] + (b[k] - a[k]) * share);
@@ -136,7 +136,7 @@ fn arch(numbers: &mut Sequence, count: usize, half: f64) -> FamilyScene {
     scene("arch", blocks, vec![load])
 }
 
-/// Two or three courses of two and one blocks.
+/// Two or three courses of two blocks and of one block.
 fn wall(numbers: &mut Sequence) -> FamilyScene {
     let mut blocks = vec![ground(-2.0, 2.0)];
     let (length, courses) = (numbers.between(0.4, 0.7), numbers.whole(2, 3));
@@ -184,7 +184,7 @@ fn symmetric(numbers: &mut Sequence) -> FamilyScene {
     }
 }
 
-/// Equal posts and a lintel; the posts are pushed outwards, or the lintel to the right.
+/// Two equal posts and a lintel; the posts are pushed outwards, or the lintel is pushed to the right.
 fn symmetric_portal(numbers: &mut Sequence) -> FamilyScene {
     let (half, width, height) = (numbers.between(0.55, 0.9), numbers.between(0.3, 0.6), numbers.between(0.6, 1.4));
     let top = height + numbers.between(0.25, 0.5);
@@ -203,7 +203,8 @@ fn symmetric_portal(numbers: &mut Sequence) -> FamilyScene {
     scene("portal", blocks, loads)
 }
 
-/// Two blocks, one on both, and again two; the lower blocks are pulled apart, or all blocks are pushed to the right.
+/// Two blocks, one block on both, and again two. The lower blocks are pulled apart, or all blocks are pushed to the
+/// right.
 fn symmetric_wall(numbers: &mut Sequence) -> FamilyScene {
     let (length, height) = (numbers.between(0.4, 0.7), numbers.between(0.2, 0.45));
     let mut blocks = vec![ground(-2.0, 2.0)];

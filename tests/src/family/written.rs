@@ -3,7 +3,7 @@
 use super::{FamilyScene, Form, Law, Load};
 use std::fmt::Write as _;
 
-/// The other side of a quadrilateral: its edges 0 and 2 stay those.
+/// Returns the mirror image of a quadrilateral; its edges 0 and 2 keep their numbers.
 fn mirrored(vertices: [[f64; 2]; 4]) -> [[f64; 2]; 4] {
     [1, 0, 3, 2].map(|k| flipped(vertices[k]))
 }
@@ -13,7 +13,7 @@ fn flipped([x, y]: [f64; 2]) -> [f64; 2] {
 }
 
 impl FamilyScene {
-    /// The study in a form, with these lines under `[solver]`.
+    /// Returns the study in a form, with these lines under `[solver]`.
     pub fn study(&self, form: Form, solver: &str) -> String {
         let kinematics = if self.finite { "finite" } else { "small" };
         let mut text = String::from(
@@ -36,7 +36,8 @@ impl FamilyScene {
             + &self.stages(form)
     }
 
-    /// Blocks in their order: of the renumbered form, those of odd places backwards and then the others.
+    /// Returns the order of the blocks; the renumbered form has the odd places in reverse order first, then the even
+    /// places.
     fn order(&self, form: Form) -> Vec<usize> {
         let count = self.blocks.len();
         match form {

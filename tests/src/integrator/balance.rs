@@ -5,7 +5,7 @@ use super::law::{Memory, Mode, Response};
 use super::scene::{Contact, Scene};
 use nalgebra::{DMatrix, DVector};
 
-/// Shares of the dead load and of the live load that act.
+/// Shares of the dead load and of the live load.
 #[derive(Debug, Clone, Copy)]
 pub struct Loads {
     /// Factor of gravity.
@@ -14,27 +14,27 @@ pub struct Loads {
     pub live: f64,
 }
 
-/// Equilibrium at some motions.
+/// Equilibrium at given motions.
 #[derive(Debug, Clone)]
 pub struct Balance {
-    /// Unbalanced forces and moments, by the weight and the size of the scene.
+    /// Unbalanced forces and moments, relative to the weight and the size of the scene.
     pub residual: DVector<f64>,
-    /// Its derivative by the scaled motions.
+    /// Its derivative with respect to the scaled motions.
     pub tangent: DMatrix<f64>,
     /// The contact points.
     pub points: Vec<Response>,
 }
 
-/// Rotations \[rad\] between which the derivative of G is taken.
+/// Rotations \[rad\] for the difference quotient of G.
 const DIFFERENCE: f64 = 1e-6;
 
-/// Motions of both sides of a contact point.
+/// Returns the motions of both sides of a contact point.
 fn motions(rows: [Option<usize>; 2], q: &[f64]) -> [[f64; 3]; 2] {
     rows.map(|row| row.map_or([0.0; 3], |row| [q[row], q[row + 1], q[row + 2]]))
 }
 
-/// Equilibrium at the motions `q`, from the memories at the start of the step. If `modes` are given, the tangent is that
-/// of these modes.
+/// Returns equilibrium at the motions `q`, from the memories at the start of the step. If `modes` are given, the
+/// tangent is that of these modes.
 pub fn balance(scene: &Scene, q: &[f64], loads: Loads, before: &[Memory], modes: Option<&[Mode]>) -> Balance {
     let count = q.len();
     let mut force = DVector::zeros(count);
@@ -68,12 +68,12 @@ pub fn balance(scene: &Scene, q: &[f64], loads: Loads, before: &[Memory], modes:
     Balance { residual, tangent, points }
 }
 
-/// The generalised force of a contact force on one of the six motions.
+/// Returns the generalised force of a contact force on one of the six motions.
 fn pull(gap: &[Dual<6>; 2], force: [f64; 2], k: usize) -> f64 {
     gap[0].slope[k] * force[0] + gap[1].slope[k] * force[1]
 }
 
-/// r·∂²g/∂q²: G turns with the blocks.
+/// Adds r·∂²g/∂q²: G rotates with the blocks.
 fn add_turning(
     scene: &Scene,
     contact: &Contact,
@@ -94,7 +94,7 @@ fn add_turning(
     }
 }
 
-/// The scaled forces of loads, without contact.
+/// Returns the scaled forces of loads, without contact.
 pub fn load_rate(scene: &Scene, q: &[f64], loads: Loads) -> DVector<f64> {
     let mut force = DVector::zeros(q.len());
     add_loads(scene, q, loads, (&mut force, &mut DMatrix::zeros(q.len(), q.len())));

@@ -44,7 +44,7 @@ fn rectangle(low: [f64; 2], high: [f64; 2]) -> Vec<[f64; 2]> {
 }
 
 impl SmallScene {
-    /// The scene of this seed.
+    /// Returns the scene with this seed.
     pub fn of_seed(seed: u64) -> SmallScene {
         let mut numbers = Numbers(0x9E37_79B9_7F4A_7C15 ^ (seed + 1).wrapping_mul(0xD129_0B2B_5C6F_7A35));
         (0..8).for_each(|_| _ = numbers.next());
@@ -72,14 +72,14 @@ impl SmallScene {
         self
     }
 
-    /// The mirror image at the line x = 0.
+    /// Returns the mirror image at the line x = 0.
     pub fn mirrored(&self) -> SmallScene {
         let flip = |p: [f64; 2]| [-p[0], p[1]];
         let blocks = self.blocks.iter().map(|block| block.iter().rev().map(|p| flip(*p)).collect()).collect();
         SmallScene { blocks, at: flip(self.at), force: flip(self.force), ..self.clone() }
     }
 
-    /// The study; `solver` are further lines of its solver's table.
+    /// Returns the study; `solver` is a list of further lines of its solver's table.
     pub fn study(&self, solver: &str) -> String {
         let mut blocks = String::new();
         for (index, vertices) in self.blocks.iter().enumerate() {
@@ -123,7 +123,7 @@ loads = [{{ kind = "point", block = "b{loaded}", point = {at:?}, force = {force:
     }
 }
 
-/// Blocks on each other, a horizontal push on one of the upper ones.
+/// A stack of blocks with a horizontal push on one of the upper blocks.
 fn stack(numbers: &mut Numbers) -> SmallScene {
     let mut blocks = vec![rectangle([-3.0, -0.4], [3.0, 0.0])];
     let (mut low, mut width, mut middle) = (0.0, numbers.between(0.5, 0.9), 0.0);

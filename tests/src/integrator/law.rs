@@ -5,9 +5,9 @@ use super::dual::Dual;
 /// Parameters of a contact point.
 #[derive(Debug, Clone, Copy)]
 pub struct PointLaw {
-    /// k_n, k_t times the tributary area \[N/m\].
+    /// k_n and k_t times the tributary area \[N/m\].
     pub stiffness: [f64; 2],
-    /// μ.
+    /// Coefficient of friction μ.
     pub friction: f64,
     /// Dilatancy: 0 for `coulomb`, μ for `coulomb_associated`.
     pub dilatancy: f64,
@@ -25,11 +25,11 @@ pub struct Memory {
 /// The mode of a contact point in a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mode {
-    /// No force.
+    /// The point has no force.
     Open,
-    /// It is elastic.
+    /// The point is elastic.
     Stuck,
-    /// Slides, with the sign of its shear force.
+    /// The point slides, with the sign of its shear force.
     Slides {
         /// True if r_t > 0.
         positive: bool,

@@ -1,20 +1,20 @@
-//! A second route for paths of rigid blocks with friction and finite displacements.
+//! An independent method for paths of rigid blocks with friction and finite displacements.
 //!
 //! It reads blocks, joints and loads from a case. It shares no mechanics, law or solver with the program. Joints have a
 //! normal and a shear stiffness (`coulomb`); gravity comes first, then point loads grow.
 //!
 //! **Unknowns.** The displacement u of each centre of mass, the rotation θ of each block, and λ.
 //!
-//! **Contact points.** Simpson's rule on equal parts of each joint gives places and areas A. A point is x⁻ on one block
-//! and x⁺ on the other. Its axes turn by θ⁻ + β (θ⁺ − θ⁻), and its gaps are
+//! **Contact points.** Simpson's rule on equal parts of each joint gives positions and areas A. A point is x⁻ on one
+//! block and x⁺ on the other. Its axes rotate by θ⁻ + β (θ⁺ − θ⁻), and its gaps are
 //!
 //! ```text
 //! g_n = n·(x⁺ − x⁻)     g_t = t·(x⁺ − x⁻)     Σ (∂g/∂q)ᵀ r + w + λ p = 0
 //! ```
 //!
-//! β is 0 or 1 if the nearer end of the joint is a corner of one block, and passes from ½ to 0 or 1 with the slip if both
+//! β is 0 or 1 if the nearer end of the joint is a corner of one block. It changes from ½ to 0 or 1 with slip if both
 //! blocks have a corner there. First derivatives are exact (dual numbers); the second derivatives in the tangent are
-//! differences.
+//! difference quotients.
 //!
 //! **Law.** An elastic spring with friction, integrated over a step in closed form ([`law`]):
 //!
@@ -22,15 +22,15 @@
 //! r* = −k A (g − s)     r_n = ⟨r_n*⟩     |r_t| = min(|r_t*|, μ r_n)     s changes if the minimum is μ r_n
 //! ```
 //!
-//! A point that closes in a step takes for s_t the gap of the instant at which it closes.
+//! For a point that closes in a step, s_t is the gap at the instant of closing.
 //!
 //! **Path.** Each step has a given length in the space of motions and load, and is solved by Newton's method with a
-//! line search ([`path`]). A step is halved if it differs from two half steps, if it turns, or if a contact point changes its
-//! mode in a step longer than 1e-5. Maxima of λ are found anew with shorter steps.
+//! line search ([`path`]). A step is halved if it differs from two half steps, if it changes direction, or if a contact
+//! point changes its mode in a step longer than 1e-5. Maxima of λ are computed again with shorter steps.
 //!
-//! **Corners.** If no short step goes on, all modes of the points at the edge of theirs are tried; a direction counts if a
-//! step confirms it. A direction that was possible before the corner is unloading and is left out. If several remain, the
-//! greatest dissipation chooses. The path is lost if none remains.
+//! **Corners.** If no short step continues the path, all modes of the points at the limit of their mode are tried; a
+//! direction counts if a step confirms it. A direction that was possible before the corner is unloading and is left
+//! out. If several remain, the direction of greatest dissipation is used. If none remains, the path is lost.
 
 pub mod balance;
 pub mod dual;

@@ -6,22 +6,22 @@ use super::scene::Scene;
 use nalgebra::{DMatrix, DVector};
 use std::collections::VecDeque;
 
-/// Largest unbalanced force, by the weight.
+/// Greatest unbalanced force, relative to the weight.
 const TOLERANCE: f64 = 1e-11;
-/// Iterations of a step.
+/// Greatest number of iterations of a step.
 const ITERATIONS: usize = 14;
-/// Steps shorter than this may turn.
+/// Step length below which a step may change direction.
 const TURNING_STEP: f64 = 2e-8;
-/// Cosine between two steps that need no second look.
+/// Cosine between two steps above which the step is accepted.
 const STRAIGHT: f64 = 0.98;
-/// The weight of the load in the length of a step: λ p of the size of the weight counts as this length.
+/// Weight of the load in the length of a step: if λ p has the size of the weight, it counts as this length.
 const LOAD_LENGTH: f64 = 0.01;
 /// Greatest difference between one step and two of half its length.
 const STEP_ERROR: f64 = 3e-10;
-/// Longest step in which a contact point takes another mode.
+/// Longest step in which a contact point may change its mode.
 const EVENT_STEP: f64 = 1e-5;
-/// Searches at a corner, one after the other: forces by the weight within which a point is at the edge of its mode, the
-/// length of the steps that confirm, the cosine between rate and step, and combinations of modes.
+/// Searches at a corner, tried in order: force relative to the weight within which a point is at the limit of its mode,
+/// length of the confirming steps, cosine between rate and step, and greatest number of combinations of modes.
 const SEARCHES: [Search; 3] = [
     Search { edge: 1e-5, length: 20.0 * TURNING_STEP, straight: 0.99, combinations: 400 },
     Search { edge: 1e-4, length: 200.0 * TURNING_STEP, straight: 0.95, combinations: 2000 },
@@ -29,7 +29,7 @@ const SEARCHES: [Search; 3] = [
 ];
 /// Least distance to the earlier state that identifies unloading.
 const LENGTH_BEHIND: f64 = 40.0 * TURNING_STEP;
-/// Steps of a path.
+/// Greatest number of steps of a path.
 const STEPS: usize = 12_000;
 
 /// A search for continuations at a corner.
@@ -54,7 +54,7 @@ pub struct State {
     pub mode: Vec<Mode>,
 }
 
-/// Why a path ended.
+/// The reason for the end of a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum End {
     /// The stage's factor was reached.
@@ -67,20 +67,20 @@ pub enum End {
     JointLost,
     /// No continuation was found.
     Lost,
-    /// Too many steps.
+    /// The number of steps is exhausted.
     Steps,
 }
 
 /// The result of a path.
 #[derive(Debug, Clone)]
 pub struct Found {
-    /// Local maxima of λ in order, and how far λ fell after each.
+    /// Local maxima of λ in order, each with the fall of λ after it.
     pub peaks: Vec<[f64; 2]>,
     /// Greatest λ of all states.
     pub greatest: f64,
     /// The reason for its end.
     pub end: End,
-    /// Steps taken.
+    /// Number of steps.
     pub steps: usize,
     /// Factors at which more than one continuation was found.
     pub forks: Vec<f64>,
@@ -122,7 +122,7 @@ impl Path<'_> {
         (at, load_rate(self.scene, &q, unit) * self.factor_unit())
     }
 
-    /// The bordered matrix of equilibrium and the row `c`.
+    /// Returns the bordered matrix of equilibrium and the row `c`.
     fn bordered(&self, at: &Balance, rate: &DVector<f64>, c: &DVector<f64>) -> DMatrix<f64> {
         let n = rate.len();
         DMatrix::from_fn(n + 1, n + 1, |i, j| match (i < n, j < n) {
@@ -132,7 +132,7 @@ impl Path<'_> {
         })
     }
 
-    /// The state at the distance `length` along `c` from `from`, searched from there along `c`.
+    /// Returns the state at the distance `length` along `c` from `from`, searched from the point at this distance.
     fn step(&self, from: &State, c: &DVector<f64>, length: f64) -> Option<(State, usize)> {
         let mut x = &from.x + c * length;
         let n = x.len() - 1;
@@ -169,7 +169,8 @@ impl Path<'_> {
         None
     }
 
-    /// Two steps of half the length, if they agree with one of the whole length. Very short steps are not compared.
+    /// Takes two steps of half the length if they agree with one step of the whole length. Very short steps are not
+    /// compared.
     fn checked_step(&self, from: &State, along: &DVector<f64>, length: f64) -> Option<(State, usize)> {
         let (whole, iterations) = self.step(from, along, length)?;
         if length <= TURNING_STEP {
@@ -183,7 +184,8 @@ impl Path<'_> {
         (self.apart(&end, &whole) <= STEP_ERROR).then_some((end, iterations))
     }
 
-    /// The greatest difference of two states: motions, scaled factor, slip of closed points by the size.
+    /// Returns the greatest difference of two states: motions, scaled factor, and slip of closed points relative to the
+    /// size.
     fn apart(&self, a: &State, b: &State) -> f64 {
         let slip = |k: usize| match a.mode[k] {
             Mode::Open => 0.0,
@@ -209,8 +211,8 @@ impl Path<'_> {
         (state, tangent.map_or(upwards, |t| t.normalize()))
     }
 
-    /// The directions in which equilibrium continues from a corner: rates for all modes of the
-    /// points at the edge of theirs, each confirmed by a step.
+    /// Returns the directions in which equilibrium continues from a corner: rates for all modes of the points at the
+    /// limit of their mode, each confirmed by a step.
     fn continuations(
         &self,
         (previous, state): (&State, &State),
@@ -254,7 +256,7 @@ impl Path<'_> {
         if moved.dot(&back) > 0.99 || self.existed_before(previous, &moved) {
             return;
         }
-        // If another event lies within the step, the next step is straight.
+        // If another event lies within the step, the next step must be straight.
         if moved.dot(direction) < search.straight {
             let second = self.step(&next, &moved, search.length);
             let goes_on = second.is_some_and(|(end, _)| (&end.x - &next.x).normalize().dot(&moved) > search.straight);
@@ -267,7 +269,7 @@ impl Path<'_> {
         }
     }
 
-    /// Returns true if a motion was possible at the state before: then it is unloading, and no continuation.
+    /// Returns true if a motion was possible at the state before: it is then unloading and not a continuation.
     fn existed_before(&self, previous: &State, moved: &DVector<f64>) -> bool {
         let step = self.step(previous, moved, 20.0 * TURNING_STEP);
         step.is_some_and(|(next, _)| (&next.x - &previous.x).normalize().dot(moved) > 0.999)
@@ -279,7 +281,7 @@ impl Path<'_> {
         (0..to.force.len()).filter(slides).map(shear).sum()
     }
 
-    /// Contact points at the edge of their mode, with the modes that they may take.
+    /// Returns the contact points at the limit of their mode, with the modes that they may have.
     fn edges(&self, state: &State, search: Search) -> Vec<(usize, Vec<Mode>)> {
         let small = search.edge * self.scene.weight;
         let mut all: Vec<(f64, usize, Vec<Mode>)> = Vec::new();
@@ -304,7 +306,8 @@ impl Path<'_> {
         all.into_iter().take_while(fits).map(|(_, index, modes)| (index, modes)).collect()
     }
 
-    /// The next state: a step along `along`, as long as it does not turn; at a corner one of the continuations.
+    /// Returns the next state: a step along `along` if it does not change direction; at a corner one of the
+    /// continuations.
     fn advance(&self, previous: &State, state: &State, along: &DVector<f64>, length: &mut f64) -> Option<Advance> {
         loop {
             if let Some((next, iterations)) = self.checked_step(state, along, *length) {
@@ -357,7 +360,7 @@ impl Path<'_> {
         (found.end == End::Target).then_some(found.last)
     }
 
-    /// Follows the load from a state (or from nothing).
+    /// Follows the load from a state, or from the unloaded scene.
     pub fn follow(&self, from: Option<&State>) -> Found {
         let (state, along) = self.start(from);
         let mut run = Run::new(state, along, self.longest);
@@ -420,7 +423,7 @@ impl Path<'_> {
         }
     }
 
-    /// Keeps the greatest load, and a maximum of λ once λ has fallen behind it, found anew by shorter steps.
+    /// Stores the greatest load. After λ has fallen, also stores its maximum, computed again with shorter steps.
     fn note_peak(&self, run: &mut Run, before: Position) {
         let [old, new] = [self.factor(&before.state), self.factor(&run.state)];
         if let Some(peak) = run.peaks.last_mut() {
@@ -439,7 +442,7 @@ impl Path<'_> {
         }
     }
 
-    /// The greatest load between a position and the next fall, by shorter and shorter steps.
+    /// Returns the greatest load between a position and the next fall, with shorter and shorter steps.
     fn refined(&self, mut from: Position) -> f64 {
         let mut top = self.factor(&from.state);
         for _ in 0..8 {
@@ -469,7 +472,7 @@ impl Path<'_> {
     }
 }
 
-/// A step that was taken.
+/// An accepted step.
 struct Advance {
     next: State,
     moved: DVector<f64>,
@@ -485,7 +488,7 @@ struct Position {
     length: f64,
 }
 
-/// A path while it is followed.
+/// The data of a path while it is followed.
 struct Run {
     /// The states since `previous`.
     trail: VecDeque<State>,

@@ -25,13 +25,13 @@ pub struct Block {
 pub struct Contact {
     /// Rows of the minus and the plus block; `None` for the ground.
     pub rows: [Option<usize>; 2],
-    /// The point seen from the centres of both blocks \[m\].
+    /// The point relative to the centres of both blocks \[m\].
     pub arms: [Point; 2],
     /// n and t.
     pub axes: [Point; 2],
     /// Its law.
     pub law: PointLaw,
-    /// β without slip, after negative and after positive slip.
+    /// β without slip, after negative slip and after positive slip.
     pub shares: [f64; 3],
     /// Slip at which β has changed \[m\]; 0 if β is constant.
     pub passing: f64,
@@ -46,7 +46,7 @@ pub struct Scene {
     pub blocks: Vec<Block>,
     /// Contact points.
     pub contacts: Vec<Contact>,
-    /// Diagonal of the box around everything \[m\].
+    /// Diagonal of the bounding box \[m\].
     pub size: f64,
     /// Total weight \[N\].
     pub weight: f64,
@@ -54,11 +54,12 @@ pub struct Scene {
     pub range: f64,
 }
 
-/// Share of a joint's height at which β has passed to a corner, and the share of that slip at which it begins.
+/// Slip at which β has reached a corner, as a share of the height of the joint, and the share of this slip at which the
+/// change begins.
 const PASSING: [f64; 2] = [0.05, 0.1];
 
 impl Scene {
-    /// Rigid blocks under gravity (stage 1) and growing point loads (stage 2), joints compliant.
+    /// Creates the scene: rigid blocks under gravity (stage 1) and growing point loads (stage 2), compliant joints.
     pub fn of_case(case: &Case) -> Scene {
         let assembly = &case.assembly;
         let gravity = case.stages[0].gravity.expect("the first stage is gravity");
@@ -87,7 +88,7 @@ impl Scene {
         Scene { blocks, contacts, size, weight, range }
     }
 
-    /// Displacement of the load along itself \[m\], in the motion `q`.
+    /// Returns the displacement of the load along itself \[m\] in the motion `q`.
     pub fn load_displacement(&self, q: &[f64]) -> f64 {
         let (mut work, mut size) = (0.0, 0.0f64);
         for (block, q) in self.blocks.iter().zip(q.chunks(3)) {
@@ -113,7 +114,7 @@ fn area_and_centre(vertices: &[Point]) -> (f64, Point) {
     (twice.abs() / 2.0, if twice == 0.0 { Point::zeros() } else { moment / (3.0 * twice) })
 }
 
-/// The contact points of a joint: Simpson's rule on each of the equal segments, with its weights.
+/// Returns the contact points of a joint: Simpson's rule on each of the equal segments, with its weights.
 fn contacts(
     assembly: &Assembly,
     joint: &Joint,
@@ -150,7 +151,7 @@ fn contacts(
     (0..=2 * parts).map(point).collect()
 }
 
-/// Both ends of the edge of a block on which a joint lies, along the joint \[m\].
+/// Returns both ends of the edge of a block that contains a joint, along the joint \[m\].
 fn face(vertices: &[Point], joint: &Joint, tolerance: f64) -> [f64; 2] {
     let along = joint.ends[1] - joint.ends[0];
     let t = along / along.norm();
@@ -164,10 +165,10 @@ fn face(vertices: &[Point], joint: &Joint, tolerance: f64) -> [f64; 2] {
     found.expect("the joint lies on an edge")
 }
 
-/// β (without slip, after negative, after positive slip), the slip that changes it, and the range of the slip.
+/// Returns β (without slip, after negative, after positive slip), the slip that changes it, and the range of the slip.
 ///
-/// A point belongs to the nearer end of its joint. An end that is a corner of one block belongs to that block; if it is
-/// a corner of both, it belongs to the corner that stays on the other's face after the slip.
+/// A point belongs to the nearer end of its joint. An end that is a corner of one block belongs to that block. If it is
+/// a corner of both, it belongs to the corner that stays on the other face after the slip.
 fn sliding_rule(faces: [[f64; 2]; 2], height: f64, index: usize, last: usize) -> ([f64; 3], f64, [f64; 2]) {
     let at = height * index as f64 / last as f64;
     let of_end = |end: usize| {
@@ -197,7 +198,7 @@ fn sliding_rule(faces: [[f64; 2]; 2], height: f64, index: usize, last: usize) ->
 }
 
 impl Contact {
-    /// (g_n, g_t) and their derivatives by (u⁻, θ⁻, u⁺, θ⁺).
+    /// Returns (g_n, g_t) and their derivatives with respect to (u⁻, θ⁻, u⁺, θ⁺).
     pub fn gap(&self, motions: [[f64; 3]; 2]) -> [Number; 2] {
         let [minus, plus] = [0, 1].map(|side| [0, 1, 2].map(|k| Number::variable(motions[side][k], 3 * side + k)));
         let place = |motion: [Number; 3], arm: Point| {
@@ -216,7 +217,7 @@ impl Contact {
         self.axes.map(|axis| component(angle, axis))
     }
 
-    /// β at a slip.
+    /// Returns β at a slip.
     fn share(&self, slip: Number) -> Number {
         if self.passing == 0.0 {
             return Number::constant(self.shares[0]);
@@ -234,13 +235,13 @@ impl Contact {
         self.range[0] <= slip && slip <= self.range[1]
     }
 
-    /// ∂r/∂g in a mode.
+    /// Returns ∂r/∂g in a mode.
     pub fn tangent(&self, mode: Mode) -> [[f64; 2]; 2] {
         self.law.tangent(mode)
     }
 }
 
-/// R(θ) v.
+/// Returns R(θ) v.
 fn rotated(angle: Number, v: Point) -> [Number; 2] {
     let (sine, cosine) = (angle.sin(), angle.cos());
     [cosine * v.x - sine * v.y, sine * v.x + cosine * v.y]
