@@ -36,6 +36,18 @@ pub enum Greatest {
     Failed(String),
 }
 
+/// The force of a joint at which a linear form of its N_0, N_1 and T is greatest over all admissible fields.
+#[derive(Debug, Clone, Copy)]
+pub enum Extreme {
+    /// The form has a greatest value, and this force has it.
+    Finite(JointForce),
+    /// The form grows without bound along this force, in any scale; of all such forces with the same normal force it has the
+    /// greatest form, or a greater one follows at the next form.
+    Ray(JointForce),
+    /// Not decided.
+    Failed,
+}
+
 /// Something that answers single optimisations over one problem's joints.
 pub trait Engine {
     /// Can these loads be carried?
@@ -57,6 +69,9 @@ pub trait Engine {
     fn greatest_if_carried(&mut self, _: &Wrenches, _: &Wrenches, _: f64) -> Option<(Vec<JointForce>, Greatest)> {
         None
     }
+
+    /// The greatest value of `form` over (N_0, N_1, T) of a joint, over all fields that carry these loads, which some field does.
+    fn extreme(&mut self, loads: &Wrenches, joint: usize, form: [f64; 3]) -> Extreme;
 
     /// Work done so far.
     fn counters(&self) -> Counters;

@@ -60,6 +60,11 @@ impl ForceVariables {
 
 /// What joint forces leave of loads on any group, and by how much they exceed a row or a stress block, as a share of the loads.
 pub fn field_error(problem: &LimitProblem, loads: &Wrenches, forces: &[JointForce]) -> f64 {
+    field_violation(problem, loads, forces) / problem.magnitude(loads).max(f64::MIN_POSITIVE)
+}
+
+/// The same in newtons.
+pub fn field_violation(problem: &LimitProblem, loads: &Wrenches, forces: &[JointForce]) -> f64 {
     let (mut left, mut worst) = (loads.clone(), 0.0f64);
     for (joint, force) in problem.joints.iter().zip(forces) {
         let components = [force.normal[0], force.normal[1], force.shear];
@@ -78,7 +83,7 @@ pub fn field_error(problem: &LimitProblem, loads: &Wrenches, forces: &[JointForc
         }
     }
     let unbalanced = left.iter().map(|w| w[0].abs().max(w[1].abs()).max(w[2].abs() / problem.length));
-    unbalanced.fold(worst, f64::max) / problem.magnitude(loads).max(f64::MIN_POSITIVE)
+    unbalanced.fold(worst, f64::max)
 }
 
 /// By how much a joint's forces exceed its stress block \[N\], at the end that is pressed less.

@@ -24,5 +24,9 @@ mod settlement;
 mod systems;
 #[cfg(test)]
 mod tests;
+mod thrust_zone;
+#[cfg(test)]
+mod zone_tests;
 
 pub use self::engine::{Engine, Equilibrium, Greatest};
+pub use self::thrust_zone::{thrust_zone, zone_costs_little};

@@ -90,3 +90,28 @@ pub fn lintel(span: f64, height: f64, crushing: f64) -> LimitProblem {
         non_associated: false,
     }
 }
+
+/// A ring of voussoirs between two radii over a half circle, of weight 1 N in all, with a live load of λ N on the voussoir
+/// at a quarter of the span.
+pub fn ring(voussoirs: usize, inner: f64, outer: f64, dry: Dry) -> LimitProblem {
+    let angle = |place: f64| std::f64::consts::PI * (1.0 - place / voussoirs as f64);
+    let at = |place: f64, radius: f64| [radius * angle(place).cos(), radius * angle(place).sin()];
+    let joint = |index: usize| {
+        let groups = (index.checked_sub(1), Some(index).filter(|index| *index < voussoirs));
+        dry.joint(index, groups, [at(index as f64, inner), at(index as f64, outer)])
+    };
+    let weight = 1.0 / voussoirs as f64;
+    let middle = |group: usize| at(group as f64 + 0.5, (inner + outer) / 2.0)[0];
+    let quarter = voussoirs / 4;
+    let load = |group: usize, force: f64| [0.0, -force, -force * middle(group)];
+    LimitProblem {
+        group_of: (0..voussoirs).map(Some).collect(),
+        groups: voussoirs,
+        joints: (0..=voussoirs).map(joint).collect(),
+        fixed: (0..voussoirs).map(|group| load(group, weight)).collect(),
+        varying: (0..voussoirs).map(|group| load(group, f64::from(u8::from(group == quarter)))).collect(),
+        pole: Vec2::zeros(),
+        length: 2.0 * outer,
+        non_associated: !dry.associated,
+    }
+}

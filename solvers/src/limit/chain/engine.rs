@@ -1,9 +1,9 @@
 //! The engine of `limit_chain`, to which `limit_conic` turns where its programs do not settle.
 
-use super::layout::{Forms, Redundants, Trees, trees};
+use super::layout::{Aim, Forms, Redundants, Trees, trees};
 use super::optimum::centre;
 use super::simplex::{Outcome, Program, Solved};
-use crate::limit::engine::{Engine, Equilibrium, Greatest};
+use crate::limit::engine::{Engine, Equilibrium, Extreme, Greatest};
 use crate::limit::scale::{force_scale, force_unit, with_unit_power};
 use crate::limit::settings::SETTINGS;
 use voussoir_core::limit::{Counters, JointForce, LimitProblem};
@@ -109,6 +109,25 @@ impl Engine for ChainEngine<'_> {
                 Greatest::Failed("no admissible field: the start is on the verge of collapse".into())
             }
             Outcome::Failed(why) => Greatest::Failed(why),
+        }
+    }
+
+    fn extreme(&mut self, loads: &Wrenches, joint: usize, form: [f64; 3]) -> Extreme {
+        let force = force_unit(self.problem, loads);
+        let mut forms = self.forms((loads, &[]), force);
+        match forms.aim_at(joint, form) {
+            Aim::Determined(forces) => {
+                let [n_0, n_1, shear] = forces.map(|component| component * force);
+                return Extreme::Finite(JointForce { normal: [n_0, n_1], shear });
+            }
+            Aim::Constant => return Extreme::Failed,
+            Aim::Last => {}
+        }
+        let program = Program::new(self.problem, &forms, force);
+        match self.run(&program) {
+            Outcome::Optimal(solved) => Extreme::Finite(program.forces(&solved.point)[joint]),
+            Outcome::Unbounded(direction) => Extreme::Ray(program.directions(&direction)[joint]),
+            Outcome::Infeasible(_) | Outcome::Failed(_) => Extreme::Failed,
         }
     }
 

@@ -3,6 +3,7 @@
 //! Each joint of the trees transmits what the loads behind it and the redundants of the closing joints make of it
 //! (force method; Livesley 1978). An arch is a tree of two branches that one joint closes: three redundants.
 
+use crate::limit::settings::SETTINGS;
 use nalgebra::Vector3;
 use std::collections::VecDeque;
 use voussoir_core::limit::{LimitJoint, LimitProblem};
@@ -138,6 +139,16 @@ impl Redundants {
     }
 }
 
+/// The result of [`Forms::aim_at`].
+pub enum Aim {
+    /// The last variable is the form.
+    Last,
+    /// The loads alone determine the joint's normal forces.
+    Determined([f64; 3]),
+    /// The form has the same value in all fields, other forms of the joint have not.
+    Constant,
+}
+
 /// (N_0, N_1, T) of every joint as affine forms of the variables, in units of the force scale.
 #[derive(Debug, Clone)]
 pub struct Forms {
@@ -173,6 +184,30 @@ impl Forms {
             });
         }
         Forms { variables, values }
+    }
+
+    /// Changes the variables so that the last one is a form over (N_0, N_1, T) of a joint.
+    pub fn aim_at(&mut self, joint: usize, form: [f64; 3]) -> Aim {
+        let (n, own) = (self.variables, self.of_joint(joint));
+        let is_zero = |row: &[f64]| row[..n].iter().all(|x| *x == 0.0);
+        if own.chunks_exact(n + 1).take(2).all(is_zero) {
+            return Aim::Determined(std::array::from_fn(|i| own[i * (n + 1) + n]));
+        }
+        let target: Vec<f64> = (0..=n).map(|k| (0..3).map(|i| form[i] * own[i * (n + 1) + k]).sum::<f64>()).collect();
+        let greatest = own.chunks_exact(n + 1).flat_map(|row| &row[..n]).fold(0.0f64, |most, x| most.max(x.abs()));
+        let Some(pivot) = (0..n).max_by(|&a, &b| target[a].abs().total_cmp(&target[b].abs())) else {
+            return Aim::Constant;
+        };
+        if target[pivot].abs() <= SETTINGS.negligible * greatest {
+            return Aim::Constant;
+        }
+        for row in self.values.chunks_exact_mut(n + 1) {
+            let share = row[pivot] / target[pivot];
+            row.iter_mut().zip(&target).for_each(|(own, target)| *own -= share * target);
+            row[pivot] = row[n - 1];
+            row[n - 1] = share;
+        }
+        Aim::Last
     }
 
     /// The form of N_0, N_1 or T of a joint, the constant last.

@@ -16,4 +16,5 @@ mod small_lu;
 mod solver;
 
 pub use self::engine::ChainEngine;
+pub use self::layout::trees;
 pub use self::solver::LimitChain;

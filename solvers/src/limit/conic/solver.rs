@@ -6,8 +6,8 @@ use super::system::{Loads, System};
 use super::tangents::by_tangents;
 use crate::limit::block_program::{self, Program, Solution, Solved};
 use crate::limit::chain::ChainEngine;
-use crate::limit::engine::{Engine, Equilibrium, Greatest};
-use crate::limit::equilibrium::field_error;
+use crate::limit::engine::{Engine, Equilibrium, Extreme, Greatest};
+use crate::limit::equilibrium::{field_error, field_violation};
 use crate::limit::question::answer_by;
 use crate::limit::scale::{combined, force_scale, force_unit, with_unit_power};
 use crate::limit::settings::SETTINGS;
@@ -373,6 +373,35 @@ impl Engine for ConicEngine<'_> {
                 self.unsolved = Some((fixed.clone(), varying.clone()));
                 None
             }
+        }
+    }
+
+    fn extreme(&mut self, loads: &Wrenches, joint: usize, form: [f64; 3]) -> Extreme {
+        let none: Wrenches = vec![[0.0; 3]; self.problem.groups];
+        let force = force_unit(self.problem, loads);
+        let held =
+            Loads { constant: Some(loads), varying: (&none, 1.0), free: None, cap: None, strengths: true, force };
+        let mut system = System::new(self.problem, &held);
+        system.aim_at(joint, form);
+        match self.optimum(&system) {
+            Optimum::Found { pair, .. } | Optimum::Unsettled(pair) => {
+                let field = system.forces(&pair.x);
+                if self.carries(loads, &field) { Extreme::Finite(field[joint]) } else { Extreme::Failed }
+            }
+            Optimum::Unbounded => {
+                let mut system = System::new(self.problem, &Loads { constant: None, strengths: false, ..held });
+                system.aim_at(joint, form);
+                system.press(joint);
+                let (Optimum::Found { pair, .. } | Optimum::Unsettled(pair)) = self.optimum(&system) else {
+                    return Extreme::Failed;
+                };
+                let ray = system.forces(&pair.x);
+                let size = |force: &JointForce| force.normal[0].abs().max(force.normal[1].abs());
+                let greatest = ray.iter().map(size).fold(0.0, f64::max);
+                let holds = field_violation(self.problem, &none, &ray) <= SETTINGS.carried * greatest;
+                if holds { Extreme::Ray(ray[joint]) } else { Extreme::Failed }
+            }
+            Optimum::Failed(_) => Extreme::Failed,
         }
     }
 

@@ -60,6 +60,7 @@ pub struct System {
 }
 
 /// What the system is made for.
+#[derive(Clone, Copy)]
 pub struct Loads<'a> {
     /// At factor one throughout.
     pub constant: Option<&'a Wrenches>,
@@ -152,6 +153,22 @@ impl System {
             rows.len() - 1
         });
         System { variables, theta, equations, right, rows, bounds, cap, blocks, forces, force, length }
+    }
+
+    /// Makes θ the value of a form over (N_0, N_1, T) of a joint. The loads must not vary with θ.
+    pub fn aim_at(&mut self, joint: usize, form: [f64; 3]) {
+        let (first, own) = self.forces.joints[joint];
+        let mut row: Row = (0..own).filter(|&k| form[k] != 0.0).map(|k| (first + k, form[k])).collect();
+        row.push((self.theta, -1.0));
+        self.equations.push(row);
+        self.right.push(0.0);
+    }
+
+    /// Makes the normal force of a joint one unit of force.
+    pub fn press(&mut self, joint: usize) {
+        let (first, _) = self.forces.joints[joint];
+        self.equations.push(vec![(first, 1.0), (first + 1, 1.0)]);
+        self.right.push(1.0);
     }
 
     /// Joint forces \[N\].

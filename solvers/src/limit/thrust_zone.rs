@@ -1,0 +1,82 @@
+//! The zone of thrust: for each joint the interval of eccentricities M/N over all admissible fields under given loads.
+//!
+//! An end is the greatest ratio of two linear forms, s M / N with N > 0. It is found by Dinkelbach's method (1967): t is
+//! the end if the greatest s M − t N is zero. Otherwise the ratio at that optimum is the next t. The loads are fixed, so the
+//! flow of the joints does not matter.
+
+use super::chain::{self, ChainEngine};
+use super::conic;
+use super::engine::{Engine, Extreme};
+use crate::limit::settings::SETTINGS;
+use voussoir_core::limit::{JointForce, LimitJoint, LimitProblem};
+use voussoir_core::model::Wrenches;
+
+/// Ratios of one end, at most; five are usual.
+const MAX_RATIOS: usize = 50;
+
+/// Returns true if the zone of a problem costs little: few joints close its bodies to rings.
+pub fn zone_costs_little(problem: &LimitProblem) -> bool {
+    chain::trees(problem).is_some()
+}
+
+/// For each joint the least and the greatest eccentricity \[m\] from its middle, positive towards its second end. `None` for
+/// the fill, if the normal force may vanish before the eccentricity has an end, and if an end is not found.
+pub fn thrust_zone(problem: &LimitProblem, loads: &Wrenches) -> Vec<Option<[f64; 2]>> {
+    let mut engines: Vec<Box<dyn Engine + '_>> = Vec::new();
+    if let Some(chain) = ChainEngine::new(problem) {
+        engines.push(Box::new(chain));
+    }
+    engines.push(Box::new(conic::engine(problem)));
+    zone_by(problem, loads, engines)
+}
+
+/// The zone by these engines, each of which is asked for the ends that those before it do not find.
+pub(super) fn zone_by<'a>(
+    problem: &'a LimitProblem,
+    loads: &Wrenches,
+    mut engines: Vec<Box<dyn Engine + 'a>>,
+) -> Vec<Option<[f64; 2]>> {
+    let end = |engines: &mut [Box<dyn Engine + 'a>], joint: usize, sense: f64| {
+        engines.iter_mut().find_map(|engine| greatest_ratio(engine.as_mut(), loads, joint, sense))
+    };
+    let zone = |(index, joint): (usize, &LimitJoint)| {
+        if joint.fill.is_some() {
+            return None;
+        }
+        let least = end(&mut engines, index, -1.0)?;
+        let greatest = end(&mut engines, index, 1.0)?;
+        let height = (joint.ends[1] - joint.ends[0]).norm();
+        // Where only one field exists, both ends are the same but for rounding.
+        let ends = [-least * height, greatest * height];
+        Some([ends[0].min(ends[1]), ends[0].max(ends[1])])
+    };
+    problem.joints.iter().enumerate().map(zone).collect()
+}
+
+/// The greatest s M / (N h) of a joint over all admissible fields.
+fn greatest_ratio(engine: &mut dyn Engine, loads: &Wrenches, joint: usize, sense: f64) -> Option<f64> {
+    // N_0 or N_1, of which the greatest is positive if anything presses.
+    let (mut ratio, mut reached) = (-0.5, false);
+    for _ in 0..MAX_RATIOS {
+        let form = [-sense / 2.0 - ratio, sense / 2.0 - ratio, 0.0];
+        let force = match engine.extreme(loads, joint, form) {
+            Extreme::Finite(force) | Extreme::Ray(force) => force,
+            Extreme::Failed => return None,
+        };
+        let next = ratio_of(force, sense)?;
+        // A ray has its ratio in the limit alone: at that ratio all fields may lie below it.
+        if reached && next <= ratio + SETTINGS.balanced {
+            return Some(next.max(ratio));
+        }
+        (ratio, reached) = (next, true);
+    }
+    None
+}
+
+/// s M / (N h) of a force; `None` if nothing presses.
+fn ratio_of(force: JointForce, sense: f64) -> Option<f64> {
+    let [n_0, n_1] = force.normal;
+    let normal = n_0 + n_1;
+    let size = n_0.abs().max(n_1.abs());
+    (normal > SETTINGS.active * size).then(|| sense * (n_1 - n_0) / (2.0 * normal))
+}
