@@ -189,6 +189,7 @@ pub fn named_by_writers(path: &Path) -> Vec<String> {
         "results.parquet",
         "curve.csv",
         "comparison.csv",
+        "joints.csv",
         "sensitivities.csv",
         "report.html",
         PATH_PROOFS,

@@ -4,12 +4,15 @@
 use crate::config::common_keys::{common_parameters, common_words, word_for};
 use crate::config::diagnostic::{LocatedDiagnostic, any_of, suggest};
 use crate::config::document::{Node, Table, Value, parse_value};
+use crate::config::documented_vehicles;
 use crate::config::dotted_key::join;
 use crate::config::gravity::gravity_of;
 use crate::config::origin::Origin;
 use crate::config::shape_words::{any_shape, describe, fits};
 use serde_json::{Map, Value as Json};
-use voussoir_core::plugin::{Card, Need, Parameter, PluginKind, Quantity, Shape, Variant, candidate, candidates, card};
+use voussoir_core::plugin::{
+    Card, Need, Parameter, PluginKind, Quantity, Shape, Variant, candidate, candidates, card, nearest,
+};
 
 /// A key that another plug-in of the same kind knows, but the chosen one does not.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -34,7 +37,7 @@ fn unknown_tag(tag: &str, tags: &[&str], what: &str) -> (String, String) {
         return (message, help);
     }
     let mut help = suggest(tag, tags, "choices");
-    if is_plugin && voussoir_core::plugin::nearest(tag, tags.iter().copied()).is_none() {
+    if is_plugin && nearest(tag, tags.iter().copied()).is_none() {
         help += "; one of another crate is there only in a program that names that crate (docs/adding_a_law.md)";
     }
     (format!("there is no {what} \"{tag}\""), help)
@@ -168,7 +171,12 @@ impl<'a> Checker<'a> {
         let entries = self.root.table().and_then(|root| root.get(table)?.table());
         let names: Vec<&str> = entries.map(|entries| entries.keys().collect()).unwrap_or_default();
         if !names.contains(&text) {
-            let help = suggest(text, &names, &format!("entries of [{table}]"));
+            let documented = if table == "vehicles" { documented_vehicles::names() } else { Vec::new() };
+            let all = names.iter().copied().chain(documented.iter().map(String::as_str));
+            let help = match nearest(text, all) {
+                Some(name) => format!("did you mean \"{name}\"?"),
+                None => suggest(text, &names, &format!("entries of [{table}]")),
+            };
             let message = format!("there is no [{table}.{text}] in this study");
             return self.wrong_with_help(&node.origin, key, message, help);
         }

@@ -12,6 +12,7 @@ pub mod common_keys;
 pub mod default_table;
 pub mod diagnostic;
 pub mod document;
+pub mod documented_vehicles;
 pub mod dotted_key;
 pub mod expand;
 pub mod gravity;

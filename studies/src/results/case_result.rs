@@ -1,5 +1,6 @@
 //! The result of a case, as it stands in `results.json`.
 
+use super::carried::CarriedLoad;
 use super::entries::{
     DisplacementEntry, EventEntry, FieldEntry, FillEntry, LoadEntry, MotionEntry, StateEntry, YieldedEntry,
 };
@@ -214,6 +215,9 @@ pub struct CaseResult {
     /// On bridges, what stands on which block.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub loads: Vec<LoadEntry>,
+    /// What is said of a load that is carried.
+    #[serde(flatten)]
+    pub carried: CarriedLoad,
     /// The states and witnesses that prove the end of its path, if they are stored. They are not in results.json.
     #[serde(skip)]
     pub stored_path: Option<Arc<StoredPath>>,
@@ -252,6 +256,7 @@ impl CaseResult {
     pub fn leave_out_fields(&mut self) {
         let ray = self.proof.ray.take().filter(|_| self.status == Status::NoEquilibrium);
         self.proof = ProofFields { field_factor: self.proof.field_factor, ray, ..ProofFields::default() };
+        self.carried.joints.clear();
         self.non_associated.associated_motion = None;
         self.non_associated.lower_proof.iter_mut().for_each(|proof| proof.steps.clear());
         (self.path.displacements, self.path.joint_states) = (None, None);
@@ -292,6 +297,7 @@ impl CaseResult {
             sensitivities: Vec::new(),
             partial_factors: None,
             loads: Vec::new(),
+            carried: CarriedLoad::default(),
             stored_path: None,
         }
     }

@@ -1,5 +1,6 @@
 //! Results: what is written of each case, of a study, and how forces and motions become entries.
 
+pub mod carried;
 mod case_result;
 pub mod case_with_path;
 mod comparison;

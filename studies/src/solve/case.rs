@@ -2,11 +2,13 @@
 
 use super::accuracy::{estimate, words};
 use super::auto::path_solvers;
+use super::carried::carried_load;
 use super::case_input::CaseInput;
 use super::observer::{Observer, PathProgress};
 use super::sensitivity::sensitivities;
 use super::statics::{falls_by_statics, stands_by_statics, stands_without_a_path};
 use super::{limit, path};
+use crate::results::carried::CarriedLoad;
 use crate::results::load_entries::load_entries;
 use crate::results::stored_path::StoredPath;
 use crate::results::{CaseLabel, CaseResult};
@@ -60,6 +62,7 @@ fn solve_observed(case: &Case, observer: &mut dyn PathObserver) -> CaseResult {
     let started = Instant::now();
     let mut result = caught(|| solve_input(&CaseInput::of(case), observer));
     add_label(case, &mut result);
+    add_carried(case, &mut result);
     if result.status != Status::Stalled && card(PluginKind::PathSolver, &result.solver).is_some() {
         let checked = catch_unwind(AssertUnwindSafe(|| verify_case(case, &result)));
         let wrong = checked.unwrap_or_else(|_| vec!["a panic ended its check".into()]);
@@ -97,6 +100,14 @@ fn add_label(case: &Case, result: &mut CaseResult) {
     result.partial_factors = case.resolved.get("factors").cloned();
 }
 
+/// Adds the description of a load that is carried.
+fn add_carried(case: &Case, result: &mut CaseResult) {
+    match catch_unwind(AssertUnwindSafe(|| carried_load(case, result))) {
+        Ok(carried) => result.carried = carried,
+        Err(_) => result.notes.push("a panic ended the search for the reserve and the zone of thrust".into()),
+    }
+}
+
 /// Leaves out the parts of a result that the study does not ask for.
 fn leave_out(case: &Case, result: &mut CaseResult) {
     if !case.output_curve {
@@ -115,6 +126,7 @@ pub(crate) fn proved_case(case: &Case, tag: &str, path: &StoredPath) -> Result<C
     let input = CaseInput { stored_numbers: 0, ..CaseInput::of(case) };
     let mut result = path::proved_by_stored_path(&input, tag, path)?;
     add_label(case, &mut result);
+    add_carried(case, &mut result);
     leave_out(case, &mut result);
     Ok(result)
 }
@@ -128,6 +140,7 @@ fn withdraw(result: &mut CaseResult, wrong: Vec<String>) {
     result.status = Status::Stalled;
     result.greatest = Greatest::Open;
     (result.load_factor, result.bounds, result.proved_by) = (None, None, None);
+    result.carried = CarriedLoad::default();
     if let Some(last) = result.stages.last_mut() {
         (last.status, last.factor) = (Status::Stalled, None);
     }

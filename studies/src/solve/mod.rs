@@ -6,6 +6,7 @@
 pub mod accuracy;
 pub(crate) mod associated_load;
 pub mod auto;
+pub(crate) mod carried;
 mod case;
 mod case_input;
 mod coarse_joints;

@@ -3,7 +3,7 @@
 use super::assemble::{assembly, catalogue};
 use super::diagnostics::DiagnosticList;
 use super::keys::{case_keys, study_keys};
-use super::model::{Case, SelectedSolver};
+use super::model::{Case, SelectedSolver, ZoneOfThrust};
 use super::numeric_keys::numeric_keys;
 use super::partial_factors::{check, design, multiply_loads, note_of_yielding};
 use super::plausibility::warnings;
@@ -59,11 +59,17 @@ pub(super) fn build_case(id: usize, expanded: Expanded, known: &KnownKeys<'_>) -
             let differentiated = output["sensitivities"] == true;
             let output_accuracy = output["accuracy"] == "estimate";
             let output_fields = output["fields"] != false;
+            let output_joints = output["joints"] != false;
+            let output_zone = match output["thrust_zone"].as_bool() {
+                Some(true) => ZoneOfThrust::Always,
+                None if parameters.is_empty() => ZoneOfThrust::Cheap,
+                _ => ZoneOfThrust::Never,
+            };
             let output_path_proofs = if output["path_proofs"] == true { usize::MAX } else { 0 };
             if !output_fields && output["vtu"] == true {
                 notes.push("output.vtu is not used: output.fields = false leaves nothing to write there".into());
             }
-            notes.extend(warnings(&resolved, &assembly));
+            notes.extend(warnings(&resolved, &assembly, &stages));
             note_of_yielding(&assembly, &resolved, &mut notes);
             let numbers = || numeric_keys(study_keys(), &resolved.to_json(), LONGEST);
             let output_sensitivities = if differentiated { numbers() } else { Vec::new() };
@@ -80,6 +86,8 @@ pub(super) fn build_case(id: usize, expanded: Expanded, known: &KnownKeys<'_>) -
                 output_states,
                 output_sensitivities,
                 output_accuracy,
+                output_joints,
+                output_zone,
                 output_fields,
                 output_path_proofs,
                 notes,

@@ -139,6 +139,18 @@ static OUTPUT_KEYS: &[Parameter] = &[
         "the forces and motions that prove each answer; false: they are checked and not kept, and drawings show the scene alone",
     ),
     key(
+        "joints",
+        Shape::Boolean,
+        Need::Default("true"),
+        "of a load that is carried: forces and stresses of each joint, the reserve to collapse, the permissible limit state",
+    ),
+    key(
+        "thrust_zone",
+        Shape::Boolean,
+        Need::Optional("if few joints close the blocks to rings and nothing is swept"),
+        "of a load that is carried: the interval of eccentricities of each joint over all admissible fields",
+    ),
+    key(
         "path_proofs",
         Shape::Boolean,
         Need::Optional("paths of up to 200,000 numbers of studies of up to 20 cases"),

@@ -61,6 +61,10 @@ pub struct Case {
     pub output_sensitivities: Vec<NumericKey>,
     /// Whether the error of the load factor is estimated.
     pub output_accuracy: bool,
+    /// True if results describe a load that is carried: forces of joints, reserve.
+    pub output_joints: bool,
+    /// For which of these loads results have the zone of thrust.
+    pub output_zone: ZoneOfThrust,
     /// Whether results keep the forces and motions that prove them.
     pub output_fields: bool,
     /// Most numbers in the states of a path for which they are kept with the witnesses that prove its end; 0 keeps none.
@@ -88,6 +92,18 @@ impl Case {
         self.resolved.add_hashes(&mut hash);
         hash.text()
     }
+}
+
+/// For which loads that are carried a result has the zone of thrust.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum ZoneOfThrust {
+    /// For none.
+    #[default]
+    Never,
+    /// For scenes whose zone costs little.
+    Cheap,
+    /// For all.
+    Always,
 }
 
 /// Which cases of a study are drawn, in figures and in the report.

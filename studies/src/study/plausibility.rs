@@ -3,12 +3,14 @@
 use super::resolved::Resolved;
 use serde_json::Value as Json;
 use voussoir_core::model::geometry::{Vec2, bounding_box};
-use voussoir_core::model::{Assembly, Body, root};
+use voussoir_core::model::{Assembly, Body, Joint, Stage, Target, root};
 
 /// Densities of masonry and its fills \[kg/m³\].
 const DENSITIES: [f64; 2] = [1000.0, 3500.0];
 /// Friction from which it is doubted: an angle of 56°.
 const FRICTION: f64 = 1.5;
+/// Angle of friction of a fill below which it is doubted \[°\].
+const FILL_FRICTION: f64 = 2.0;
 /// Share of the scene's size below which an opening between blocks is doubted.
 const GAP: f64 = 1e-3;
 /// Sine of the angle between edges that face each other, at most.
@@ -17,12 +19,14 @@ const SLANT: f64 = 0.05;
 const LISTED: usize = 3;
 
 /// What is hardly meant in a case, from its checked study and its scene.
-pub(super) fn warnings(resolved: &Resolved, assembly: &Assembly) -> Vec<String> {
+pub(super) fn warnings(resolved: &Resolved, assembly: &Assembly, stages: &[Stage]) -> Vec<String> {
     let mut found = Vec::new();
     densities(assembly, &mut found);
     if let Some(fill) = resolved.get("scene").map(|scene| &scene["fill"]) {
         densities_of_fill(fill, &mut found);
+        frictions_of_fill(fill, &mut found);
     }
+    stages.iter().enumerate().for_each(|(index, stage)| doubted_stage(index, stage, assembly, &mut found));
     for (name, law) in resolved.get("joints").and_then(Json::as_object).into_iter().flatten() {
         if let Some(friction) = law["friction"].as_f64().filter(|friction| *friction > FRICTION) {
             found.push(format!(
@@ -61,6 +65,49 @@ fn densities_of_fill(fill: &Json, found: &mut Vec<String>) {
     let layers = layers.map(|(i, layer)| (format!("layers.{i}.density"), &layer["density"]));
     let given = own.into_iter().chain(layers).filter_map(|(key, value)| Some((key, value.as_f64()?)));
     found.extend(given.filter_map(|(key, density)| doubted(&format!("scene.fill.{key}"), density)));
+}
+
+/// Angles of friction of a fill that are so small that they may be radians or coefficients.
+fn frictions_of_fill(fill: &Json, found: &mut Vec<String>) {
+    let layers = fill["layers"].as_array().into_iter().flatten().enumerate();
+    let layers = layers.map(|(i, layer)| (format!("layers.{i}.friction_angle"), &layer["friction_angle"]));
+    let all = [("friction_angle".to_string(), &fill["friction_angle"])].into_iter().chain(layers);
+    for (key, angle) in all.filter_map(|(key, value)| Some((key, value.as_f64()?))) {
+        if (0.0..FILL_FRICTION).contains(&angle) && angle > 0.0 {
+            found.push(format!(
+                "scene.fill.{key} = {angle}° is less than {FILL_FRICTION}°; the angle of a fill is given in degrees"
+            ));
+        }
+    }
+}
+
+/// Loads that point upwards, and supports of arches that move further than the ring is thick.
+fn doubted_stage(index: usize, stage: &Stage, assembly: &Assembly, found: &mut Vec<String>) {
+    let sense = match stage.target {
+        Target::Factor(factor) => factor,
+        Target::Collapse => 1.0,
+    };
+    let upwards = sense * stage.forces.iter().map(|force| force.force.y).sum::<f64>();
+    let size: f64 = stage.forces.iter().map(|force| force.force.norm()).sum();
+    if upwards > 1e-9 * size {
+        found.push(format!(
+            "stages.{index}.loads: the resultant of stage \"{}\" points upwards; y is positive upwards",
+            stage.name
+        ));
+    }
+    if assembly.arch.is_none() && assembly.bridge.is_none() {
+        return;
+    }
+    let thickness = assembly.joints.iter().map(Joint::height).fold(0.0, f64::max);
+    for (number, settlement) in stage.settlements.iter().enumerate() {
+        let moved = settlement.displacement.norm();
+        if moved > thickness {
+            found.push(format!(
+                "stages.{index}.settlement.{number}: \"{}\" moves by {moved} m, more than the thickness of {thickness:.3} m",
+                assembly.bodies[settlement.body].name
+            ));
+        }
+    }
 }
 
 /// What is said of a density that masonry and its fill hardly have; what is weightless is meant.

@@ -1,10 +1,10 @@
 //! The text of a study file, read and with the `--set KEY=VALUE` of the command line in it.
 
-use super::documented_vehicles;
 use super::error::StudyError;
 use super::survey::{ReadFile, import, no_files};
 use crate::config::diagnostic::LocatedDiagnostic;
 use crate::config::document::{Node, Value, from_json, parse, parse_value};
+use crate::config::documented_vehicles;
 use crate::config::names::check_texts;
 use crate::config::origin::Origin;
 use crate::config::overlay::set;

@@ -3,7 +3,7 @@
 use super::findings::Findings;
 use super::fit::misfits;
 use super::tolerances::GEOMETRY;
-use super::{limit, path};
+use super::{carried, limit, path};
 use crate::results::load_entries::load_entries;
 use crate::results::{CaseResult, LoadEntry};
 use crate::study::Case;
@@ -41,6 +41,7 @@ fn recompute(case: &Case, result: &CaseResult, findings: &mut Findings) -> Resul
     if !case.output_fields && result.has_no_fields() {
         return Ok(());
     }
+    carried::verify(case, result, findings)?;
     match card(PluginKind::PathSolver, &result.solver) {
         Some(_) => path::verify(case, result, findings),
         None => limit::verify(case, result, last, findings),

@@ -122,6 +122,20 @@ impl Fit<'_> {
             self.length("thrust_line", line.len(), self.case.assembly.joints.len());
             self.numbers("thrust_line", line.iter().flatten().flatten().copied());
         }
+        for entry in &result.carried.joints {
+            self.between("joints", entry.joint, &entry.between);
+            let forces = [entry.normal, entry.shear, entry.moment, entry.contact_length];
+            let others = [entry.eccentricity, entry.greatest_stress, entry.sliding_reserve].into_iter().flatten();
+            let block = entry.block.iter().flat_map(|block| [block.length, block.stress, block.strength]);
+            self.numbers(
+                "joints",
+                forces.into_iter().chain(others).chain(block).chain(entry.zone.into_iter().flatten()),
+            );
+        }
+        if let Some(reserve) = &result.carried.reserve {
+            let bounds = reserve.bounds.into_iter().flatten().flatten();
+            self.numbers("reserve", bounds.chain(reserve.factor).chain([reserve.target]));
+        }
         if let Some(lower) = &result.non_associated.lower_proof {
             let count = lower.steps.len();
             self.expect(count <= MAX_STEPS, || format!("lower_proof: {count} steps, more than {MAX_STEPS}"));

@@ -7,7 +7,7 @@ use super::curves::same_curve;
 use super::events;
 use super::repeat::{differs, listed, pairs};
 use super::tolerances::{
-    BEYOND, DERIVATIVE, ESTIMATE, FACTOR, FREE, GEOMETRY, PEAK, RATE, Route, SEARCHED, STATE, Tolerance,
+    BEYOND, DERIVATIVE, ESTIMATE, FACTOR, FREE, GEOMETRY, PEAK, RATE, Route, SEARCHED, STATE, Tolerance, ZONE,
 };
 use serde_json::Value as Json;
 use std::collections::HashMap;
@@ -109,6 +109,8 @@ impl<'a> Comparison<'a> {
             "field" | "ray" | "motion" | "thrust_line" if proved => Rule::Proved,
             "stages" if proved && leaf == "hinges" => Rule::Any,
             "fill" if proved && leaf == "force" => Rule::Proved,
+            "joints" if leaf == "zone" => within(&ZONE),
+            "joints" if self.fields => Rule::Proved,
             "certificate" => Rule::Gate,
             "curve" => Rule::Curve,
             "events" => Rule::Events,

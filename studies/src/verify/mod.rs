@@ -7,6 +7,7 @@
 //! and the version are not compared.
 
 mod agreement;
+mod carried;
 pub mod case;
 mod curves;
 mod events;

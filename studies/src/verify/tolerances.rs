@@ -131,6 +131,13 @@ pub const DERIVATIVE: Tolerance = row(
     "the number itself",
     "differences of data over a step of 1e-6",
 );
+/// Zones of thrust.
+pub const ZONE: Tolerance = row(
+    "`zone` of `joints`",
+    [Some(1e-8), Some(1e-8), Some(1e-8)],
+    GREATEST,
+    "the optimum of a linear program has the tolerance of certificates; a ratio of two forces loses one digit",
+);
 /// Values that a search has chosen.
 pub const SEARCHED: Tolerance = row(
     "`parameters` of cases that `optimise` and `envelope` make; the case is then solved again at the stored values",
@@ -140,8 +147,8 @@ pub const SEARCHED: Tolerance = row(
 );
 
 /// All tolerances, in the order of docs/theory/verifying.md.
-pub const TOLERANCES: [&Tolerance; 10] =
-    [&GEOMETRY, &FACTOR, &STATE, &RATE, &PEAK, &CURVE, &BEYOND, &ESTIMATE, &DERIVATIVE, &SEARCHED];
+pub const TOLERANCES: [&Tolerance; 11] =
+    [&GEOMETRY, &FACTOR, &STATE, &RATE, &PEAK, &CURVE, &BEYOND, &ESTIMATE, &DERIVATIVE, &ZONE, &SEARCHED];
 
 /// Keys of a case that are not compared with a second run: they measure effort, are free words, or depend on rounding.
 pub const FREE: [&str; 6] = ["counters", "seconds", "notes", "certificate.failures", "end_is_checked", "end_proof"];

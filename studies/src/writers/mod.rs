@@ -10,6 +10,7 @@ pub mod csv;
 pub mod csv_table;
 pub mod curve_csv;
 pub mod figures;
+pub mod joints_csv;
 mod limit_points;
 mod links;
 pub(crate) mod live;

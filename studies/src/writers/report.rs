@@ -6,10 +6,10 @@ use super::live::case_data;
 use super::page;
 use super::record::record;
 use super::register::register;
-use super::sensitivities_csv;
 use super::study_output::StudyOutput;
 use super::table::{distinct_notes, id_list};
 use super::writer::Writer;
+use super::{joints_csv, sensitivities_csv};
 use crate::figures::envelope::envelope_chart;
 use crate::figures::format::{
     escape, format_force, format_number, format_seconds, format_short, format_value, headline, hinge_list, kind_words,
@@ -77,6 +77,7 @@ pub fn report_html(study: &StudyOutput, drawn: usize) -> String {
     if study.output.figures.anything() {
         body += &figures(study, drawn);
     }
+    body += &joints_csv::section(study);
     body += &sensitivities_csv::table(study);
     body += &paths(study, drawn);
     body += &certificates(cases);

@@ -1,6 +1,7 @@
 //! Studies and results as files: read back unchanged, and every changed number found.
 
 mod figures;
+mod forged_carried;
 mod forged_claims;
 mod forged_estimates;
 mod forged_tables;

@@ -5,6 +5,7 @@ mod arch;
 mod bridge;
 mod bridge_envelope;
 mod cap;
+mod carried;
 mod cohesive;
 mod compare;
 mod contact;

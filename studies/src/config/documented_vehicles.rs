@@ -1,18 +1,38 @@
 //! Vehicles of published rules that a study may name without giving their axles.
 
-use crate::config::document::{Entry, Node, Table, Value, parse};
+use super::document::{Entry, Node, Table, Value, parse};
 
 /// The vehicles, with their sources.
 const LIBRARY: &str = include_str!("../loads/documented_vehicles.toml");
 
+/// The table of the library; empty if it cannot be read, which a test forbids.
+fn library() -> Table {
+    match parse(LIBRARY, "documented_vehicles.toml").map(|library| library.value) {
+        Ok(Value::Table(library)) => library,
+        _ => Table::default(),
+    }
+}
+
+/// Names of all documented vehicles.
+pub fn names() -> Vec<String> {
+    library().entries.into_iter().map(|entry| entry.key).collect()
+}
+
+/// The lines of the library about a vehicle.
+pub fn lines_of(name: &str) -> Option<String> {
+    let heading = format!("[{name}]");
+    let mut lines = LIBRARY.lines().skip_while(|line| *line != heading);
+    let first = lines.next()?;
+    let own = lines.take_while(|line| !line.starts_with(['[', '#']));
+    Some(std::iter::once(first).chain(own).map(|line| format!("{line}\n")).collect())
+}
+
 /// Adds to `[vehicles]` those documented ones that the study names and does not give itself: then its resolved file has
 /// every axle.
 pub fn add(root: &mut Node) {
-    let Ok(library) = parse(LIBRARY, "documented_vehicles.toml") else { return };
-    let Value::Table(library) = library.value else { return };
     let mut named = Vec::new();
     texts(root, &mut named);
-    let entries: Vec<Entry> = library.entries.into_iter().filter(|entry| named.contains(&entry.key)).collect();
+    let entries: Vec<Entry> = library().entries.into_iter().filter(|entry| named.contains(&entry.key)).collect();
     let Value::Table(study) = &mut root.value else { return };
     if entries.is_empty() {
         return;

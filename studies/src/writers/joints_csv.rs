@@ -1,0 +1,185 @@
+//! Loads that are carried: `joints.csv` with the forces of all joints, and a section of the report.
+
+use super::csv_table::csv_table;
+use super::page;
+use super::register::register;
+use super::study_output::StudyOutput;
+use super::writer::Writer;
+use crate::figures::format::{escape, format_force, format_length, format_number, status_word};
+use crate::results::CaseResult;
+use crate::results::carried::{JointEntry, PermissibleEntry, ReserveEntry, ReserveFlow};
+use serde_json::Value as Json;
+
+/// Joints of a case in the report; all are in the file.
+const ROWS: usize = 400;
+/// Cases whose joints are in the report.
+const CASES: usize = 10;
+
+/// Writes `joints.csv`.
+#[derive(Debug)]
+pub struct Joints;
+
+impl Writer for Joints {
+    fn files(&self, study: &StudyOutput, _options: &Json) -> Vec<(String, Vec<u8>)> {
+        let cases = &study.results.cases;
+        let rows: Vec<Vec<String>> =
+            cases.iter().flat_map(|case| case.carried.joints.iter().map(|entry| row(case, entry))).collect();
+        if rows.is_empty() {
+            return Vec::new();
+        }
+        let header = [
+            "id",
+            "variant",
+            "joint",
+            "minus",
+            "plus",
+            "normal [N]",
+            "shear [N]",
+            "moment [N m]",
+            "eccentricity [m]",
+            "contact_length [m]",
+            "greatest_stress [Pa]",
+            "block_length [m]",
+            "block_stress [Pa]",
+            "strength [Pa]",
+            "sliding_reserve",
+            "zone_least [m]",
+            "zone_greatest [m]",
+        ];
+        vec![("joints.csv".into(), csv_table(header.map(String::from).into(), rows.into_iter()).into_bytes())]
+    }
+}
+
+fn row(case: &CaseResult, entry: &JointEntry) -> Vec<String> {
+    let number = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
+    let block = |part: fn(&crate::results::carried::BlockEntry) -> f64| number(entry.block.as_ref().map(part));
+    let [minus, plus] = entry.between.clone();
+    vec![
+        case.label.id.to_string(),
+        case.label.variant.clone().unwrap_or_default(),
+        entry.joint.to_string(),
+        minus,
+        plus,
+        entry.normal.to_string(),
+        entry.shear.to_string(),
+        entry.moment.to_string(),
+        number(entry.eccentricity),
+        entry.contact_length.to_string(),
+        number(entry.greatest_stress),
+        block(|block| block.length),
+        block(|block| block.stress),
+        block(|block| block.strength),
+        number(entry.sliding_reserve),
+        number(entry.zone.map(|zone| zone[0])),
+        number(entry.zone.map(|zone| zone[1])),
+    ]
+}
+
+/// The reserve in a sentence.
+pub fn reserve_words(reserve: &ReserveEntry) -> String {
+    let flow = match reserve.flow {
+        ReserveFlow::Associated => "associated flow, as the laws have it",
+        ReserveFlow::ReadAsAssociated => "read with associated flow: an upper bound, because a law slides otherwise",
+    };
+    let carried = format!("carried factor {}", format_number(reserve.target, 6));
+    match reserve.factor {
+        Some(factor) => {
+            let end = |end: Option<f64>| end.map_or("–".into(), |end| format_number(end, 6));
+            let [lower, upper] = reserve.bounds.unwrap_or_default().map(end);
+            format!("{carried}; collapse at factor {} (bounds {lower} to {upper}; {flow})", format_number(factor, 6))
+        }
+        None => format!("{carried}; search for collapse: {} ({flow})", status_word(reserve.status)),
+    }
+}
+
+/// The check of the permissible limit state in a sentence.
+pub fn permissible_words(check: &PermissibleEntry) -> String {
+    let verdict = match check.holds {
+        Some(true) => "fulfilled",
+        Some(false) => "not fulfilled",
+        None => "not proved",
+    };
+    format!(
+        "permissible limit state {verdict}: the load uses {:.1} % of the collapse load; {}",
+        100.0 * check.used,
+        check.rule
+    )
+}
+
+/// The report's section; empty if no case has a load that is carried.
+pub(super) fn section(study: &StudyOutput) -> String {
+    let carried: Vec<&CaseResult> = study.results.cases.iter().filter(|case| !case.carried.is_empty()).collect();
+    if carried.is_empty() {
+        return String::new();
+    }
+    let mut text = String::from(
+        "<h2>Loads that are carried</h2>\n<p>N presses if it is positive. V acts on the second block, from end 0 to end 1 of the joint. \
+         The eccentricity e = M/N is positive towards end 1, on arches the extrados. Contact length and stress belong to a linear \
+         pressure without tension. The zone of thrust is the interval of e over all admissible fields.</p>\n",
+    );
+    for case in carried.iter().take(CASES) {
+        text += &format!("<h3>Case {}</h3>\n", case.label.id);
+        let words = case.carried.reserve.as_ref().map(reserve_words).into_iter();
+        for line in words.chain(case.carried.permissible.as_ref().map(permissible_words)) {
+            text += &format!("<p>{}</p>\n", escape(&line));
+        }
+        text += &joints(&case.carried.joints);
+    }
+    if carried.len() > CASES {
+        text += &format!("<p>The first {CASES} of {} cases; all are in joints.csv.</p>\n", carried.len());
+    }
+    text
+}
+
+fn joints(entries: &[JointEntry]) -> String {
+    if entries.is_empty() {
+        return String::new();
+    }
+    let crushes = entries.iter().any(|entry| entry.block.is_some());
+    let zones = entries.iter().any(|entry| entry.zone.is_some());
+    let mut header = vec!["joint", "between", "N", "V", "M", "e", "contact length", "greatest stress"];
+    header.extend(if crushes { &["block length", "block stress", "of strength"][..] } else { &[] });
+    header.push("sliding reserve");
+    header.extend(zones.then_some("zone of thrust"));
+    let length = |x: Option<f64>| x.map_or("–".into(), format_length);
+    let stress = |x: Option<f64>| x.map_or("–".into(), |x| format!("{} kPa", format_number(x / 1e3, 4)));
+    let rows = entries.iter().take(ROWS).map(|entry| {
+        let mut cells = vec![
+            entry.joint.to_string(),
+            entry.between.join(" – "),
+            format_force(entry.normal),
+            format_force(entry.shear),
+            format!("{} m", format_force(entry.moment)),
+            length(entry.eccentricity),
+            format_length(entry.contact_length),
+            stress(entry.greatest_stress),
+        ];
+        if crushes {
+            let share = entry.block.map(|block| format!("{:.1} %", 100.0 * block.stress / block.strength));
+            cells.extend([
+                length(entry.block.map(|block| block.length)),
+                stress(entry.block.map(|block| block.stress)),
+                share.unwrap_or("–".into()),
+            ]);
+        }
+        cells.push(entry.sliding_reserve.map_or("–".into(), |x| format_number(x, 4)));
+        if zones {
+            cells.push(entry.zone.map_or("–".into(), |[a, b]| format!("{} to {}", format_length(a), format_length(b))));
+        }
+        cells
+    });
+    let header: Vec<String> = header.into_iter().map(String::from).collect();
+    let more = match entries.len() {
+        count if count > ROWS => format!("<p>The first {ROWS} of {count} joints; all are in joints.csv.</p>\n"),
+        _ => String::new(),
+    };
+    page::table(&header, rows) + &more
+}
+
+register!(
+    "joints_csv",
+    Joints,
+    "joints.csv: forces, stresses and zones of thrust of joints under loads that are carried",
+    "# `joints_csv`\n\nWrites `joints.csv` if a case carries its loads: one row for each case and joint, with N, V, M, eccentricity, contact \
+     length, stresses, sliding reserve and zone of thrust.\n"
+);
