@@ -11,9 +11,6 @@ use crate::limit::settings::SETTINGS;
 use voussoir_core::limit::{JointForce, LimitJoint, LimitProblem};
 use voussoir_core::model::Wrenches;
 
-/// Ratios of one end, at most; five are usual.
-const MAX_RATIOS: usize = 50;
-
 /// Returns true if the zone of a problem costs little: few joints close its bodies to rings.
 pub fn zone_costs_little(problem: &LimitProblem) -> bool {
     chain::trees(problem).is_some()
@@ -46,7 +43,7 @@ pub(super) fn zone_by<'a>(
         let least = end(&mut engines, index, -1.0)?;
         let greatest = end(&mut engines, index, 1.0)?;
         let height = (joint.ends[1] - joint.ends[0]).norm();
-        // Where only one field exists, both ends are the same but for rounding.
+        // If only one field exists, both ends are the same but for rounding.
         let ends = [-least * height, greatest * height];
         Some([ends[0].min(ends[1]), ends[0].max(ends[1])])
     };
@@ -57,7 +54,8 @@ pub(super) fn zone_by<'a>(
 fn greatest_ratio(engine: &mut dyn Engine, loads: &Wrenches, joint: usize, sense: f64) -> Option<f64> {
     // N_0 or N_1, of which the greatest is positive if anything presses.
     let (mut ratio, mut reached) = (-0.5, false);
-    for _ in 0..MAX_RATIOS {
+    // Five ratios are usual.
+    for _ in 0..50 {
         let form = [-sense / 2.0 - ratio, sense / 2.0 - ratio, 0.0];
         let force = match engine.extreme(loads, joint, form) {
             Extreme::Finite(force) | Extreme::Ray(force) => force,

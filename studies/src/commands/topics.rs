@@ -1,5 +1,6 @@
 //! What `voussoir explain` knows besides plug-ins: words about studies, and every key of a study file.
 
+use crate::config::documented_vehicles;
 use crate::config::key_meaning::quantity_of;
 use crate::study::study_keys;
 use std::collections::BTreeSet;
@@ -18,6 +19,18 @@ const PAGES: [(&[&str], &str); 9] = [
     (&["units", "unit"], include_str!("topics/units.md")),
 ];
 
+/// The glossary, of whose tables each row explains the words of its first column.
+const GLOSSARY: &str = include_str!("../../../docs/reference/glossary.md");
+
+/// Words of the glossary with their meaning.
+fn glossary() -> impl Iterator<Item = (&'static str, &'static str)> {
+    let rows = GLOSSARY.lines().filter_map(|line| line.strip_prefix("| ")?.split_once(" | "));
+    let rows = rows.filter(|(words, _)| *words != "word");
+    rows.flat_map(|(words, meaning)| {
+        words.split(", ").map(move |word| (word.trim(), meaning.trim_end_matches([' ', '|'])))
+    })
+}
+
 /// Names of the pages and all words that `explain` knows besides tags.
 pub fn words() -> BTreeSet<String> {
     let mut words: BTreeSet<String> =
@@ -25,6 +38,8 @@ pub fn words() -> BTreeSet<String> {
     each_key(&mut |place| {
         words.insert(place.name().into());
     });
+    words.extend(glossary().map(|(word, _)| word.to_string()));
+    words.extend(documented_vehicles::names());
     words
 }
 
@@ -42,6 +57,12 @@ pub fn explain(word: &str) -> String {
             keys.push(line);
         }
     });
+    for (name, meaning) in glossary().filter(|(name, _)| *name == word) {
+        text += &format!("{name}: {meaning}\n");
+    }
+    if let Some(lines) = documented_vehicles::lines_of(word) {
+        text += &format!("a documented vehicle, which a study may name without an entry of [vehicles]:\n\n{lines}");
+    }
     if !keys.is_empty() {
         text += &format!("{}as a key of a study file:\n{}", if text.is_empty() { "" } else { "\n" }, keys.concat());
     }
@@ -159,5 +180,23 @@ fn walk_shape(path: &str, shape: &Shape, see: &mut dyn FnMut(&Place<'_>)) {
             }
         }
         _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use voussoir_core::plugin::nearest;
+
+    /// Words of the glossary and documented vehicles are explained, and suggested for words near them.
+    #[test]
+    fn glossary_and_vehicles_are_known() {
+        assert!(explain("extrados").contains("inner and outer line"), "{}", explain("extrados"));
+        assert!(explain("cs454_single").contains("axles = ["));
+        let words = words();
+        for (wrong, right) in [("extradso", "extrados"), ("cs454_singel", "cs454_single"), ("redundnats", "redundants")]
+        {
+            assert_eq!(nearest(wrong, words.iter().map(String::as_str)), Some(right));
+        }
     }
 }

@@ -9,6 +9,11 @@ pub fn field_entries(forces: &[ContactForce]) -> Vec<FieldEntry> {
     forces.iter().map(|c| FieldEntry { joint: c.joint, point: c.point.into(), force: c.force }).collect()
 }
 
+/// A contact force from its entry.
+pub fn contact_force(entry: &FieldEntry) -> ContactForce {
+    ContactForce { joint: entry.joint, point: entry.point.into(), force: entry.force }
+}
+
 /// Velocities of all bodies as they are written.
 pub fn motion_entries(assembly: &Assembly, motion: Vec<CentroidVelocity>) -> Vec<MotionEntry> {
     let name = |body: usize| assembly.bodies[body].name.clone();

@@ -145,10 +145,6 @@ impl Blocks {
                 let message = format!("\"{}\" is already the name of block {first} of the list", block.name);
                 diagnostics.push(Diagnostic::new(&key, message));
             }
-            if !block.fixed && matches!(block.name.as_str(), "left" | "right") {
-                let message = format!("\"{}\" is the name of a support, but this block is not fixed", block.name);
-                diagnostics.push(Diagnostic::new(&key, message));
-            }
         }
         let shapes = self.blocks.iter().enumerate().map(|(i, block)| {
             let wrong = |message| {
@@ -453,7 +449,6 @@ mod tests {
         assert_eq!(path(shape(json!([[0, 0], [1, 0], [2, 0]])), none()), "scene.blocks.1.vertices");
         assert_eq!(path(shape(json!([[0, 0], [1, 1], [1, 0], [0, 1]])), none()), "scene.blocks.1.vertices");
         assert_eq!(path(json!([ground(), a(), a()]), none()), "scene.blocks.2.name");
-        assert_eq!(path(json!([ground(), box_at("left", 0.0, 0.0)]), none()), "scene.blocks.1.name");
         assert_eq!(path(json!([a()]), none()), "scene.blocks");
         let pair = |one: &str, other: &str| json!({ "pairs": [{ "between": [one, other] }] });
         assert_eq!(path(json!([ground(), a()]), pair("a", "b")), "scene.pairs.0.between.1");

@@ -55,6 +55,9 @@ pub struct Wall {
     /// Rectangles cut out.
     #[serde(default)]
     pub openings: Vec<Opening>,
+    /// Places of the cuts between parts of the ground that may move on their own \[m\], ascending.
+    #[serde(default)]
+    pub ground_cuts: Vec<f64>,
     /// Mesh of deformable bricks.
     pub mesh: Option<Mesh>,
 }
@@ -126,6 +129,14 @@ impl Wall {
                 diagnostics.append(&mut wrong);
             }
         }
+        let end = right_end(&courses);
+        for (i, cut) in self.ground_cuts.iter().enumerate() {
+            let before = i.checked_sub(1).map_or(0.0, |before| self.ground_cuts[before]);
+            if !(*cut > before && *cut < end) {
+                let message = format!("{cut} m must lie between {before} m and the end of the wall at {end} m");
+                diagnostics.push(Diagnostic::new(format!("ground_cuts.{i}"), message));
+            }
+        }
         if diagnostics.is_empty() && courses.iter().all(|course| course.is_empty()) {
             diagnostics.push(Diagnostic::new("openings", "no brick is left"));
         }
@@ -193,6 +204,11 @@ fn course(row: &[f64], length: f64) -> Course {
     course
 }
 
+/// x of the right end of a wall \[m\].
+fn right_end(courses: &[Course]) -> f64 {
+    courses.iter().flatten().fold(0.0, |end: f64, brick| end.max(brick[1]))
+}
+
 fn rectangle(low: [f64; 2], high: [f64; 2]) -> Vec<Vec2> {
     vec![Vec2::new(low[0], low[1]), Vec2::new(high[0], low[1]), Vec2::new(high[0], high[1]), Vec2::new(low[0], high[1])]
 }
@@ -208,9 +224,17 @@ impl Scene for Wall {
             return Err(from_root(diagnostics));
         };
         let [length, height] = self.brick;
-        let end = courses.iter().flatten().fold(0.0, |end: f64, brick| end.max(brick[1]));
-        let ground = rectangle([-length, -height], [end + length, 0.0]);
-        let mut bodies = vec![Body { name: "ground".into(), vertices: ground, material, fixed: true }];
+        let sides: Vec<f64> = std::iter::once(-length)
+            .chain(self.ground_cuts.iter().copied())
+            .chain([right_end(&courses) + length])
+            .collect();
+        let ground = |(i, side): (usize, &[f64])| Body {
+            name: if self.ground_cuts.is_empty() { "ground".into() } else { format!("ground.{i}") },
+            vertices: rectangle([side[0], -height], [side[1], 0.0]),
+            material,
+            fixed: true,
+        };
+        let mut bodies: Vec<Body> = sides.windows(2).enumerate().map(ground).collect();
         for (i, course) in courses.iter().enumerate() {
             let (low, high) = (i as f64 * height, (i + 1) as f64 * height);
             for (j, &[start, end]) in course.iter().enumerate() {
@@ -269,6 +293,12 @@ const PARAMETERS: &[Parameter] = &[
         name: "openings",
         doc: "rectangles cut out, between bed joints",
         shape: Shape::List { of: &Shape::Table(OPENING), min: 0, max: usize::MAX },
+        need: Need::Default("[]"),
+    },
+    Parameter {
+        name: "ground_cuts",
+        doc: "x at which the ground is cut, ascending; its parts are supports \"ground.0\", \"ground.1\" and so on",
+        shape: Shape::List { of: &Shape::Number(Quantity::Length, Range::POSITIVE), min: 0, max: 100 },
         need: Need::Default("[]"),
     },
     MESH,
@@ -342,6 +372,17 @@ mod tests {
         }
     }
 
+    /// A cut under the middle of a brick gives it two joints with the ground; the parts do not touch each other in joints.
+    #[test]
+    fn a_wall_stands_on_several_grounds() {
+        let whole = wall(json!({ "courses": 2, "bricks": 4 })).unwrap();
+        let cut = wall(json!({ "courses": 2, "bricks": 4, "ground_cuts": [0.6, 0.8] })).unwrap();
+        let grounds: Vec<&str> = cut.bodies.iter().filter(|b| b.fixed).map(|b| b.name.as_str()).collect();
+        assert_eq!(grounds, ["ground.0", "ground.1", "ground.2"]);
+        assert_eq!(cut.joints.len(), whole.joints.len() + 1);
+        assert!(cut.joints.iter().all(|joint| !(cut.bodies[joint.minus].fixed && cut.bodies[joint.plus].fixed)));
+    }
+
     #[test]
     fn mistakes_are_refused_at_their_key() {
         let path = |extra| wall(extra).unwrap_err()[0].path.clone();
@@ -350,6 +391,8 @@ mod tests {
         assert_eq!(path(json!({ "rows": [[-1]] })), "scene.rows.0");
         assert_eq!(path(json!({ "rows": [[1]], "courses": 1 })), "scene.courses");
         assert_eq!(path(json!({ "courses": 2, "bricks": 2, "brick": [0.4, 0.0] })), "scene.brick.1");
+        assert_eq!(path(json!({ "courses": 2, "bricks": 2, "ground_cuts": [0.9] })), "scene.ground_cuts.0");
+        assert_eq!(path(json!({ "courses": 2, "bricks": 2, "ground_cuts": [0.5, 0.3] })), "scene.ground_cuts.1");
         let cut = |from: [f64; 2], to: [f64; 2]| json!({ "courses": 4, "bricks": 4, "openings": [{ "from": from, "to": to }] });
         assert_eq!(path(cut([0.4, 0.1], [0.8, 0.35])), "scene.openings.0.from.1");
         assert_eq!(path(cut([0.4, 0.35], [0.8, 0.175])), "scene.openings.0");

@@ -1,22 +1,23 @@
-//! What a result says of a load that is carried: forces of joints, zone of thrust, reserve, permissible limit state.
+//! The description of a load that is carried: forces of joints, zone of thrust, reserve, permissible limit state.
 
 use super::case_input::CaseInput;
 use super::limit::asked_of_solvers;
+use crate::results::CaseResult;
 use crate::results::carried::{CarriedLoad, ReserveEntry, ReserveFlow, joint_entries, permissible};
-use crate::results::{CaseResult, FieldEntry};
+use crate::results::convert::contact_force;
 use crate::study::{Case, SelectedSolver, ZoneOfThrust};
 use voussoir_core::certificate::ContactForce;
 use voussoir_core::limit::{LimitProblem, LimitQuestion, Status};
 use voussoir_core::model::{StageLoads, Target, stage_loads};
 use voussoir_solvers::limit::{thrust_zone, zone_costs_little};
 
-/// What a result says of its load, if the case stands and asks for it.
+/// The description of the load of a case that stands and asks for it.
 pub(crate) fn carried_load(case: &Case, result: &CaseResult) -> CarriedLoad {
     let last = case.stages.len() - 1;
     if !is_asked(case, result) {
         return CarriedLoad::default();
     }
-    let field: Vec<ContactForce> = result.proof.field.iter().flatten().map(contact).collect();
+    let field: Vec<ContactForce> = result.proof.field.iter().flatten().map(contact_force).collect();
     let mut carried = CarriedLoad { joints: joint_entries(&case.assembly, &field), ..CarriedLoad::default() };
     let loads = stage_loads(&case.assembly, &case.stages).swap_remove(last);
     let Ok(mut problem) = LimitProblem::new(&case.assembly, &loads) else { return carried };
@@ -38,11 +39,6 @@ pub(crate) fn carried_load(case: &Case, result: &CaseResult) -> CarriedLoad {
 /// Returns true if a result must describe its load.
 pub(crate) fn is_asked(case: &Case, result: &CaseResult) -> bool {
     case.output_joints && !case.brief && result.status == Status::Stands && result.certificate.passed
-}
-
-/// A contact force from its entry.
-pub(crate) fn contact(entry: &FieldEntry) -> ContactForce {
-    ContactForce { joint: entry.joint, point: entry.point.into(), force: entry.force }
 }
 
 /// Adds the interval of eccentricities to each joint, if it is asked for or costs little.

@@ -5,7 +5,7 @@
 
 use super::case_input::CaseInput;
 use super::limit_result::{body_velocities, contact_forces};
-use crate::results::convert::field_entries;
+use crate::results::convert::{contact_force, field_entries};
 use crate::results::thrust_line::thrust_line;
 use crate::results::{CaseResult, DisplacementEntry, ProofFields};
 use voussoir_core::certificate::{
@@ -41,6 +41,25 @@ fn openings(assembly: &Assembly, problem: &LimitProblem, supports: &[Option<Cent
         [apart[0].dot(&joint.normal), apart[1].dot(&joint.normal), slip]
     };
     problem.joints.iter().map(of).collect()
+}
+
+/// The motion of all blocks if all supports move as one body: the blocks go with them, and no joint moves.
+fn common_motion(assembly: &Assembly, supports: &[Option<CentroidVelocity>]) -> Option<Vec<CentroidVelocity>> {
+    let centroids = assembly.centroids();
+    let (first, own) = supports.iter().enumerate().find_map(|(body, own)| own.map(|own| (body, own)))?;
+    let at = |body: usize| {
+        let v = Vec2::new(own[0], own[1]) + turned(centroids[body] - centroids[first]) * own[2];
+        [v.x, v.y, own[2]]
+    };
+    let moved = own[0].hypot(own[1]) + own[2].abs() * assembly.size();
+    let same = |(body, held): (usize, &Option<CentroidVelocity>)| {
+        let Some(held) = held else { return true };
+        let expected = at(body);
+        let off = (0..3).map(|i| (held[i] - expected[i]).abs() * if i == 2 { assembly.size() } else { 1.0 });
+        off.fold(0.0, f64::max) <= RIGID * moved
+    };
+    let one = supports.iter().enumerate().all(same);
+    one.then(|| (0..supports.len()).map(|body| supports[body].unwrap_or_else(|| at(body))).collect())
 }
 
 /// What is asked of a solver.
@@ -112,20 +131,31 @@ fn followed(input: &CaseInput, index: usize, asked: Settling, result: &mut CaseR
         return Err("settlements of rigid blocks take no fill that presses: switch its resistance off".into());
     }
     let supports = support_motions(assembly, input.stages, index)?;
-    let sum = |(a, b): (&[f64; 3], &[f64; 3])| std::array::from_fn(|i| a[i] + asked.factor * b[i]);
-    let loads = problem.fixed.iter().zip(&problem.varying).map(sum).collect();
-    let answer = asked.solver.settle(problem, &loads, &openings(assembly, problem, &supports));
-    answer.check_form(problem)?;
-    let (field, motion, unique, flow) = match answer {
-        SettlementAnswer::Follows { field, motion, unique, flow } => (field, motion, unique, flow),
-        SettlementAnswer::Blocked(ray) => {
-            return blocked(input, asked, &contact_forces(problem, &ray), &supports, result).map(|()| Vec::new());
+    let (field, motion, unique, flow) = match common_motion(assembly, &supports).zip(result.proof.field.as_deref()) {
+        Some((motion, field)) => {
+            // Joints that do not move obey any flow.
+            let flow = if problem.non_associated { FlowRule::NonAssociated } else { FlowRule::Associated };
+            (field.iter().map(contact_force).collect::<Vec<_>>(), motion, None, flow)
         }
-        SettlementAnswer::Refused(why) => return Err(why),
+        None => {
+            let sum = |(a, b): (&[f64; 3], &[f64; 3])| std::array::from_fn(|i| a[i] + asked.factor * b[i]);
+            let loads = problem.fixed.iter().zip(&problem.varying).map(sum).collect();
+            let answer = asked.solver.settle(problem, &loads, &openings(assembly, problem, &supports));
+            answer.check_form(problem)?;
+            let (field, motion, unique, flow) = match answer {
+                SettlementAnswer::Follows { field, motion, unique, flow } => (field, motion, unique, flow),
+                SettlementAnswer::Blocked(ray) => {
+                    return blocked(input, asked, &contact_forces(problem, &ray), &supports, result)
+                        .map(|()| Vec::new());
+                }
+                SettlementAnswer::Refused(why) => return Err(why),
+            };
+            let free = body_velocities(assembly, problem, &motion);
+            let all = supports.iter().zip(free).map(|(held, free)| held.unwrap_or(free)).collect();
+            (contact_forces(problem, &field), all, unique, flow)
+        }
     };
-    let field = contact_forces(problem, &field);
-    let free = body_velocities(assembly, problem, &motion);
-    let motion: Vec<CentroidVelocity> = supports.iter().zip(free).map(|(held, free)| held.unwrap_or(free)).collect();
+    let motion: Vec<CentroidVelocity> = motion;
     let claim = Claim {
         hint: Status::Stands,
         target: asked.factor,

@@ -1,4 +1,4 @@
-//! What a result says of a load that is carried. The forces of joints follow from the stored field. The zone of thrust and the
+//! Checks the description of a load that is carried. The forces of joints follow from the stored field. The zone of thrust and the
 //! reserve must fit them; their numbers are those of solving again.
 
 use super::fields::{EQUAL, close, contacts};
@@ -23,11 +23,8 @@ pub(super) fn verify(case: &Case, result: &CaseResult, findings: &mut Findings) 
     findings.expect(same, "the forces of the joints are not those of the field");
     let inside = carried.joints.iter().all(|entry| zone_fits(case, entry));
     findings.expect(inside, "a zone of thrust does not contain the eccentricity of its joint");
-    match &carried.reserve {
-        Some(reserve) => {
-            findings.expect(asked && reserve_fits(case, reserve), "the reserve does not fit its stage and its bounds")
-        }
-        None => {}
+    if let Some(reserve) = &carried.reserve {
+        findings.expect(asked && reserve_fits(case, reserve), "the reserve does not fit its stage and its bounds");
     }
     let expected = carried.reserve.as_ref().and_then(|reserve| permissible(&case.assembly, reserve));
     findings.expect(carried.permissible == expected, "the permissible limit state does not follow from the reserve");

@@ -76,7 +76,7 @@ fn row(case: &CaseResult, entry: &JointEntry) -> Vec<String> {
 }
 
 /// The reserve in a sentence.
-pub fn reserve_words(reserve: &ReserveEntry) -> String {
+fn reserve_words(reserve: &ReserveEntry) -> String {
     let flow = match reserve.flow {
         ReserveFlow::Associated => "associated flow, as the laws have it",
         ReserveFlow::ReadAsAssociated => "read with associated flow: an upper bound, because a law slides otherwise",
@@ -93,7 +93,7 @@ pub fn reserve_words(reserve: &ReserveEntry) -> String {
 }
 
 /// The check of the permissible limit state in a sentence.
-pub fn permissible_words(check: &PermissibleEntry) -> String {
+fn permissible_words(check: &PermissibleEntry) -> String {
     let verdict = match check.holds {
         Some(true) => "fulfilled",
         Some(false) => "not fulfilled",
@@ -104,6 +104,28 @@ pub fn permissible_words(check: &PermissibleEntry) -> String {
         100.0 * check.used,
         check.rule
     )
+}
+
+/// A load that is carried in sentences: reserve, permissible limit state, the joints with the greatest stress and the least
+/// sliding reserve.
+pub(super) fn carried_lines(case: &CaseResult) -> Vec<String> {
+    let carried = &case.carried;
+    let mut lines: Vec<String> = carried.reserve.iter().map(reserve_words).collect();
+    lines.extend(carried.permissible.iter().map(permissible_words));
+    let name = |entry: &JointEntry| format!("joint {} ({})", entry.joint, entry.between.join(" – "));
+    let stressed = carried.joints.iter().filter_map(|entry| Some((entry.greatest_stress?, entry)));
+    if let Some((stress, entry)) = stressed.max_by(|a, b| a.0.total_cmp(&b.0)) {
+        lines.push(format!("greatest stress {} at {}", format_stress(stress), name(entry)));
+    }
+    let sliding = carried.joints.iter().filter_map(|entry| Some((entry.sliding_reserve?, entry)));
+    if let Some((reserve, entry)) = sliding.min_by(|a, b| a.0.total_cmp(&b.0)) {
+        lines.push(format!("least sliding reserve {} at {}", format_number(reserve, 4), name(entry)));
+    }
+    lines
+}
+
+fn format_stress(pascals: f64) -> String {
+    format!("{} kPa", format_number(pascals / 1e3, 4))
 }
 
 /// The report's section; empty if no case has a load that is carried.
@@ -119,8 +141,7 @@ pub(super) fn section(study: &StudyOutput) -> String {
     );
     for case in carried.iter().take(CASES) {
         text += &format!("<h3>Case {}</h3>\n", case.label.id);
-        let words = case.carried.reserve.as_ref().map(reserve_words).into_iter();
-        for line in words.chain(case.carried.permissible.as_ref().map(permissible_words)) {
+        for line in carried_lines(case) {
             text += &format!("<p>{}</p>\n", escape(&line));
         }
         text += &joints(&case.carried.joints);
@@ -142,7 +163,7 @@ fn joints(entries: &[JointEntry]) -> String {
     header.push("sliding reserve");
     header.extend(zones.then_some("zone of thrust"));
     let length = |x: Option<f64>| x.map_or("–".into(), format_length);
-    let stress = |x: Option<f64>| x.map_or("–".into(), |x| format!("{} kPa", format_number(x / 1e3, 4)));
+    let stress = |x: Option<f64>| x.map_or("–".into(), format_stress);
     let rows = entries.iter().take(ROWS).map(|entry| {
         let mut cells = vec![
             entry.joint.to_string(),

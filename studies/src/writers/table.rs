@@ -1,6 +1,7 @@
 //! The table on the terminal.
 
 use super::columns::{CellKind, Column};
+use super::joints_csv::carried_lines;
 use super::study_output::StudyOutput;
 use crate::figures::format::{
     format_number, format_short, hinge_list, kind_word, open_bounds, proved_interval, snap_words, status_word,
@@ -56,6 +57,9 @@ pub fn results_table(study: &StudyOutput) -> String {
     let mut text: String = table.to_string().lines().map(|line| line.trim_end().to_string() + "\n").collect();
     for (i, (note, ids)) in notes.iter().enumerate() {
         text.push_str(&format!("[{}] {note} ({})\n", i + 1, id_list(ids, cases.len())));
+    }
+    if let [case] = cases.as_slice() {
+        carried_lines(case).iter().for_each(|line| text.push_str(&format!("{line}\n")));
     }
     text
 }

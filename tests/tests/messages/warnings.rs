@@ -29,6 +29,33 @@ fn implausible_values_are_noted() {
     assert!(thick.len() == 1 && thick[0].contains("more than the span"), "{thick:?}");
 }
 
+/// Loads that point upwards, supports that move further than the ring is thick, and fills with nearly no friction.
+#[test]
+fn implausible_loads_settlements_and_fills_are_noted() {
+    let live = |load: &str, more: &str| {
+        let stage = format!("gravity = 9.81\n[[stages]]\nname = \"live\"\n{more}\nloads = [{load}]\n");
+        notes(&[("gravity = 9.81\n", &stage)])
+    };
+    let point = |y: f64| format!("{{ kind = \"point\", span_fraction = 0.5, force = [0.0, {y:?}] }}");
+    let upwards = |said: &[String]| said.iter().filter(|note| note.contains("points upwards")).count();
+    assert_eq!(upwards(&live(&point(-1e3), "")), 0);
+    assert_eq!(upwards(&live(&point(1e3), "")), 1);
+    assert_eq!(upwards(&live(&point(1e3), "factor = -1.0")), 0, "a factor below zero turns it round");
+    let moved = |by: f64| live("", &format!("settlement = [{{ support = \"right\", displacement = [{by:?}, 0.0] }}]"));
+    let far = |said: &[String]| said.iter().filter(|note| note.contains("more than the thickness of 0.400 m")).count();
+    assert_eq!((far(&moved(0.39)), far(&moved(0.41))), (0, 1));
+    let bridge = "scene = \"bridge\"\nwidth = 1.0\nspans = [{ profile = { shape = \"segmental\", span = 4.0, rise = 1.0 }, \
+                  thickness = 0.4, voussoirs = 7 }]";
+    let arch = "scene = \"arch\"\nprofile = { shape = \"segmental\", span = 4.0, rise = 1.0 }\nthickness = 0.4\nwidth = 1.0\n\
+                voussoirs = 7\nends = \"jointed\"";
+    for (angle, count) in [(0.61, 1), (35.0, 0)] {
+        let fill =
+            format!("[scene.fill]\ncover = 0.3\ndensity = 1800.0\nfriction_angle = {angle:?}\n[materials.stone]");
+        let said = notes(&[("[materials.stone]", &fill), (arch, bridge)]);
+        assert_eq!(said.iter().filter(|note| note.contains("in degrees")).count(), count, "{said:?}");
+    }
+}
+
 /// The fill's densities, those of layers and of backing.
 #[test]
 fn implausible_densities_of_fill_are_noted() {

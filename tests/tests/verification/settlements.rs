@@ -478,3 +478,36 @@ fn loads_and_settlements_in_any_order_end_at_the_same_load() {
         assert_eq!(result.stages.len(), 6);
     }
 }
+
+/// A wall on one ground that sinks and turns, or on two that move as one body: all bricks go with it, no joint moves, and the
+/// field is that of the loads alone.
+#[test]
+fn a_wall_goes_with_its_ground() {
+    let wall = |cuts: &str, settlement: &str| {
+        let joint = "law = \"coulomb\"\nfriction = 0.7";
+        answered(&format!(
+            "name = \"wall\"\n[scene]\nscene = \"wall\"\nwidth = 0.1\nmaterial = \"stone\"\njoint = \"dry\"\nbrick = [0.4, 0.2]\n\
+             courses = 6\nbricks = 5\n{cuts}\n[materials.stone]\nlaw = \"rigid\"\ndensity = 2000.0\n[joints.dry]\n{joint}\n\
+             [[stages]]\nname = \"dead\"\ngravity = 9.81\n[[stages]]\nname = \"settle\"\nsettlement = [{settlement}]\n"
+        ))
+    };
+    let at = |support: &str, x: f64, y: f64| format!("{{ support = \"{support}\", displacement = [{x:?}, {y:?}] }}");
+    let one = wall("", "{ support = \"ground\", displacement = [0.003, -0.02], rotation = 0.004 }");
+    let both =
+        wall("ground_cuts = [1.0]", &format!("{}, {}", at("ground.0", 0.003, -0.02), at("ground.1", 0.003, -0.02)));
+    for (result, turned) in [(&one, 0.004), (&both, 0.0)] {
+        assert_eq!(result.status, Status::Stands, "{:?}", result.notes);
+        assert!(result.stages[1].hinges.is_empty());
+        for entry in result.path.displacements.iter().flatten() {
+            assert_close(entry.displacement[2], turned, 1e-12);
+        }
+        let ([x, y, _], [x_0, y_0, _]) = (displacement(result, "5.1"), displacement(result, "0.0"));
+        let moved = [x - x_0, y - y_0];
+        assert!((moved[0] + turned * 1.0).abs() < 1e-12, "five courses of 0.2 m higher: {moved:?}");
+    }
+}
+
+fn displacement(result: &CaseResult, body: &str) -> [f64; 3] {
+    let entry = result.path.displacements.iter().flatten().find(|entry| entry.body == body);
+    entry.unwrap_or_else(|| panic!("no block {body}")).displacement
+}

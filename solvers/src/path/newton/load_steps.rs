@@ -148,10 +148,10 @@ fn answer(mut tracer: Tracer) -> PathAnswer {
     let (balance, stored) = (&tracer.record.balance, tracer.record.state.stored);
     let size = balance.scale(stored);
     if size > 1e-12 * tracer.system.units().energy() {
-        notes.push(format!(
-            "energy of the last stage: work − stored − dissipated = {:.3e} of Σ|work| + |stored| + dissipated (trapezoidal rule over the steps)",
-            balance.left() / size
-        ));
+        // The same words in all cases, so that a study shows them once.
+        let words = "path_energy in the certificate is the share of Σ|work| + |stored| + dissipated that the balance work − stored − \
+                     dissipated leaves (trapezoidal rule over the steps)";
+        notes.push(words.into());
     }
     if tracer.ending.status != Status::NoEquilibrium
         && let (Some(peak), Some(trough)) = (&tracer.limit.peak, &tracer.limit.trough)
