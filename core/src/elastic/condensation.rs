@@ -3,7 +3,6 @@
 //! All quantities are computed for modulus 1 and width 1 in the frame of the shape, in units of its size. In plane
 //! problems the flexibility then does not depend on the size, and C = Q C̃ Qᵀ / (E width), where Q is the rotation of
 //! the body and E the modulus of the material. The axes of the material are those of the shape.
-//! body's rotation and E the material's modulus. The material's axes are those of the shape.
 
 use super::inelastic::{InelasticBody, Strains};
 use super::mesh::MeshDensity;

@@ -42,7 +42,6 @@ impl fmt::Display for Monitor {
 /// The increment of a step in the units of continuation strategies, which do not depend on the unit system. All entries
 /// are zero at the last converged state. Units: force F, the size of the loads; displacement U = F × mean compliance;
 /// factor Λ, at which the growing load has the size F; energy F U.
-/// the load that grows has the size F; energy F U. So nothing here depends on the unit system.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Increment {
     /// Δλ in the unit Λ.

@@ -21,18 +21,18 @@ impl Door {
     pub fn open() -> io::Result<Self> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0))?;
         listener.set_nonblocking(true)?;
-        // The system's randomness, as far as the standard library gives it.
+        // Randomness of the system, as far as the standard library offers it.
         let random = || RandomState::new().hash_one("secret");
         let secret = format!("{:016x}{:016x}", random(), random());
         Ok(Door { listener, secret })
     }
 
-    /// The line that the other process is given: port and secret.
+    /// Returns the line for the other process: port and secret.
     pub fn invitation(&self) -> io::Result<String> {
         Ok(format!("{} {}\n", self.listener.local_addr()?.port(), self.secret))
     }
 
-    /// The connection of the process that knows the secret.
+    /// Returns the connection of the process that knows the secret.
     pub fn accept(self, patience: Duration) -> io::Result<TcpStream> {
         let end = Instant::now() + patience;
         while Instant::now() < end {
@@ -42,7 +42,7 @@ impl Door {
                     stream.set_read_timeout(Some(Duration::from_secs(1)))?;
                     let mut line = String::new();
                     let read = BufReader::with_capacity(1, stream.try_clone()?).take(MAX_LINE).read_line(&mut line);
-                    // A stranger who does not know the secret is turned away.
+                    // A process without the secret is refused.
                     if read.is_ok() && line.trim_end() == self.secret {
                         stream.set_nodelay(true)?;
                         return Ok(stream);
@@ -71,7 +71,8 @@ pub fn enter(invitation: &str) -> io::Result<TcpStream> {
 mod tests {
     use super::*;
 
-    /// The process with the secret is connected, and all that it sends next arrives; a process with another secret is not.
+    /// The process with the secret is connected and all its later data arrive; a process with another secret is
+    /// refused.
     #[test]
     fn only_the_invited_process_enters() {
         let door = Door::open().expect("a port");

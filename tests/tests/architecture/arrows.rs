@@ -1,4 +1,4 @@
-//! The arrows between crates, and what libraries do not do.
+//! Allowed dependencies between crates, and operations that libraries must not use.
 
 use super::source::{each_source, workspace};
 
@@ -7,7 +7,8 @@ fn manifest(folder: &str) -> toml::Table {
     std::fs::read_to_string(&path).expect("a manifest").parse().expect("TOML")
 }
 
-/// core knows no plug-in, laws no solver, solvers no law; libraries do not read clocks or files.
+/// The dependencies of crates are the allowed ones: core depends on no plug-in, laws on no solver, solvers on no law.
+/// Libraries do not read clocks or files.
 #[test]
 fn the_arrows_hold() {
     let ours = |folder: &str| -> Vec<String> {
@@ -20,12 +21,12 @@ fn the_arrows_hold() {
     assert_eq!(ours("solvers"), ["voussoir-core"]);
     assert_eq!(ours("laws/external"), ["voussoir-core"]);
     assert_eq!(ours("studies"), ["voussoir-core", "voussoir-external", "voussoir-laws", "voussoir-solvers"]);
-    // Tests bring plug-ins of their own, as somebody else would.
+    // Tests register their own plug-ins, as any other project would.
     assert_eq!(ours("tests"), ["voussoir", "voussoir-core"]);
     assert_eq!(ours("benches"), ["voussoir", "voussoir-tests"]);
     for folder in ["core", "laws", "solvers"] {
         each_source(&workspace().join(folder).join("src"), &mut |path, text| {
-            // Long forms of unit tests print what they count; nothing else of a library prints.
+            // Long forms of unit tests print counts; the rest of a library prints nothing.
             let unit_tests = path.file_name().is_some_and(|name| name == "tests.rs");
             for word in ["println!", "eprintln!", "std::fs", "Instant::now", "SystemTime"] {
                 if unit_tests && word == "println!" {

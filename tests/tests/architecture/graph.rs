@@ -1,13 +1,13 @@
-//! Which file imports which: names are followed through `pub use` to the file that defines them.
+//! The imports between files: names are followed through `pub use` to the file that defines them.
 
 use super::source::{Import, Source, sources};
 use std::collections::{BTreeMap, BTreeSet};
 
 type Module = Vec<String>;
 
-/// The files of a crate and what they import.
+/// The files of a crate and their imports.
 pub struct Graph {
-    /// By module path.
+    /// Files by module path.
     pub files: BTreeMap<Module, Source>,
     imports: BTreeMap<Module, Vec<Import>>,
 }
@@ -20,7 +20,7 @@ impl Graph {
         Graph { files, imports }
     }
 
-    /// A path written in a module, from the crate's root.
+    /// Returns a path written in a module as a path from the root of the crate.
     fn absolute(module: &[String], path: &[String]) -> Module {
         let mut base = if path[0] == "crate" { Vec::new() } else { module.to_vec() };
         let mut rest = path;
@@ -36,7 +36,7 @@ impl Graph {
         base
     }
 
-    /// The file that defines what a path from the crate's root names.
+    /// Returns the file that defines the item of a path from the root of the crate.
     fn target(&self, path: &[String], seen: &mut BTreeSet<(Module, String)>) -> Option<Module> {
         let length = (0..=path.len()).rev().find(|&k| self.files.contains_key(&path[..k]))?;
         let module = path[..length].to_vec();
@@ -62,7 +62,7 @@ impl Graph {
         Some(module)
     }
 
-    /// The file that defines the type a path names in a module; nothing where it is not of this crate.
+    /// Returns the file that defines the type of a path in a module; `None` if the type is not part of this crate.
     pub fn definition(&self, module: &Module, path: &[String]) -> Option<Module> {
         let name = path.last()?;
         let inside = [vec!["self".to_string()], path.to_vec()].concat();
@@ -71,7 +71,7 @@ impl Graph {
         self.files[&found].defines(name).then_some(found)
     }
 
-    /// The files that each file imports.
+    /// Returns the files that each file imports.
     pub fn edges(&self) -> BTreeMap<Module, BTreeSet<Module>> {
         let mut edges = BTreeMap::new();
         for (module, imports) in &self.imports {
@@ -82,14 +82,14 @@ impl Graph {
                 }
                 self.target(&path, &mut BTreeSet::new())
             });
-            // The root declares and re-exports; nothing is defined there.
+            // The root only declares and re-exports; it defines no items.
             let targets = targets.filter(|target| target != module && !target.is_empty()).collect();
             edges.insert(module.clone(), targets);
         }
         edges
     }
 
-    /// Sets of files that import each other, directly or in a circle.
+    /// Returns the sets of files that import each other, directly or in a circle.
     pub fn circles(&self) -> Vec<Vec<String>> {
         let edges = self.edges();
         let reached: BTreeMap<&Module, BTreeSet<&Module>> =
@@ -107,7 +107,7 @@ impl Graph {
     }
 }
 
-/// All that is imported by a file, by what it imports, and so on.
+/// Returns all files that a file imports, directly or through other files.
 fn reachable<'a>(edges: &'a BTreeMap<Module, BTreeSet<Module>>, from: &'a Module) -> BTreeSet<&'a Module> {
     let mut found = BTreeSet::new();
     let mut open = vec![from];

@@ -1,4 +1,4 @@
-//! The house itself: which file may import which, and how large things may grow.
+//! The structure of the code: allowed imports, and limits on the size of its parts.
 
 mod arrows;
 mod graph;

@@ -1,18 +1,18 @@
-//! Measures of the solvers that must not get worse: lines, import chains, large mutable structs, numbers, counters.
+//! Measures of the solvers that must not get worse: lines, import chains, large mutable structs, constants, counters.
 
 use super::graph::Graph;
 use super::source::{Source, is, workspace};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Lines of the solvers without tests, at most.
+/// Greatest number of lines of the solvers without tests.
 const LINES: usize = 26_600;
-/// Files, with each sub-folder as one, that import each other one after the other, at most.
+/// Greatest length of a chain of imports between files; each sub-folder counts as one file.
 const CHAIN: usize = 8;
-/// Fields from which on a struct is large.
+/// Least number of fields of a large struct.
 const LARGE: usize = 9;
-/// Places that take a large struct of the paths as `&mut`.
+/// Greatest number of parameters of the paths that are `&mut` of a large struct.
 const MUTABLE: usize = 50;
-/// Constants that are numbers, at most, and fields of a struct of settings.
+/// Greatest number of numeric constants, and greatest number of fields of a struct of settings.
 const NUMBERS: usize = 121;
 const TOLERANCES: usize = 40;
 
@@ -24,7 +24,7 @@ fn of_paths(files: &BTreeMap<Vec<String>, Source>) -> impl Iterator<Item = (&Vec
     files.iter().filter(|(module, _)| module.first().is_some_and(|part| part == "path"))
 }
 
-/// The solvers stay small: lines without tests of all files.
+/// The solvers stay small: the number of lines of all files without tests is limited.
 #[test]
 fn the_solvers_stay_small() {
     let mut lines = 0;
@@ -38,7 +38,7 @@ fn the_solvers_stay_small() {
     assert!(lines <= LINES, "{lines} lines");
 }
 
-/// In each folder of the solvers at most eight files import each other one after the other. A sub-folder counts as one.
+/// In each folder of the solvers the longest chain of imports has at most eight files. A sub-folder counts as one file.
 #[test]
 fn import_chains_are_short() {
     let edges = solvers().edges();
@@ -60,7 +60,7 @@ fn import_chains_are_short() {
     }
 }
 
-/// Number of parts in the longest chain of imports from a part.
+/// Returns the number of parts in the longest chain of imports from a part.
 fn length(edges: &BTreeMap<String, BTreeSet<String>>, from: &String, known: &mut BTreeMap<String, usize>) -> usize {
     if let Some(found) = known.get(from) {
         return *found;
@@ -93,7 +93,7 @@ fn few_functions_take_a_large_struct_to_change_it() {
     assert!(places.len() <= MUTABLE, "{} places: {large:?}", places.len());
 }
 
-/// Tolerances live in structs of settings with at most forty fields each, and few other constants are numbers.
+/// Tolerances are fields of structs of settings with at most forty fields each, and few other constants are numbers.
 #[test]
 fn numbers_live_in_settings() {
     let files = solvers().files;
@@ -113,7 +113,7 @@ fn numbers_live_in_settings() {
     }
 }
 
-/// Counters of a report steer no algorithm: no solver reads them.
+/// Counters of a report do not control any algorithm: no solver reads them.
 #[test]
 fn no_solver_reads_its_counters() {
     for (module, source) in solvers().files {

@@ -1,41 +1,42 @@
-//! Rust sources as words and signs: enough of the grammar to see imports, types, methods, fields and functions.
+//! Rust sources as tokens, with enough of the grammar to find imports, types, methods, fields and functions.
 //!
-//! Read as text and not with a parser crate: it sees into macros, and the tests compile nothing for it.
+//! The source is read as text and not with a parser crate: this includes macros, and the tests need no further
+//! dependency.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// A word, a sign or something quoted, with its line.
+/// A word, a sign or a quoted text, with its line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Token {
-    /// A word, one sign, or `""` for text, characters and numbers.
+    /// A word, one sign, or `""` for texts, characters and numbers.
     pub text: String,
-    /// From 1.
+    /// Line number, from 1.
     pub line: usize,
 }
 
 /// A file of a crate: a module.
 #[derive(Debug)]
 pub struct Source {
-    /// What stands in it, without comments and tests.
+    /// Its tokens, without comments and tests.
     pub tokens: Vec<Token>,
 }
 
-/// A path of a `use`, or one written out in code.
+/// A path of a `use`, or a path written out in code.
 #[derive(Debug, Clone)]
 pub struct Import {
-    /// From `crate`, `super`, `self` or a child module.
+    /// The path from `crate`, `super`, `self` or a child module.
     pub path: Vec<String>,
-    /// The name it has here; `*` for all of a module, nothing for a path in code.
+    /// The name of the import here; `*` for all items of a module, `None` for a path in code.
     pub name: Option<String>,
 }
 
-/// The folder of the workspace that is looked at: this one, or `HOUSE`, to look at another.
+/// Returns the folder of the workspace to check: this one, or the one in the variable `HOUSE`.
 pub fn workspace() -> PathBuf {
     std::env::var_os("HOUSE").map_or(Path::new(env!("CARGO_MANIFEST_DIR")).join(".."), PathBuf::from)
 }
 
-/// The files of a crate by module path from its root, without those of its tests; empty for `lib.rs`.
+/// Returns the files of a crate by module path from its root, without test files; the path of `lib.rs` is empty.
 pub fn sources(krate: &str) -> BTreeMap<Vec<String>, Source> {
     let mut all = BTreeMap::new();
     let root = workspace().join(krate).join("src");
@@ -69,7 +70,7 @@ pub fn each_source(folder: &Path, check: &mut dyn FnMut(&Path, &str)) {
     }
 }
 
-/// Splits a text; comments are dropped.
+/// Splits a text into tokens; comments are dropped.
 pub fn tokens(text: &str) -> Vec<Token> {
     let text: Vec<char> = text.chars().collect();
     let at = |i: usize| text.get(i).copied().unwrap_or('\0');
@@ -106,7 +107,7 @@ pub fn tokens(text: &str) -> Vec<Token> {
     all
 }
 
-/// The end of a comment between `/*` and `*/`, which may hold others.
+/// Returns the end of a comment between `/*` and `*/`, which may contain other comments.
 fn after_comment(text: &[char], start: usize) -> usize {
     let (mut i, mut depth) = (start, 0);
     while i < text.len() {
@@ -122,7 +123,7 @@ fn after_comment(text: &[char], start: usize) -> usize {
     i
 }
 
-/// The end of the text, character or lifetime that begins here, if one does.
+/// Returns the end of the text, character or lifetime that begins here, if one begins here.
 fn after_quotes(text: &[char], start: usize) -> Option<usize> {
     let at = |i: usize| text.get(i).copied().unwrap_or('\0');
     let mut i = start;
@@ -155,7 +156,7 @@ fn after_quotes(text: &[char], start: usize) -> Option<usize> {
     Some(i + 1)
 }
 
-/// Drops every item that is there for tests only.
+/// Drops every item that is for tests only.
 fn without_tests(tokens: &[Token]) -> Vec<Token> {
     let (mut kept, mut i) = (Vec::new(), 0);
     while i < tokens.len() {
@@ -168,7 +169,7 @@ fn without_tests(tokens: &[Token]) -> Vec<Token> {
                 i = if is(tokens, i, "(") || is(tokens, i, "[") { closing(tokens, i) + 1 } else { i + 1 };
             }
             i = if is(tokens, i, "{") { closing(tokens, i) + 1 } else { i + 1 };
-            // `use a::{b, c};` ends with its semicolon.
+            // `use a::{b, c};` ends at its semicolon.
             if is(tokens, i, ";") {
                 i += 1;
             }
@@ -180,12 +181,12 @@ fn without_tests(tokens: &[Token]) -> Vec<Token> {
     kept
 }
 
-/// Whether that word or sign stands there.
+/// Returns true if the token at this index is the word or sign.
 pub fn is(tokens: &[Token], i: usize, text: &str) -> bool {
     tokens.get(i).is_some_and(|t| t.text == text)
 }
 
-/// Where the bracket that opens at `open` closes.
+/// Returns the index of the bracket that closes the one at `open`.
 pub fn closing(tokens: &[Token], open: usize) -> usize {
     let mut depth = 0;
     for (i, token) in tokens.iter().enumerate().skip(open) {
@@ -201,20 +202,20 @@ pub fn closing(tokens: &[Token], open: usize) -> usize {
     tokens.len()
 }
 
-/// Whether an item may begin here: after another item, an attribute, a visibility or a bracket that opens.
+/// Returns true if an item may begin here: after another item, an attribute, a visibility or an opening bracket.
 fn begins_item(tokens: &[Token], i: usize) -> bool {
     let before = i.checked_sub(1).map_or(";", |k| tokens[k].text.as_str());
     [";", "}", "{", "]", ")", "pub", "unsafe", "const", "async"].contains(&before)
 }
 
 impl Source {
-    /// Child modules declared here.
+    /// Returns the child modules declared here.
     pub fn children(&self) -> impl Iterator<Item = &str> {
         let t = &self.tokens;
         (0..t.len()).filter(|&i| is(t, i, "mod") && is(t, i + 2, ";")).map(|i| t[i + 1].text.as_str())
     }
 
-    /// Whether an item of that name is defined here.
+    /// Returns true if an item with this name is defined here.
     pub fn defines(&self, name: &str) -> bool {
         let t = &self.tokens;
         let kinds = ["struct", "enum", "union", "trait", "type", "fn", "const", "static", "macro_rules"];
@@ -224,7 +225,7 @@ impl Source {
         })
     }
 
-    /// Everything imported from this crate, by `use` and by paths in code.
+    /// Returns all imports from this crate, by `use` and by paths in code.
     pub fn imports(&self) -> Vec<Import> {
         let t = &self.tokens;
         let children: Vec<&str> = self.children().collect();
@@ -249,7 +250,7 @@ impl Source {
         all
     }
 
-    /// Every `impl` block: the type it is for and the number of functions in it.
+    /// Returns every `impl` block: its type and the number of its functions.
     pub fn impls(&self) -> Vec<(Vec<String>, usize)> {
         let t = &self.tokens;
         let mut all = Vec::new();
@@ -283,7 +284,7 @@ impl Source {
         all
     }
 
-    /// Every struct and the number of its fields.
+    /// Returns every struct and the number of its fields.
     pub fn structs(&self) -> Vec<(String, usize)> {
         let t = &self.tokens;
         let mut all = Vec::new();
@@ -297,7 +298,7 @@ impl Source {
         all
     }
 
-    /// Every function with a body: its name and the lines from `fn` to the bracket that closes it.
+    /// Returns every function with a body: its name and the number of lines from `fn` to its closing bracket.
     pub fn functions(&self) -> Vec<(String, usize)> {
         let t = &self.tokens;
         let mut all = Vec::new();
@@ -318,7 +319,7 @@ fn is_name(token: &Token) -> bool {
     token.text.starts_with(|c: char| c.is_alphabetic() || c == '_')
 }
 
-/// The place after the generics that open here; the arrow `->` closes nothing.
+/// Returns the index after the generics that open here; the arrow `->` closes nothing.
 fn after_angles(tokens: &[Token], open: usize) -> usize {
     let mut depth = 0;
     for i in open..tokens.len() {
@@ -334,7 +335,7 @@ fn after_angles(tokens: &[Token], open: usize) -> usize {
     tokens.len()
 }
 
-/// The number of parts between commas in the bracket that opens here.
+/// Returns the number of parts between commas in the bracket that opens here.
 fn parts(tokens: &[Token], open: usize) -> usize {
     let end = closing(tokens, open);
     let (mut count, mut is_empty, mut k) = (0, true, open + 1);
@@ -350,7 +351,7 @@ fn parts(tokens: &[Token], open: usize) -> usize {
     count + usize::from(!is_empty)
 }
 
-/// The paths of a `use` tree.
+/// Collects the paths of a `use` tree.
 fn use_tree(tokens: &[Token], before: &[String], all: &mut Vec<Import>) {
     let mut path = before.to_vec();
     let mut i = 0;

@@ -1,9 +1,9 @@
-//! The law of docs/adding_a_law.md: the page shows the file that is compiled here, and every solver takes it.
+//! The law of docs/adding_a_law.md: the page shows the file that is compiled here, and every solver supports the law.
 
 use std::path::Path;
 use voussoir_tests::{Arch, answered, assert_close, crushing, elastic};
 
-/// The page shows the file; `UPDATE_EXPECTED=1` copies it there.
+/// The page shows the compiled file; `UPDATE_EXPECTED=1` copies the file to the page.
 #[test]
 fn the_page_shows_the_law_that_is_compiled() {
     let law = include_str!("capped_friction.rs");
@@ -18,7 +18,7 @@ fn the_page_shows_the_law_that_is_compiled() {
     }
 }
 
-/// Limit analysis and both path solvers give with it what they give with the same facets of `mohr_coulomb`.
+/// With this law limit analysis and both path solvers give the same results as with the same facets of `mohr_coulomb`.
 #[test]
 fn every_solver_takes_the_added_law() {
     let added = "law = \"capped_friction\"\nfriction = 0.6\ncompressive_strength = 1e7".to_string();

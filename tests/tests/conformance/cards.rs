@@ -1,9 +1,10 @@
-//! The registry, and what every card must say.
+//! The registry, and the required content of cards.
 
 use std::path::Path;
 use voussoir::core::plugin::{Need, Parameter, PluginKind, audit, cards};
 
-/// Every kind of plug-in is there, no tag twice, every card complete, file = tag.
+/// Every kind of plug-in is registered, no tag is used twice, every card is complete, and each file has the name of its
+/// tag.
 #[test]
 fn every_card_is_complete() {
     assert_eq!(audit(), Vec::<String>::new());
@@ -18,7 +19,7 @@ fn every_card_is_complete() {
             .to_string_lossy()
             .into_owned();
         let named = [stem.clone(), format!("limit_{folder}"), format!("{folder}_path"), format!("results_{stem}")];
-        // The word of study files is older than the folder's, which is the field's.
+        // The tag used in study files is older than the name of the folder, which is the term of the field.
         let kept = card.tag == "limit_least" && folder == "nonassociated";
         assert!(kept || named.contains(&card.tag.to_string()), "{} stands in {}", card.tag, card.file);
         for parameter in card.parameters {

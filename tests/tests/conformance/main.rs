@@ -1,4 +1,4 @@
-//! Every plug-in, found by its card, keeps what its trait promises.
+//! Every plug-in, found by its card, satisfies the contract of its trait.
 
 mod added_law;
 mod capped_friction;

@@ -1,4 +1,4 @@
-//! Laws with one fault each: the checks must find it, by name. A law without a fault conforms.
+//! Laws with one fault each: the checks must find the fault by name. A law without a fault conforms.
 
 mod facets;
 mod materials;
@@ -8,12 +8,13 @@ use super::laws::allocations;
 use voussoir::conformance::{Options, conform};
 use voussoir::core::plugin::{Card, Sample};
 
-/// Checks a law for each fault: (the key's value, names of checks of which one must find it). `none` must conform.
+/// Checks a law for each fault: (value of the key, names of checks of which at least one must find it). `none` must
+/// conform.
 fn every_fault_is_found(card: &Card, table: &'static str, sample: Sample, faults: &[(&str, &[&str])]) {
     let options = Options { allocations: Some(allocations) };
     let mut wrong = Vec::new();
     for (fault, checks) in [("none", &[] as &[&str])].iter().chain(faults) {
-        // A card's texts live as long as the program; these few do too.
+        // Texts of a card have the lifetime of the program, so these few texts are leaked.
         let with = |table: &str| -> &'static str { format!("fault = \"{fault}\"\n{table}").leak() };
         let samples: &'static [Sample] = Box::leak(Box::new([Sample { table: with(table), ..sample }]));
         let known: Vec<_> = card.known_paths.iter().map(|path| (path, with(path.table))).collect();

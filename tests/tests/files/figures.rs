@@ -1,10 +1,10 @@
-//! Which cases are drawn, and that figures do not depend on how many are drawn side by side.
+//! The choice of cases that are drawn; figures do not depend on the number of parallel jobs.
 
 use voussoir::kinds::{RunRequest, read_study};
 use voussoir::solve::Unobserved;
 use voussoir_tests::Arch;
 
-/// Names and bytes of the figures of a study over `count` rises with two variants.
+/// Returns names and bytes of the figures of a study over `count` rises with two variants.
 fn figures(count: usize, output: &str, jobs: usize) -> Vec<(String, Vec<u8>)> {
     let sweep = format!("[sweep]\n\"scene.profile.rise\" = {{ from = 2.0, to = 3.0, count = {count} }}\n");
     let variants = "[[variants]]\nname = \"a\"\n[[variants]]\nname = \"b\"\nset = { \"joints.dry.friction\" = 0.4 }\n";
@@ -19,7 +19,8 @@ fn drawn(files: &[(String, Vec<u8>)]) -> Vec<&str> {
     files.iter().filter_map(|(name, _)| name.strip_suffix("-scene.svg")?.strip_prefix("figures/case-")).collect()
 }
 
-/// All up to 50 cases; of more the least load factor of each variant, which falls with the rise from 2 to 3 m.
+/// Up to 50 cases are all drawn. Of more cases only the case with the least load factor of each variant is drawn; here
+/// the load factor decreases with the rise from 2 to 3 m.
 #[test]
 fn all_cases_are_drawn_up_to_fifty_and_then_the_worst() {
     assert_eq!(drawn(&figures(3, "", 1)), ["0000", "0001", "0002", "0003", "0004", "0005"]);

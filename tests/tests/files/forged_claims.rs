@@ -1,6 +1,7 @@
-//! A family of forgeries of eight kinds of results: each number times 1 + 1e-6, 1.1 and −1, each word by another of its kind, each
-//! entry of a list left out or doubled. In results of this program on this processor all are found. In results that name another
-//! processor all forgeries above the tolerances are found. Entries that the comparison leaves out are listed here.
+//! A family of forgeries of eight kinds of results: each number times 1 + 1e-6, 1.1 and −1, each word replaced by
+//! another of its kind, each entry of a list left out or doubled. In results of this program on this processor all
+//! forgeries are found. In results that name another processor all forgeries above the tolerances are found. Entries
+//! that the comparison leaves out are listed here.
 
 use super::forgery::{BRIDGE, WORDS, optimum, path};
 use super::tolerances::of_another_processor;
@@ -10,16 +11,18 @@ use voussoir::study::Study;
 use voussoir_tests::written::{findings, results};
 use voussoir_tests::{Arch, friction};
 
-/// Not claims about the structure: cost, version, and the entries of the head that only choose the comparison.
+/// Entries that are not claims about the structure: cost, version, and entries of the head that only choose the
+/// comparison.
 pub const FREE: [&str; 7] =
     ["/counters", "/seconds", "/version", "/platform", "/processor_features", "/mathematics", "/plugins"];
-/// Not compared with a second run on another processor: free words, residuals within their gates, work of a search.
+/// Entries that are not compared with a second run on another processor: free words, residuals within their gates, work
+/// of a search.
 const FREE_ELSEWHERE: [&str; 5] = ["/notes", "/failures", "/residuals", "/bracket", "/why"];
-/// Compared as functions on another processor: a vertex on the curve may be left out or doubled, and a change below the tolerance
-/// of the curve claims the same.
+/// Entries that are compared as functions on another processor. A vertex on the curve may be left out or doubled, and a
+/// change below the tolerance of the curve makes the same claim.
 const FUNCTIONS: [&str; 1] = ["/curve"];
 
-/// Compared with tolerances of up to a twentieth of the greatest number.
+/// Entries that are compared with tolerances of up to a twentieth of the greatest number.
 const LOOSE: [&str; 3] = ["/events", "/curve", "/fall"];
 
 struct Forgery {
@@ -29,7 +32,7 @@ struct Forgery {
     large: bool,
 }
 
-/// All forgeries below a value, with the greatest number of each key.
+/// Collects all forgeries below a value; `greatest` is the greatest number of each key.
 fn forge(value: &Value, at: &str, greatest: &BTreeMap<String, f64>, out: &mut Vec<Forgery>) {
     if FREE.iter().any(|free| at.ends_with(free)) {
         return;
@@ -38,7 +41,7 @@ fn forge(value: &Value, at: &str, greatest: &BTreeMap<String, f64>, out: &mut Ve
     match value {
         Value::Number(number) if number.is_f64() => {
             let x = number.as_f64().expect("a float");
-            // Numbers are compared with the greatest of their key.
+            // Numbers are compared relative to the greatest number of their key.
             let share = if LOOSE.iter().any(|key| at.contains(key)) { 0.6 } else { 0.01 };
             let big = x.abs() > share * greatest[&key(at)];
             if x == 0.0 {
@@ -73,12 +76,12 @@ fn forge(value: &Value, at: &str, greatest: &BTreeMap<String, f64>, out: &mut Ve
     }
 }
 
-/// A place without its indices.
+/// Returns a place without its indices.
 fn key(at: &str) -> String {
     at.split('/').filter(|part| part.parse::<usize>().is_err()).collect::<Vec<_>>().join("/")
 }
 
-/// The greatest number of each key.
+/// Finds the greatest number of each key.
 fn measure(value: &Value, at: &str, out: &mut BTreeMap<String, f64>) {
     match value {
         Value::Number(number) => {
@@ -94,8 +97,8 @@ fn measure(value: &Value, at: &str, out: &mut BTreeMap<String, f64>) {
     }
 }
 
-/// Tries about `count` forgeries, evenly spread; the number of those that were tried here and as of another processor, and
-/// those that were confirmed.
+/// Tries about `count` forgeries, evenly distributed. Returns the number of forgeries tried here and as of another
+/// processor, and the forgeries that were confirmed.
 fn tried(name: &str, (study, original): &(Study, Value), count: usize) -> ([usize; 2], Vec<String>) {
     let foreign = of_another_processor(original);
     for untouched in [original, &foreign] {

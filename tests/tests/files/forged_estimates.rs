@@ -1,5 +1,6 @@
-//! Forgery of what is said beside a load: estimates of its error, derivatives, kept states, peaks, brackets of loads with the laws'
-//! own flow, settlements of limit analysis. One entry at a time as in `forgery`, then several together that fit each other.
+//! Forgeries of the results beside a load: error estimates, derivatives, stored states, peaks, brackets of loads with
+//! the laws' own flow, settlements of limit analysis. First one entry at a time as in `forgery`, then several
+//! consistent entries together.
 
 use super::forgery::{forged, path};
 use serde_json::{Value, json};
@@ -8,13 +9,13 @@ use voussoir_tests::{Arch, Wall, changed, crushing, friction};
 
 const WIDTHS: &str = "[sweep]\n\"scene.width\" = { list = [1.0, 2.0] }\n";
 
-/// A ring that crushes, with the derivatives of its load, for two widths.
+/// Returns a ring that crushes, with the derivatives of its load, for two widths.
 fn differentiated() -> String {
     let arch = Arch { joint: crushing(0.6, 10e6), voussoirs: 9, ..Arch::default() }.study();
     format!("{arch}{WIDTHS}[output]\nsensitivities = true\n")
 }
 
-/// A ring on a path from event to event, with an estimate of its error and states on the way, for two loads.
+/// Returns a ring on a path from event to event, with an error estimate and stored states, for two loads.
 fn estimated() -> String {
     let text = changed(
         &path("event_path", "small", false),
@@ -24,7 +25,7 @@ fn estimated() -> String {
     format!("{text}[sweep]\n\"joints.dry.friction\" = {{ list = [0.7, 0.5] }}\n")
 }
 
-/// A wall whose bricks slide with their own flow: a proved load and a found one.
+/// Returns a wall whose bricks slide with their own flow, so that the proved bound and the found load differ.
 fn bracketed() -> String {
     let rows: [&[f64]; 3] = [&[1.0, 1.0], &[0.5, 1.0, 0.5], &[1.0, 1.0]];
     let wall = Wall {
@@ -36,7 +37,7 @@ fn bracketed() -> String {
     wall.study()
 }
 
-/// Limit analysis of a ring whose support moves before the load.
+/// Returns limit analysis of a ring whose support moves before the load.
 fn settled() -> String {
     let live = "[[stages]]\nname = \"live\"";
     let settle =
@@ -48,7 +49,7 @@ fn settled() -> String {
     )
 }
 
-/// Derivatives, a bracket, a settlement: in the default tests a sample of their entries.
+/// Forged derivatives, brackets and settlements are found; the default tests try a sample of their entries.
 #[test]
 fn derivatives_brackets_and_settlements() {
     for (name, text) in [("derivatives", differentiated()), ("bracket", bracketed()), ("settlement", settled())] {
@@ -56,7 +57,7 @@ fn derivatives_brackets_and_settlements() {
     }
 }
 
-/// Estimates, states on the way, peaks of finite displacements.
+/// Forged estimates, stored states and peaks of finite displacements are found.
 #[test]
 #[ignore = "by hand, with FORGERY=all"]
 fn estimates_states_and_peaks() {
@@ -65,7 +66,7 @@ fn estimates_states_and_peaks() {
     forged("peaks", &changed(&finite, "curve = true", "curve = true\nstates = 6"));
 }
 
-/// A number times something; lists and tables entry by entry.
+/// Returns a number times a factor; lists and tables entry by entry.
 fn scaled(value: &Value, by: f64) -> Value {
     match value {
         Value::Number(number) if number.is_f64() => json!(number.as_f64().expect("a float") * by),
@@ -75,7 +76,7 @@ fn scaled(value: &Value, by: f64) -> Value {
     }
 }
 
-/// Several entries that fit each other, and one case's in the place of another's.
+/// Forges several consistent entries together, and exchanges entries of two cases.
 fn forged_together(name: &str, text: &str, keys: &[&str]) {
     let (study, original) = results(text);
     assert_eq!(findings(&study, &original), Vec::<String>::new(), "{name}: untouched");

@@ -1,7 +1,7 @@
-//! Tables, figures and pages beside results.json: every number and every word of each changed one at a time. `verify` names each
-//! file that was changed.
+//! Forgeries of the tables, figures and pages beside results.json: every number and every word changed one at a time.
+//! `verify` names each file that was changed.
 //!
-//! The short form takes a share of the places of pages and figures; `FORGERY=all` all of them.
+//! The short form tries a share of the places of pages and figures; `FORGERY=all` tries all of them.
 
 use std::collections::BTreeSet;
 use std::io::{Cursor, Read};
@@ -10,7 +10,7 @@ use voussoir::solve::Unobserved;
 use voussoir::verify::Agreement;
 use voussoir_tests::{Arch, changed, elastic, friction};
 
-/// Where the numbers and words of a text begin and end.
+/// Returns the start and end of the numbers and words of a text.
 fn places(text: &str) -> Vec<(usize, usize)> {
     let of_token = |c: char| c.is_alphanumeric() || c == '.';
     let (mut out, mut from) = (Vec::new(), None);
@@ -27,7 +27,7 @@ fn places(text: &str) -> Vec<(usize, usize)> {
     out
 }
 
-/// A number with another last digit, a word with another last letter.
+/// Returns a number with another last digit, or a word with another last letter.
 fn other(token: &str) -> String {
     let mut kept: Vec<char> = token.chars().collect();
     let last = kept.pop().unwrap_or('x');
@@ -42,7 +42,7 @@ fn other(token: &str) -> String {
 
 type Files = Vec<(String, Vec<u8>)>;
 
-/// The files that a run of a study writes.
+/// Returns the files that a run of a study writes.
 fn written(study: &dyn LoadedStudy) -> Files {
     let request =
         RunRequest { wanted: (0..study.count()).collect(), jobs: 1, version: "test".into(), ..RunRequest::default() };
@@ -54,7 +54,7 @@ fn stored(files: &[(String, Vec<u8>)], name: &str) -> Option<Box<dyn Read>> {
     Some(Box::new(Cursor::new(bytes.clone())))
 }
 
-/// Each place of each file, against the files as they are made again; and all files at once against `verify`.
+/// Checks each place of each file against the files as written again, and all files at once with `verify`.
 fn each_is_found(name: &str, text: &str) {
     let study = read_study(text, "test.toml", &[]).unwrap_or_else(|wrong| panic!("{wrong}"));
     let files = written(study.as_ref());
@@ -82,7 +82,7 @@ fn each_is_found(name: &str, text: &str) {
         }
     }
     println!("{name}: {tried} places in {} files", files.len() - 1);
-    // Each file is left with one place changed.
+    // Each file has one changed place.
     let (findings, named) = verified(&forged);
     let expected = files.iter().map(|(name, _)| name).filter(|name| *name != "results.json");
     assert_eq!(findings, 0, "{name}");
@@ -94,7 +94,8 @@ fn each_is_found(name: &str, text: &str) {
     assert_eq!(named, expected.map(finding).collect(), "{name}");
 }
 
-/// Limit analysis, a path with its curve, a comparison, a map, an optimum.
+/// Every changed table and figure is found, for limit analysis, a path with its curve, a comparison, a map and an
+/// optimum.
 #[test]
 fn every_table_and_figure_is_made_again() {
     let arch = Arch { joint: friction(0.6), ends: "jointed", voussoirs: 7, ..Arch::default() };
@@ -114,7 +115,7 @@ fn every_table_and_figure_is_made_again() {
     each_is_found("optimise", &format!("{best}{}", arch.study()));
 }
 
-/// The worst place of a vehicle.
+/// Every changed table and figure of an envelope is found.
 #[test]
 fn every_table_and_figure_of_an_envelope_is_made_again() {
     let text = include_str!("../../../studies/cases/viaduct.toml");

@@ -1,7 +1,7 @@
 //! Systematic forgery: every number and every word of results.json changed one at a time, cases deleted and doubled,
-//! several entries changed together. `verify` finds each, in every kind of result.
+//! several entries changed together. `verify` finds each forgery, in every kind of result.
 //!
-//! The short form takes a fixed sample of each result; `FORGERY=all cargo test -p voussoir-tests --release --test files
+//! The short form tries a fixed sample of each result; `FORGERY=all cargo test -p voussoir-tests --release --test files
 //! forgery` tries every entry.
 
 use super::forged_claims::FREE;
@@ -14,7 +14,7 @@ use voussoir::verify::case::verify_case;
 use voussoir_tests::written::{findings, results};
 use voussoir_tests::{Arch, changed, crushing, first_case, friction};
 
-/// Words that stand in results, by what they mean: any other of the same row is a forgery.
+/// Words of results, by meaning: any other word of the same row is a forgery.
 pub const WORDS: [&[&str]; 7] = [
     &["collapse", "stands", "unbounded", "no_equilibrium", "limit_point", "stalled"],
     &["three_hinge", "four_hinge", "five_hinge", "rocking", "sliding", "crushing", "mixed"],
@@ -25,7 +25,7 @@ pub const WORDS: [&[&str]; 7] = [
     &["target", "requested", "load_control", "joint_lost", "none"],
 ];
 
-/// Every entry below `value` with a forged one beside it.
+/// Collects every entry below `value` together with a forged one.
 pub fn forgeries(value: &Value, path: &str, out: &mut Vec<(String, Value)>) {
     if FREE.iter().any(|free| path.ends_with(free)) {
         return;
@@ -59,7 +59,7 @@ pub fn forgeries(value: &Value, path: &str, out: &mut Vec<(String, Value)>) {
     }
 }
 
-/// Numbers of a sequence that repeats (Knuth's linear congruential generator).
+/// Returns a reproducible sample (Knuth's linear congruential generator).
 fn sample<T>(mut all: Vec<T>, count: usize) -> Vec<T> {
     if std::env::var("FORGERY").is_ok_and(|form| form == "all") {
         return all;
@@ -73,7 +73,8 @@ fn sample<T>(mut all: Vec<T>, count: usize) -> Vec<T> {
     out
 }
 
-/// The head of the results and of a case, without its long lists: these are tried in the short form too, all of them.
+/// Returns true for the head of the results and of a case, without long lists: the short form tries all of these
+/// entries.
 fn short(path: &str) -> bool {
     let long =
         ["/field/", "/ray/", "/motion/", "/events/", "/curve/", "/displacements/", "/thrust_line/", "/joint_states/"];
@@ -107,19 +108,19 @@ fn each_is_found(name: &str, original: &Value, find: &dyn Fn(&Value) -> Vec<Stri
         let mut swapped = cases.clone();
         swapped.swap(0, 1);
         assert!(!find(&with(swapped)).is_empty(), "{name}: cases were exchanged");
-        // Another case's whole answer under this one's label.
+        // The whole answer of another case with the label of this one.
         let mut foreign = cases.clone();
         foreign[0] = cases[1].clone();
         for key in ["id", "case_hash", "variant", "parameters", "seconds"] {
             foreign[0][key] = cases[0][key].clone();
         }
-        // Two widths may move alike: then it is the same answer.
+        // Two widths may have the same motion: then the answers are the same.
         let same = foreign[0] == cases[0];
         assert!(same || !find(&with(foreign)).is_empty(), "{name}: another case's answer");
     }
 }
 
-/// Every change of the results of a study is found.
+/// Asserts that every change of the results of a study is found.
 pub fn forged(name: &str, text: &str) {
     let (study, original): (Study, Value) = results(text);
     each_is_found(name, &original, &|changed| findings(&study, changed));
@@ -128,7 +129,7 @@ pub fn forged(name: &str, text: &str) {
 const ELASTIC: &str = "[scene.mesh]\nelements = [1, 2]\n[materials.stone]\nlaw = \"elastic\"\nyoung_modulus = 5e9\n\
                        poisson_ratio = 0.2\ndensity = 2200.0\n";
 
-/// A ring of seven voussoirs on a path, with or without a support that moves first.
+/// Returns a ring of seven voussoirs on a path, with or without a support that moves first.
 pub fn path(solver: &str, kinematics: &str, settled: bool) -> String {
     let settle = "[[stages]]\nname = \"settle\"\nsettlement = [{ support = \"right\", displacement = [0.005, 0.0] }]\n";
     format!(
@@ -141,7 +142,7 @@ pub fn path(solver: &str, kinematics: &str, settled: bool) -> String {
     )
 }
 
-/// Results of limit analysis: collapse, unbounded, no equilibrium, with strengths.
+/// Every forged result of limit analysis is found: collapse, unbounded, no equilibrium, with strengths.
 #[test]
 fn limit_results() {
     for (name, arch) in [
@@ -156,7 +157,8 @@ fn limit_results() {
     }
 }
 
-/// Paths: from event to event, Newton's with small and with finite displacements, with a support that moves.
+/// Every forged result of a path is found: from event to event, and Newton's with small and with finite displacements,
+/// each also with a support that moves.
 #[test]
 fn path_results() {
     for (solver, kinematics, settled) in [
@@ -170,7 +172,7 @@ fn path_results() {
     }
 }
 
-/// Each residual of a path's last state, violated: found by the proofs alone, without solving again. `run` uses the
+/// Each violated residual of a path's last state is found by the proofs alone, without solving again. `run` uses the
 /// same function.
 #[test]
 fn violated_residuals_are_found_without_solving() {
@@ -219,8 +221,8 @@ fn violated_residuals_are_found_without_solving() {
     }
 }
 
-/// What the program was once found to confirm: another load with field, velocities and curve scaled together, a
-/// collapse under other names, the last stage's factor, the verdict.
+/// Forgeries that are consistent with each other are found: another load with field, velocities and curve scaled
+/// together, a collapse under other names, the factor of the last stage, the verdict.
 #[test]
 fn forgeries_that_were_once_confirmed() {
     let (study, original) = results(&path("newton_path", "finite", false));
@@ -235,7 +237,7 @@ fn forgeries_that_were_once_confirmed() {
         }
         all(value, by)
     };
-    // A state of the path below its peak, as it would be confirmed by its equilibrium alone.
+    // A state of the path below its peak, which its equilibrium alone would confirm.
     let text = changed(&path("newton_path", "finite", false), "until = \"collapse\"", "factor = 20.0");
     let (_, below) = results(&text);
     let mut forged = original.clone();
@@ -263,7 +265,7 @@ fn forgeries_that_were_once_confirmed() {
     }
 }
 
-/// Driven points.
+/// Every forged result of driven points is found.
 #[test]
 fn point_results() {
     let name = "point_cap_uniaxial.toml";
@@ -281,7 +283,7 @@ fn point_results() {
     });
 }
 
-/// The cases beside each other, as `compare` writes them.
+/// Every forged result of `compare` is found.
 #[test]
 fn compare_results() {
     let text = format!(
@@ -292,7 +294,7 @@ fn compare_results() {
     forged("compare", &text);
 }
 
-/// A bridge whose fill weighs, spreads and resists, with partial factors.
+/// A bridge whose fill has weight, spreads loads and resists, with partial factors.
 pub const BRIDGE: &str = "name = \"bridge\"\n[scene]\nscene = \"bridge\"\nwidth = 3.0\nmaterial = \"stone\"\njoint = \"dry\"\n\
     spans = [{ profile = { shape = \"segmental\", span = 3.0, rise = 0.75 }, thickness = 0.25, voussoirs = 9 }]\n\
     [scene.fill]\ncover = 0.3\ndensity = 1800.0\nfriction_angle = 30.0\n\
@@ -302,7 +304,7 @@ pub const BRIDGE: &str = "name = \"bridge\"\n[scene]\nscene = \"bridge\"\nwidth 
     [[stages]]\nname = \"dead\"\ngravity = 9.81\n[[stages]]\nname = \"live\"\nuntil = \"collapse\"\n\
     loads = [{ kind = \"vehicle\", vehicle = \"cs454_single\", at = 0.8 }]\n";
 
-/// A bridge whose fill weighs, spreads and resists, with partial factors: alone, and as the worst of all places.
+/// Every forged result of a bridge with fill and partial factors is found, alone and as the worst place of an envelope.
 #[test]
 fn bridge_and_envelope_results() {
     forged("bridge", BRIDGE);
@@ -311,7 +313,7 @@ fn bridge_and_envelope_results() {
     forged("envelope", &format!("{moved}{BRIDGE}"));
 }
 
-/// The friction that carries most.
+/// Returns a study that optimises the friction for the greatest load.
 pub fn optimum() -> String {
     format!(
         "kind = \"optimise\"\noptimise = {{ parameter = \"joints.dry.friction\", from = 0.3, to = 0.6, goal = \"maximise\", \
@@ -320,7 +322,7 @@ pub fn optimum() -> String {
     )
 }
 
-/// The best value of a parameter.
+/// Every forged result of an optimisation is found.
 #[test]
 fn optimise_results() {
     forged("optimise", &optimum());

@@ -1,4 +1,5 @@
-//! No certificate in the repository's studies passes above its gate. Tests look at every result of theirs likewise.
+//! No certificate in the studies of the repository passes above its gate. Other tests check each of their results in
+//! the same way.
 
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -9,7 +10,7 @@ use voussoir::solve::Unobserved;
 use voussoir::study::{StudySource, beside};
 use voussoir_tests::gates::above_gates;
 
-/// Runs a study; its cases, none where the kind has none with a scene.
+/// Runs a study and returns its cases; empty if the kind has no case with a scene.
 fn cases(path: &Path) -> Vec<CaseResult> {
     let text = std::fs::read_to_string(path).expect("a study");
     let source = StudySource::parse_with(&text, &path.display().to_string(), &[], &beside(path));
@@ -25,7 +26,7 @@ fn cases(path: &Path) -> Vec<CaseResult> {
     serde_json::from_value(results["cases"].clone()).expect("cases")
 }
 
-/// Every study of studies/cases, or those whose names hold the text of the variable `STUDIES`.
+/// No certificate of a study in studies/cases passes above its gate; the variable `STUDIES` selects studies by name.
 #[test]
 #[ignore = "long: every study of the repository"]
 fn no_certificate_of_the_studies_passes_above_its_gate() {

@@ -1,4 +1,4 @@
-//! Labels say what is there: mechanisms of symmetric scenes, crushing, kinds, headlines, figures.
+//! Labels describe the result: mechanisms of symmetric scenes, crushing, kinds, headlines, figures.
 
 use voussoir::core::certificate::{CRUSHES, MechanismKind};
 use voussoir::core::limit::{Greatest, Status};
@@ -8,7 +8,8 @@ use voussoir::results::CaseResult;
 use voussoir::study::Case;
 use voussoir_tests::{Arch, Wall, answered, elastic, first_case, friction};
 
-/// Hinges of the load at midspan: as many and as far from both springings, by every solver.
+/// A load at midspan has a symmetric mechanism with every solver: the hinges have the same distances from both
+/// springings.
 #[test]
 fn symmetric_scenes_have_symmetric_mechanisms() {
     let mut tried = 0;
@@ -39,7 +40,7 @@ fn symmetric_scenes_have_symmetric_mechanisms() {
     assert!(tried >= 10, "{tried} collapses");
 }
 
-/// No crushing where no law crushes, also where joints that stood open close again.
+/// If no law crushes, no crushing is reported, also where open joints close again.
 #[test]
 fn dry_friction_alone_crushes_nothing() {
     let text = "name = \"gothic\"\n[scene]\nscene = \"arch\"\nprofile = { shape = \"pointed\", span = 4.0, rise = 3.2 }\n\
@@ -59,14 +60,14 @@ fn dry_friction_alone_crushes_nothing() {
     assert_uncrushed(&case, &result);
 }
 
-/// The drawing says of no joint that it crushes.
+/// Asserts that the drawing shows no crushing joint.
 fn assert_uncrushed(case: &Case, result: &CaseResult) {
     let svg = mechanism_svg("gothic", &case.assembly, result).expect("a figure");
     assert!(svg.contains("<svg"), "no drawing");
     assert!(!svg.contains("crushes"), "a crushing joint in the legend");
 }
 
-/// A kind counts crushing over more than the stated share only.
+/// A joint whose toe crushes over less than the stated share still counts as a hinge.
 #[test]
 fn a_crushed_toe_is_still_a_hinge() {
     let arch = Arch { joint: friction(0.6), ends: "jointed", voussoirs: 13, ..Arch::default() };
@@ -84,7 +85,7 @@ fn a_crushed_toe_is_still_a_hinge() {
     assert_eq!(crushing(CRUSHES + 0.01).hinge_count, 3);
 }
 
-/// Neighbours that count as one hinge stand together: as many groups as `hinge_count` says.
+/// Neighbours that count as one hinge are listed together: the number of groups is `hinge_count`.
 #[test]
 fn listed_hinges_are_as_many_as_the_kind_says() {
     for voussoirs in [13, 60, 200] {
@@ -116,7 +117,8 @@ fn a_least_load_without_a_lower_end_is_open() {
     assert!(line.starts_with("open: proved for the load factor: ≤"), "{line}");
 }
 
-/// Settlements and loads of earlier stages are drawn; the ring stands at the load factor, not where the path ends.
+/// Figures show settlements and loads of earlier stages; the ring is drawn at the load factor, not at the end of the
+/// path.
 #[test]
 fn figures_show_all_stages_and_the_peak() {
     let arch = Arch {
@@ -155,8 +157,8 @@ fn figures_show_all_stages_and_the_peak() {
     assert!((highest(&fallen) - highest(&stopped)).abs() < 1.0, "{} {}", highest(&fallen), highest(&stopped));
 }
 
-/// Of a tower whose weight stands over its edge, far from the origin, what lies between the bounds of the factor 0 is rounding: no
-/// bracket is said of it.
+/// If the factor is 0 and the bounds differ by rounding only, no bracket is reported: a tower with its weight over its
+/// edge, far from the origin.
 #[test]
 fn rounding_of_a_zero_factor_is_no_bracket() {
     let at = |[x, y]: [f64; 2]| format!("[{:?}, {:?}]", x + 612.3, y + 347.1);
@@ -173,7 +175,7 @@ fn rounding_of_a_zero_factor_is_no_bracket() {
     let case = first_case(&tower);
     let mut result = voussoir::solve_case(&case);
     assert!(result.certificate.passed && result.load_factor.is_some_and(|factor| factor.abs() < 1e-10), "{result:?}");
-    // As another machine may round.
+    // The values of another machine with other rounding.
     (result.load_factor, result.bounds) = (Some(0.0), Some([Some(-1.48e-11), Some(0.0)]));
     let line = headline(&result, &case.stages);
     assert!(line.starts_with("collapse, λ = 0"), "{line}");

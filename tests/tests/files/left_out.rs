@@ -1,11 +1,12 @@
-//! `[output] fields = false`: the same answers without the forces and motions that prove them, and `verify` finds every change.
+//! `[output] fields = false`: the same answers without the forces and motions that prove them; `verify` finds every
+//! change.
 
 use crate::forgery::forgeries;
 use serde_json::{Value, json};
 use voussoir_tests::written::{findings, results};
 use voussoir_tests::{Arch, Wall, compliant, friction};
 
-/// Keys of a case that are left out, and those that become `null`.
+/// Keys of a case that are left out, and keys that become `null`.
 const LEFT_OUT: [&str; 6] = ["displacements", "joint_states", "yielded", "fill", "associated_motion", "lower_proof"];
 const EMPTIED: [&str; 4] = ["field", "ray", "motion", "thrust_line"];
 
@@ -27,14 +28,15 @@ fn answers_without_fields_are_those_with_them() {
         let mut rest = short.clone();
         for results in [&mut whole, &mut rest] {
             let case = results["cases"][0].as_object_mut().expect("a case");
-            // A proof's word stays, its steps do not; what it is filed under and took is another's.
+            // The word of a proof is kept, its steps are left out; hash and time differ.
             ["lower_proof", "case_hash", "seconds"].iter().for_each(|name| drop(case.shift_remove(*name)));
         }
         assert_eq!(whole, rest);
         assert_eq!(findings(&study, &short), Vec::<String>::new());
         let mut places = Vec::new();
         forgeries(&short["cases"][0], "/cases/0", &mut places);
-        // Residuals are rounding: where they are most of the numbers that are left, another machine's differ like that.
+        // Residuals are rounding errors: another machine's residuals differ by as much, so their changes are not found
+        // if they are most of the remaining numbers.
         for (path, forged) in places.into_iter().filter(|(path, _)| !path.contains("/residuals/")) {
             let mut changed = short.clone();
             *changed.pointer_mut(&path).expect("it is there") = forged;

@@ -1,10 +1,10 @@
-//! The lower end of a bracket is recomputed: multipliers of products prove it, and no other number passes.
+//! The lower end of a bracket is recomputed: multipliers of products prove it, and no other number is confirmed.
 
 use serde_json::{Value, json};
 use voussoir_tests::Wall;
 use voussoir_tests::written::{findings, results};
 
-/// A wall whose least load is below the associated one.
+/// Returns a wall whose least load is below the associated load.
 fn wall(limits: &str, joint: &str) -> String {
     let rows: [&[f64]; 3] = [&[1.0, 1.0], &[0.5, 1.0, 0.5], &[1.0, 1.0]];
     Wall {
@@ -20,8 +20,8 @@ fn wall(limits: &str, joint: &str) -> String {
 
 const COULOMB: &str = "law = \"coulomb\"\nfriction = 0.9";
 
-/// Untouched, the bracket is confirmed; a raised bound, a changed, dropped or negative multiplier, another
-/// range and another proof are found. Walls with friction, with cohesion and tension, and with dilatancy.
+/// An unchanged bracket is confirmed. A raised bound, a changed, dropped or negative multiplier, another range and
+/// another proof are found, for walls with friction, with cohesion and tension, and with dilatancy.
 #[test]
 fn a_changed_lower_proof_is_found() {
     for joint in [
@@ -42,7 +42,7 @@ fn a_changed_lower_proof_is_found() {
             assert!(!findings(&study, &changed).is_empty(), "{joint}: {path} was changed and not found");
         };
         for by in [1e-3, 1e-5] {
-            // Where the bracket is open; a closed one has no room for it.
+            // Only if the bracket is open; a closed bracket leaves no range for it.
             let open = low * (1.0 + by) < high;
             assert!(open || joint != COULOMB, "[{low}, {high}]");
             if open {
@@ -56,7 +56,7 @@ fn a_changed_lower_proof_is_found() {
         change("lower_proof/steps/0/range/1", json!(0.9 * high));
         change("lower_proof/steps", json!([]));
         change("lower_proof/by", json!("start"));
-        // Multipliers of products in which something of the found state moves or rests.
+        // Multipliers of products that are not zero at the found state.
         let multipliers = step["multipliers"].as_array().expect("multipliers");
         let mut tried = 0;
         for (i, row) in multipliers.iter().enumerate() {
@@ -74,7 +74,7 @@ fn a_changed_lower_proof_is_found() {
     }
 }
 
-/// With all products the bracket closes, and is confirmed.
+/// With all products the bracket closes and is confirmed.
 #[test]
 fn a_closed_bracket_is_confirmed() {
     let (study, original) = results(&wall("search_limit = 0.0", COULOMB));
@@ -85,8 +85,8 @@ fn a_closed_bracket_is_confirmed() {
     assert_eq!(findings(&study, &original), Vec::<String>::new());
 }
 
-/// Splitting the program of all products proves nearly the found load, range after range, and is confirmed; no other
-/// bound, no other range and no other multiplier of a product of the found state is.
+/// Splitting the program of all products proves nearly the found load, range by range, and is confirmed; every other
+/// bound, range and multiplier of a product of the found state is refused.
 #[test]
 fn a_bound_by_splitting_is_confirmed() {
     let split = wall("search_limit = 0.0\nproduct_rows = 0\nproduct_limit = 8.0", COULOMB);
@@ -103,7 +103,7 @@ fn a_bound_by_splitting_is_confirmed() {
         assert!(!findings(&study, &changed).is_empty(), "{path} was changed and not found");
     };
     change("bounds/0", json!(low * (1.0 + 1e-4)));
-    // The curve along which the bracket closed ends at the bounds and never opens.
+    // The curve along which the bracket closed ends at the bounds and never widens.
     let curve = case["bracket"].as_array().expect("a curve");
     let end = curve.len() - 1;
     assert!(
@@ -129,7 +129,7 @@ fn a_bound_by_splitting_is_confirmed() {
     }
 }
 
-/// What a search proved is said to be so.
+/// A bound that a search has proved names the search.
 #[test]
 fn a_search_is_named() {
     let (study, original) = results(&wall("product_rows = 0", COULOMB));

@@ -1,4 +1,4 @@
-//! Pages: the README's study gives the numbers shown, links lead somewhere, paragraphs can be read.
+//! Pages: the study of the README gives the numbers shown, links have targets, and paragraphs are short.
 
 use std::path::{Path, PathBuf};
 use voussoir::core::limit::Status;
@@ -10,7 +10,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// README.md, docs/*.md and the index of studies: name and text.
+/// Returns README.md, docs/*.md and the index of studies: name and text.
 fn pages() -> Vec<(PathBuf, String)> {
     let docs = std::fs::read_dir(root().join("docs")).expect("docs").map(|entry| entry.expect("an entry").path());
     let mut paths: Vec<PathBuf> = docs.filter(|path| path.extension().is_some_and(|e| e == "md")).collect();
@@ -19,20 +19,20 @@ fn pages() -> Vec<(PathBuf, String)> {
     paths.into_iter().map(|path| (path.clone(), std::fs::read_to_string(path).expect("a page"))).collect()
 }
 
-/// The first block of code in a language.
+/// Returns the first block of code in a language.
 fn block<'a>(page: &'a str, language: &str) -> &'a str {
     let start = page.find(&format!("```{language}\n")).expect("a block") + language.len() + 4;
     &page[start..start + page[start..].find("```").expect("its end")]
 }
 
-/// Whether a page shows that number: equal to half a unit of its last digit.
+/// Returns true if a page shows the number, within half a unit of its last digit.
 fn is_shown(shown: &str, value: f64) -> bool {
     let digits = shown.split_once('.').map_or(0, |(_, decimals)| decimals.len() as i32);
     let number: f64 = shown.parse().expect("a number");
     (number - value).abs() <= 0.5000001 * 10f64.powi(-digits)
 }
 
-/// Every number of the README's table is what its study gives; the study is that of the first command.
+/// Every number of the README's table is the result of its study; the study is that of the first command.
 #[test]
 fn the_study_of_the_readme_gives_its_numbers() {
     let page = std::fs::read_to_string(root().join("README.md")).expect("the README");
@@ -71,7 +71,7 @@ fn the_study_of_the_readme_gives_its_numbers() {
     assert_eq!(shown, 12);
 }
 
-/// Links between files of the project lead to files that exist, and to headings that exist.
+/// Links between files of the project have existing files and headings as targets.
 #[test]
 fn links_lead_somewhere() {
     let anchor = |heading: &str| -> String {
@@ -99,7 +99,7 @@ fn links_lead_somewhere() {
     assert!(seen > 30, "{seen}");
 }
 
-/// The README is a page; no paragraph of any page has more than 500 characters.
+/// The README has at most 130 lines, and no paragraph of any page has more than 500 characters.
 #[test]
 fn pages_can_be_read() {
     let mut long = Vec::new();

@@ -1,4 +1,5 @@
-//! `path_proofs.jsonl`: states and witnesses that prove the end of a path without its solver, and every forgery of them.
+//! `path_proofs.jsonl`: states and witnesses that prove the end of a path without its solver, and every forgery of
+//! them.
 
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -86,7 +87,7 @@ figures = false
 
 type Files = BTreeMap<String, Vec<u8>>;
 
-/// A study and the files that its run writes.
+/// Returns a study and the files that its run writes.
 fn run(text: &str) -> (Box<dyn LoadedStudy>, Files) {
     let study = read_study(text, "paths.toml", &[]).unwrap_or_else(|wrong| panic!("{wrong}"));
     let request = RunRequest { wanted: (0..study.count()).collect(), jobs: 1, ..RunRequest::default() };
@@ -104,7 +105,7 @@ impl Observer for Solved {
     }
 }
 
-/// The check of files, and the number of cases that it has solved.
+/// Checks files; returns the result and the number of cases that were solved.
 fn verified(study: &dyn LoadedStudy, files: &Files) -> (Verification, usize) {
     let solved = Solved::default();
     let file = |name: &str| files.get(name).map(|bytes| Box::new(Cursor::new(bytes.clone())) as Box<dyn Read>);
@@ -112,7 +113,7 @@ fn verified(study: &dyn LoadedStudy, files: &Files) -> (Verification, usize) {
     (found, solved.0.into_inner())
 }
 
-/// All findings in words.
+/// Returns all findings in words.
 fn findings(study: &dyn LoadedStudy, files: &Files) -> Vec<String> {
     let (found, _) = verified(study, files);
     let cases = found.findings.iter().map(|(id, why)| format!("case {id}: {why}"));
@@ -123,28 +124,28 @@ fn results(files: &Files) -> Value {
     serde_json::from_slice(&files["results.json"]).expect("JSON")
 }
 
-/// The files with another results.json.
+/// Returns the files with another results.json.
 fn with_results(files: &Files, results: &Value) -> Files {
     let mut files = files.clone();
     files.insert("results.json".into(), serde_json::to_vec(results).expect("JSON"));
     files
 }
 
-/// The same files as another kind of processor would have written them.
+/// Returns the same files as another kind of processor would have written them.
 fn elsewhere(files: &Files) -> Files {
     let mut results = results(files);
     results["platform"] = json!("elsewhere");
     with_results(files, &results)
 }
 
-/// The lines of the file, without checksums.
+/// Returns the lines of the file, without checksums.
 fn lines(files: &Files) -> Vec<Value> {
     let text = &files[PATH_PROOFS];
     let lines = text.split(|byte| *byte == b'\n').filter(|line| !line.is_empty());
     lines.map(|line| serde_json::from_slice(&line[case_in(line).expect("a checksum")]).expect("JSON")).collect()
 }
 
-/// The files with other lines, which have right checksums.
+/// Returns the files with other lines, which have correct checksums.
 fn with_lines(files: &Files, lines: &[Value]) -> Files {
     let mut files = files.clone();
     let text = lines.iter().flat_map(|line| sealed_text(line.to_string().as_bytes())).collect();
@@ -152,7 +153,7 @@ fn with_lines(files: &Files, lines: &[Value]) -> Files {
     files
 }
 
-/// The files after a change of the path in the first line.
+/// Returns the files after a change of the path in the first line.
 fn forged(files: &Files, change: impl FnOnce(&mut Value)) -> Files {
     let mut lines = lines(files);
     change(&mut lines[0]["path"]);
@@ -164,7 +165,7 @@ fn times(value: &mut Value, by: f64) {
     *value = json!(by * value.as_f64().expect("a number"));
 }
 
-/// The place of a mechanism cannot be forged: the factors of the last states tell whether the load stands still.
+/// A forged place of a mechanism is found: the factors of the last states show if the load is constant.
 #[test]
 fn a_forged_place_of_a_mechanism_is_found() {
     let (study, files) = run(RINGS);
@@ -175,7 +176,8 @@ fn a_forged_place_of_a_mechanism_is_found() {
     assert!(found.iter().any(|why| why.contains("the place of the mechanism")), "{found:?}");
 }
 
-/// The states of both paths prove their results. On another processor nothing is solved again; on this one the unproved parts are.
+/// The stored states prove the results of both paths. On another processor no case is solved again; on this one the
+/// unproved parts are.
 #[test]
 fn stored_states_prove_a_path_without_its_solver() {
     for (text, cases) in [(RINGS, 2), (TIPS, 1)] {
@@ -193,7 +195,7 @@ fn stored_states_prove_a_path_without_its_solver() {
     }
 }
 
-/// A file without the states, as all were before, and one that is missing: the case is solved again.
+/// If the file is missing, the case is solved again.
 #[test]
 fn without_the_file_cases_are_solved_again() {
     let (study, mut files) = run(RINGS);
@@ -206,7 +208,7 @@ fn without_the_file_cases_are_solved_again() {
     assert_eq!((found.findings, found.files, found.paths, solved), (vec![], vec![], [0, 0], 2));
 }
 
-/// `[output] path_proofs` decides; by default studies of few cases have the file.
+/// `[output] path_proofs` decides if the file is written; by default studies with few cases have it.
 #[test]
 fn the_study_decides() {
     let with = |keys: &str| run(&changed(RINGS, "figures = false", &format!("figures = false\n{keys}"))).1;
@@ -218,7 +220,8 @@ fn the_study_decides() {
     assert!(study.run(&request, &Unobserved).files.iter().all(|(name, _)| name != PATH_PROOFS));
 }
 
-/// States that are moved, dropped, swapped or doubled, false indices, and false witnesses: each is found, with the line and the case.
+/// States that are moved, dropped, exchanged or doubled, false indices and false witnesses are found, with line and
+/// case.
 #[test]
 fn forged_states_and_witnesses_are_found() {
     type Forgery = (&'static str, fn(&mut Value));
@@ -249,7 +252,7 @@ fn forged_states_and_witnesses_are_found() {
             assert!(named && found[0].contains("case 0"), "{}: {name}: {found:?}", study.name());
         }
     }
-    // A state on a straight piece between two others may be missing; no state at which a point changes its mode.
+    // A state on a straight piece between two others may be missing, but not a state at which a point changes its mode.
     let (study, files) = run(RINGS);
     let count = lines(&files)[0]["path"]["states"].as_array().expect("states").len();
     let dropped = (0..count).filter(|place| {
@@ -263,7 +266,7 @@ fn forged_states_and_witnesses_are_found() {
     let found = dropped.count();
     assert!(10 * found >= 9 * count, "{found} of {count} states that are dropped are found");
     println!("{found} of {count} states that are dropped are found");
-    // The mechanism of associated flow is its own witness.
+    // A mechanism of associated flow needs no separate witness.
     let (study, files) = run(RINGS);
     for by in [0.5, -1.0] {
         let forged = forged(&files, |path| {
@@ -291,7 +294,7 @@ fn forged_states_and_witnesses_are_found() {
     }
 }
 
-/// The state in the middle of a path.
+/// Returns the state in the middle of a path.
 fn middle(path: &mut Value) -> &mut Value {
     let states = list(path, "states");
     let place = states.len() / 2;
@@ -305,7 +308,7 @@ fn first_half(path: &mut Value) -> Vec<Value> {
     list(path, "states").drain(..half).collect()
 }
 
-/// The greatest number of a list of lists.
+/// Returns the greatest number of a list of lists.
 fn greatest(lists: &mut Value) -> &mut Value {
     let numbers = lists.as_array_mut().expect("a list").iter_mut().flat_map(|own| own.as_array_mut().expect("a list"));
     let size = |number: &&mut Value| number.as_f64().expect("a number").abs();
@@ -332,7 +335,7 @@ fn each_number(value: &mut Value, change: &dyn Fn(f64) -> f64) {
     }
 }
 
-/// Lines of another case, damaged, doubled, in a wrong order or of no case: each is found, and nothing panics.
+/// Lines of another case and damaged, doubled, misplaced or surplus lines are found without panic.
 #[test]
 fn damaged_and_foreign_lines_are_found() {
     let (study, files) = run(RINGS);
@@ -406,7 +409,7 @@ fn claims_beyond_the_states_are_found() {
     }
 }
 
-/// Cases that are streamed have the file if the study asks for it, and its lines are checked alike.
+/// Cases that are streamed have the file if the study asks for it, and its lines are checked in the same way.
 #[test]
 fn streamed_cases_have_their_lines() {
     let source = StudySource::parse(&changed(RINGS, "curve = true", "path_proofs = true"), "paths.toml", &[]);
@@ -424,7 +427,7 @@ fn streamed_cases_have_their_lines() {
     assert!(found.iter().any(|why| why.starts_with("path_proofs.jsonl, line 3, case 0")), "{found:?}");
 }
 
-/// A run that goes on, one whose results are finished, and parts that are put together write the same file.
+/// A continued run, a run with finished results and merged parts write the same file.
 #[test]
 fn resume_and_merge_keep_the_lines() {
     let folder = std::env::temp_dir().join(format!("voussoir_path_proofs_{}", std::process::id()));

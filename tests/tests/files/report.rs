@@ -1,4 +1,5 @@
-//! Studies of studies: verdicts come from the numbers of the parts, a changed one is found, mistakes have their place.
+//! Reports over several studies: verdicts follow from the numbers of the parts, changed verdicts are found, mistakes
+//! have places.
 
 use serde_json::Value as Json;
 use voussoir::kinds::{LoadedStudy, RunOutput, RunRequest, StoredResults, read_source_beside};
@@ -6,7 +7,7 @@ use voussoir::solve::Unobserved;
 use voussoir::study::{StudyError, StudySource};
 use voussoir_tests::{Arch, changed};
 
-/// The reference arch and a flat one.
+/// Returns the reference arch and a flat arch.
 fn rises() -> String {
     let arch = changed(&Arch::default().study(), "name = \"arch\"", "name = \"rises\"");
     format!("{arch}[sweep]\n\"scene.profile.rise\" = {{ list = [2.99, 1.19] }}\n")
@@ -51,7 +52,7 @@ fn read(report: &str) -> Result<Box<dyn LoadedStudy>, Vec<String>> {
     read_source_beside(source, &neighbour).map_err(words)
 }
 
-/// The results.json of the only part, and what the report makes of it.
+/// Returns the results.json of the only part, and the output of the report.
 fn run(report: &dyn LoadedStudy) -> (String, RunOutput) {
     let part = &report.parts()[0].study;
     let request = RunRequest { wanted: (0..part.count()).collect(), jobs: 1, ..RunRequest::default() };
@@ -72,7 +73,7 @@ fn verdicts_are_computed_and_changed_ones_are_found() {
     let results = text(&output, "results.json");
     let json: Json = serde_json::from_str(&results).expect("JSON");
     let verdicts: Vec<&str> = (0..3).map(|i| json["claims"][i]["verdict"].as_str().expect("a verdict")).collect();
-    // An unbounded load at rise 1.19 m: there is no greatest one, and it is not finite.
+    // The load is unbounded at rise 1.19 m: the greatest load does not exist.
     assert_eq!(verdicts, ["reproduced", "refuted", "depends_on"]);
     assert!(output.certified);
     let page = text(&output, "report.html");
@@ -99,7 +100,7 @@ fn verdicts_are_computed_and_changed_ones_are_found() {
     assert!(verify(&results.replacen("698.02", "699.02", 2)) > 0);
 }
 
-/// A claim that rests on a case without an answer is undecided, and the run says so.
+/// A claim about a case without an answer is undecided, and the run reports it.
 #[test]
 fn what_no_study_has_proven_is_undecided() {
     let report = read(REPORT).expect("a report");

@@ -1,4 +1,4 @@
-//! A study and its `resolved.toml` are the same cases.
+//! A study and its `resolved.toml` have the same cases.
 
 use voussoir::study::{Study, load};
 
@@ -77,7 +77,7 @@ fn a_specific_weight_weighs_what_it_says_and_a_swept_value_is_the_rounded_one() 
 
 #[test]
 fn keys_without_influence_are_noted() {
-    // A compliant joint makes a path; limit analysis is asked for by name.
+    // A compliant joint needs a path; here limit analysis is chosen by name.
     let study = read(TEXT, &[("solver.solver", "limit_chain")]);
     assert_eq!(
         study.cases[0].notes,

@@ -1,5 +1,5 @@
-//! A structure whose greatest limit point is not its first one: both numbers have equal weight wherever a result is shown, and
-//! `verify` finds every change of what follows a limit point.
+//! A structure whose greatest limit point is not its first one: every output shows both numbers with equal weight, and
+//! `verify` finds every change of the data after a limit point.
 
 use super::forgery::WORDS;
 use serde_json::{Value, json};
@@ -8,8 +8,8 @@ use voussoir::solve::Unobserved;
 use voussoir_tests::written::{findings, results};
 use voussoir_tests::{Arch, changed};
 
-/// A ring of eight rigid voussoirs on compliant joints, pushed down and sideways; displacements are finite. At the first limit
-/// point a joint slips; the load falls by a fifteenth and then rises to the second one.
+/// A ring of eight rigid voussoirs on compliant joints, pushed down and sideways, with finite displacements. At the
+/// first limit point a joint slips; the load falls by a fifteenth and then rises to the second limit point.
 const RING: &str = r#"
 name = "ring"
 [scene]
@@ -99,7 +99,7 @@ fn a_limit_point_has_its_fall_its_energy_and_the_next_state_at_its_load() {
     assert_eq!(greatest["factor"], case["load_factor"]);
     let (next, own) = (number(&first["next_state"]["displacement"]), number(&first["displacement"]));
     assert!(own < next && next < number(&greatest["displacement"]), "{own} {next}");
-    // The area between the load and the path, by the stored curve.
+    // The area between the load and the path, from the stored curve.
     let curve: Vec<[f64; 2]> = serde_json::from_value(case["curve"].clone()).expect("a curve");
     let below = |factor: f64| number(&first["factor"]) - factor;
     let top = curve.windows(2).position(|pair| pair[1][1] < pair[0][1]).expect("a fall");
@@ -109,7 +109,7 @@ fn a_limit_point_has_its_fall_its_energy_and_the_next_state_at_its_load() {
     let area: f64 = 5998.86f64.hypot(41079.6) * fallen.windows(2).map(trapezium).sum::<f64>();
     let released = number(&first["released_energy"]);
     assert!((area - released).abs() < 0.05 * released.abs(), "{area} {released}");
-    // After the greatest one the load does not come back.
+    // After the greatest limit point the load does not reach its value again.
     assert_eq!(greatest["next_state"], Value::Null);
     let fall = number(&greatest["fall"]);
     assert!(2.0 * fall >= number(&greatest["factor"]), "{fall} {}", greatest["released_energy"]);
@@ -139,7 +139,7 @@ fn until_first_limit_point_ends_where_load_control_ends() {
         }
         let listed = case["limit_points"].as_array().expect("limit points");
         assert_eq!(listed.len(), 1, "{word}");
-        // Nothing that follows belongs to the range.
+        // Data after the end of the range are left out.
         assert!(listed[0]["released_energy"].is_null() && listed[0]["next_state"].is_null(), "{word}: {}", listed[0]);
     }
     assert_eq!(whole["continuation"], Value::Null, "a collapse has no reason to end at a limit point");
@@ -275,7 +275,7 @@ fn a_load_without_a_limit_point_in_its_range_is_open_or_stands_at_factor_max() {
     let failures = case["certificate"]["failures"].to_string();
     assert!(failures.contains("no_limit_point_in_range") && failures.contains("the range is 0.300 m"), "{failures}");
     assert_eq!((&case["first_limit_point"], &case["limit_points"]), (&Value::Null, &Value::Null));
-    // The load grows with the displacement: 4 MN/m.
+    // The load is proportional to the displacement: 4 MN/m.
     let [end, lower] = [number(&case["followed_to"]["displacement"]), number(&case["bounds"][0])];
     assert!((lower - 4000.0 * end).abs() < 0.01 * lower, "{lower} {end}");
     let bounded = changed(PAD, "until = \"collapse\"", "until = \"collapse\"\nfactor_max = 500.0");

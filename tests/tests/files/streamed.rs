@@ -1,4 +1,5 @@
-//! Results of very many cases are verified from file to file: what is forged, missing, doubled or foreign is found there too.
+//! Results of very many cases are verified from file to file: forged, missing, doubled and foreign entries are found
+//! too.
 
 use serde_json::{Value, json};
 use std::io::{Cursor, Read};
@@ -7,10 +8,10 @@ use voussoir::solve::Unobserved;
 use voussoir::study::{StudyFile, StudySource, Sweep};
 use voussoir_tests::Arch;
 
-/// Changes what a result file says.
+/// A change of a result file.
 type Forgery<'f> = &'f dyn Fn(&mut Value);
 
-/// Five cases as if they were too many to be held.
+/// Returns five cases as a sweep that is not stored in memory.
 fn sweep() -> Sweep {
     let arch = Arch { voussoirs: 7, ends: "jointed", ..Arch::default() };
     let text = arch.study()
@@ -19,12 +20,12 @@ fn sweep() -> Sweep {
     StudyFile::read(source).and_then(StudyFile::sweep).expect("a sweep")
 }
 
-/// What `verify` says of results.json and results.csv.
+/// Returns the findings of `verify` for results.json and results.csv.
 fn findings(sweep: &Sweep, results: &[u8], table: Option<&[u8]>) -> Vec<String> {
     findings_of(sweep, results, table, None)
 }
 
-/// What `verify` says of results.json and both tables.
+/// Returns the findings of `verify` for results.json and both tables.
 fn findings_of(sweep: &Sweep, results: &[u8], table: Option<&[u8]>, parquet: Option<&[u8]>) -> Vec<String> {
     let bytes = |name: &str| match name {
         "results.json" => Some(results.to_vec()),
@@ -79,7 +80,7 @@ fn what_is_forged_is_found() {
         v["only_cases"] = json!([0, 1]);
     });
     assert_eq!(chosen, Vec::<String>::new(), "a run of two cases");
-    // The table: a cell, a row more, a row less, another header.
+    // The table: a changed cell, one row more, one row less, another header.
     let text = String::from_utf8(table.clone()).expect("text");
     let last = text.trim_end().rfind('\n').expect("rows");
     for forged in
@@ -87,7 +88,7 @@ fn what_is_forged_is_found() {
     {
         assert_eq!(findings(&sweep, results, Some(forged.as_bytes())), ["results.csv is not what results.json gives"]);
     }
-    // The table with types: as it is written, then with a byte of it changed here and there, longer and shorter.
+    // The typed table: unchanged, with a changed byte at several places, longer and shorter.
     let parquet = bytes("results.parquet");
     assert_eq!(findings_of(&sweep, results, Some(table), Some(parquet)), Vec::<String>::new());
     let cut = parquet.len() - 1;
@@ -97,7 +98,7 @@ fn what_is_forged_is_found() {
         let found = findings_of(&sweep, results, Some(table), Some(&forged));
         assert_eq!(found, ["results.parquet is not what results.json gives"]);
     }
-    // Files that were cut short.
+    // Truncated files.
     assert!(!findings(&sweep, &results[..results.len() / 2], None).is_empty());
     assert!(!findings(&sweep, b"", None).is_empty());
 }

@@ -1,4 +1,4 @@
-//! Profiles from a file beside the study: the points of the file are those of the resolved study.
+//! Profiles from a file beside the study: the points of the file are the points of the resolved study.
 
 use voussoir::kinds::read_source;
 use voussoir::study::{StudySource, load};
@@ -46,7 +46,7 @@ fn a_survey_is_its_points() {
     assert_close(collapse_factor(&resolved), collapse_factor(&by_hand), 1e-12);
 }
 
-/// Mistakes of the file stand at its line, those of its name in the study.
+/// Mistakes in the file are reported at its line, mistakes in its name in the study.
 #[test]
 fn mistakes_of_a_survey() {
     let said = |text: &str, survey: Option<&str>| {

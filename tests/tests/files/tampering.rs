@@ -21,14 +21,14 @@ fn each_number(value: &Value, by: f64, path: &str, check: &mut dyn FnMut(&str, f
     }
 }
 
-/// The greatest force or velocity in a list of entries.
+/// Returns the greatest force or velocity in a list of entries.
 fn greatest(list: &Value) -> f64 {
     let entries = list.as_array().into_iter().flatten();
     let vectors = entries.filter_map(|entry| entry.get("force").or(entry.get("velocity"))?.as_array());
     vectors.flatten().filter_map(Value::as_f64).fold(0.0, |m, x| m.max(x.abs()))
 }
 
-/// Untouched results are confirmed; every changed factor, bound, force, velocity, hinge and point is found.
+/// Unchanged results are confirmed; every changed factor, bound, force, velocity, hinge and point is found.
 #[test]
 fn every_changed_number_is_found() {
     let unbounded = Arch { rise: 1.19, ..Arch::default() };
@@ -49,14 +49,14 @@ fn every_changed_number_is_found() {
         assert_eq!(verify(&study, &read), vec![]);
         let mut tried = 0;
         each_number(&original["cases"][0], 1e-6, "/cases/0", &mut |path, value| {
-            // What work cost is not a claim about the structure.
+            // The cost is not a claim about the structure.
             if path.contains("/seconds") || path.contains("/counters") {
                 return;
             }
             let mut changed = original.clone();
             *changed.pointer_mut(path).expect("the path exists") = json!(value);
-            // Forces and velocities are checked against the scene's greatest: a change of one in a
-            // million of one that is a thousand times smaller is within the tolerance of 1e-10.
+            // Forces and velocities are checked relative to the greatest of the scene: a change by a millionth of a
+            // value that is a thousand times smaller is within the tolerance of 1e-10.
             let slot = original.pointer(path).and_then(Value::as_f64).expect("a float");
             let list =
                 ["field", "ray", "motion"].into_iter().find(|list| path.starts_with(&format!("/cases/0/{list}/")));
@@ -104,8 +104,8 @@ fn every_changed_word_is_found() {
     }
 }
 
-/// A state with finite displacements: an arch whose right support has moved out, of rigid blocks with
-/// compliant joints and of elastic ones.
+/// Returns a study with finite displacements: an arch whose right support has moved out, with rigid blocks on compliant
+/// joints or with elastic blocks.
 fn spread(material: &str, joint: &str) -> String {
     format!(
         r#"name = "spread"
@@ -143,8 +143,8 @@ loads = [{{ kind = "point", span_fraction = 0.4, force = [0.0, -100.0] }}]
     )
 }
 
-/// Equilibrium and gaps of a state with finite displacements are those of its displaced places:
-/// every changed force, displacement and factor is found, and so is the state taken for one of small displacements.
+/// Equilibrium and gaps of a state with finite displacements are those of its displaced position: every changed force,
+/// displacement and factor is found, and the state is refused as one of small displacements.
 #[test]
 fn every_changed_number_of_finite_displacements_is_found() {
     for (material, joint) in [

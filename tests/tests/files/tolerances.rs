@@ -1,4 +1,5 @@
-//! Results of another processor: for each tolerance a change just inside, which claims the same, and one just outside, which is found.
+//! Results of another processor: for each tolerance a change just inside, which makes the same claim, and one just
+//! outside, which is found.
 
 use super::forgery::path;
 use serde_json::{Value, json};
@@ -13,7 +14,7 @@ use voussoir::verify::tolerances::{
 use voussoir_tests::written::{findings, results};
 use voussoir_tests::{Arch, changed, crushing, friction};
 
-/// The same results as if another kind of processor had written them.
+/// Returns the same results as if another kind of processor had written them.
 pub fn of_another_processor(results: &Value) -> Value {
     let mut foreign = results.clone();
     foreign["processor_features"] = json!(["none"]);
@@ -37,7 +38,7 @@ fn inside_and_outside(name: &str, text: &str, at: &str, own: (&Tolerance, Route,
     }
 }
 
-/// The greatest number of a list of numbers, or of a key in a list of entries.
+/// Returns the greatest number of a list of numbers, or of a key in a list of entries.
 fn greatest(list: &Value, key: &str) -> f64 {
     match list {
         Value::Array(items) => {
@@ -64,7 +65,7 @@ fn paths_by_steps() {
         ("/mechanism/hinges/0/rotation".into(), steps(&RATE, greatest(&case["mechanism"]["hinges"], "rotation"))),
         ("/limit_points/0/displacement".into(), steps(&PEAK, greatest(&case["limit_points"], "displacement"))),
         ("/limit_points/0/fall".into(), steps(&PEAK, greatest(&case["limit_points"], "fall"))),
-        // The last vertex: it may not leave the end of the other curve.
+        // The last vertex must not leave the end of the other curve.
         (format!("/curve/{}/1", curve.len() - 1), steps(&CURVE, range(1))),
     ];
     for (at, own) in checks {
@@ -112,12 +113,12 @@ fn loads_of_a_bridge() {
         .expect("loads")
         .iter()
         .map(|load| load["point"][0].as_f64().expect("a number"));
-    // Numbers of one key have one scale in the second run, one scale for each axis in the loads of the study.
+    // Numbers of one key have one scale in the second run, and one scale for each axis in the loads of the study.
     let scale = points.fold(0.0, |most: f64, x| most.max(x.abs()));
     inside_and_outside("bridge", super::forgery::BRIDGE, "/loads/3/point/0", (&GEOMETRY, Route::Limit, scale));
 }
 
-/// A search of another processor tries values that differ by rounding. They are solved again; other values are found.
+/// Values of a search on another processor differ by rounding and are solved again; other values are found.
 #[test]
 fn values_that_a_search_has_chosen() {
     let (study, original): (Study, Value) = results(&super::forgery::optimum());
@@ -138,7 +139,7 @@ fn values_that_a_search_has_chosen() {
     }
 }
 
-/// The page shows the table of the program.
+/// The page shows the table of tolerances of the program.
 #[test]
 fn the_page_states_every_tolerance() {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/theory/verifying.md");
@@ -150,8 +151,8 @@ fn the_page_states_every_tolerance() {
     );
 }
 
-/// Results of this program on this processor are compared bit by bit; a head that names another program is no way around
-/// the hashes of cases.
+/// Results of this program on this processor are compared bit by bit; a head that names another program does not avoid
+/// the check of the hashes of cases.
 #[test]
 fn the_head_decides_how_results_are_compared() {
     let (study, original) = results(&Arch::default().study());
@@ -167,7 +168,7 @@ fn the_head_decides_how_results_are_compared() {
     let mut later = original.clone();
     later["format"] = json!(99);
     assert!(findings(&study, &later).iter().any(|why| why.contains("format 99")));
-    // Results without a head are older.
+    // Results without a head are from an older format.
     let mut older = original.clone();
     ["format", "commit", "sources", "platform", "processor_features", "mathematics", "plugins", "files"]
         .iter()

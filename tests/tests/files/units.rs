@@ -1,4 +1,4 @@
-//! Every file and picture shows the units and words of keys that the schema of the owning plug-in has.
+//! Every file and picture shows the units and words of keys from the schema of the owning plug-in.
 
 use serde_json::{Map, Value as Json, json};
 use std::collections::{BTreeSet, HashSet};
@@ -12,7 +12,7 @@ use voussoir::solve::Unobserved;
 use voussoir::study::{StudyFile, StudySource, SweptKeys, beside, kind_of, meaning_in, study_keys};
 use voussoir_tests::study;
 
-/// A number of the schema: its path below a parameter, a value that holds it, and its description.
+/// A number of the schema: its path below a parameter, a value that contains it, and its description.
 struct Number {
     path: Vec<String>,
     value: Json,
@@ -29,7 +29,7 @@ impl Number {
     }
 }
 
-/// Every number of a table with these keys; `tag` is the word that chooses them.
+/// Returns every number of a table with these keys; `tag` is the word that chooses them.
 fn numbers_of_table(parameters: &'static [Parameter], tag: Option<(&str, &str)>) -> Vec<Number> {
     let of = |parameter: &'static Parameter| {
         let table = move |value: Json| {
@@ -42,7 +42,7 @@ fn numbers_of_table(parameters: &'static [Parameter], tag: Option<(&str, &str)>)
     parameters.iter().flat_map(of).collect()
 }
 
-/// Every number of a shape that belongs to a parameter.
+/// Returns every number of a shape that belongs to a parameter.
 fn numbers(shape: Shape, parameter: &'static Parameter) -> Vec<Number> {
     let one = |value: Json, quantity| {
         vec![Number { path: Vec::new(), value, name: parameter.name, doc: parameter.doc, quantity }]
@@ -86,7 +86,7 @@ fn numbers(shape: Shape, parameter: &'static Parameter) -> Vec<Number> {
     }
 }
 
-/// The lookup gives each number of each plug-in the unit and the text that the schema gives it there.
+/// The lookup gives each number of each plug-in the unit and the text of the schema.
 #[test]
 fn every_number_of_every_plugin_has_the_unit_and_the_words_of_its_schema() {
     let own_keys = kinds().into_iter().filter_map(|entry| entry.kind.file_keys());
@@ -113,7 +113,7 @@ fn every_number_of_every_plugin_has_the_unit_and_the_words_of_its_schema() {
     assert!(count > 500, "{count} numbers");
 }
 
-/// Words come from the schema: a clause of its text, the parameter's name, or both.
+/// Asserts that words come from the schema: a clause of its text, the name of the parameter, or both.
 fn assert_words(key: &str, meaning: &KeyMeaning) {
     let words = meaning.words();
     let name = meaning.name.replace('_', " ");
@@ -126,7 +126,7 @@ fn assert_words(key: &str, meaning: &KeyMeaning) {
     assert!(meaning.words_in_place().ends_with(&words) && meaning.title().starts_with(&meaning.words_in_place()));
 }
 
-/// One name in several plug-ins: the owner decides, and no key borrows from another place.
+/// If several plug-ins have keys with one name, the owner decides the unit, and a key in another place has no effect.
 #[test]
 fn the_owner_of_a_key_decides_its_unit() {
     let load = |load: Json| json!({ "stages": [{ "name": "live", "loads": [load] }] });
@@ -174,7 +174,7 @@ impl Written {
         String::from_utf8_lossy(bytes).into_owned()
     }
 
-    /// The row of the calculation record with these words.
+    /// Returns the row of the calculation record with these words.
     fn record(&self, words: &str) -> String {
         let (page, start) = (self.text("report.html"), format!("<tr><th scope=\"row\">{words}</th><td>"));
         let row = page.split(&start).nth(1).unwrap_or_else(|| panic!("no row \"{words}\""));
@@ -264,7 +264,8 @@ fn the_place_of_a_vehicle_is_a_length() {
     assert!(!written.text("report.html").contains("span fraction"));
 }
 
-/// Keys of one axis, and one key with different owners in different variants.
+/// Variants and lockstep axes have the units of their owners, also for one key with different owners in different
+/// variants.
 #[test]
 fn variants_and_lockstep_have_units_of_their_owners() {
     let sweep = "[sweep.zip]\n\"scene.thickness\" = { list = [0.6, 0.8] }\n\"joints.dry.compressive_strength\" = \

@@ -1,4 +1,4 @@
-//! The studies that mutations begin with.
+//! The studies that are mutated.
 
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
@@ -9,10 +9,10 @@ pub struct Seed {
     pub table: toml::Table,
 }
 
-/// Largest file that is mutated \[bytes\]: larger ones repeat the keys of others.
+/// Size of the largest file that is mutated \[bytes\]: larger files repeat the keys of others.
 const MAX_BYTES: usize = 5000;
 
-/// All studies of the tree, right and wrong ones.
+/// All studies of the tree, valid and invalid.
 pub static STUDIES: LazyLock<Vec<Seed>> = LazyLock::new(|| {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let folders = ["studies/cases", "studies/cases/paper", "studies/src/commands/new"];
@@ -23,7 +23,7 @@ pub static STUDIES: LazyLock<Vec<Seed>> = LazyLock::new(|| {
     all
 });
 
-/// The number of right studies, which come first.
+/// The number of valid studies, which come first.
 pub static RIGHT: LazyLock<usize> =
     LazyLock::new(|| STUDIES.iter().position(|seed| seed.path.to_string_lossy().contains(WRONG)).expect("wrong ones"));
 
@@ -36,7 +36,7 @@ fn studies(folder: &Path) -> Vec<Seed> {
     paths.sort();
     let seed = |path: PathBuf| {
         let text = std::fs::read_to_string(&path).expect("a study");
-        // Wrong studies may be no TOML.
+        // Invalid studies may not be TOML.
         let table = (text.len() < MAX_BYTES).then(|| text.parse().ok())??;
         Some(Seed { path, table })
     };

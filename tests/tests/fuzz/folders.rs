@@ -80,7 +80,7 @@ fn files(folder: &Path) -> Vec<PathBuf> {
     all
 }
 
-/// The text of a file of one of the folders, mutated; `beside` is the file.
+/// Returns the mutated text of a file of one of the folders; `beside` is the file.
 pub fn folder(seed: u64) -> Input {
     let mut random = Sequence::new(seed);
     let base = random.one_of(&BASE);
@@ -89,7 +89,7 @@ pub fn folder(seed: u64) -> Input {
     damaged(path, &mut random)
 }
 
-/// The same of a part.
+/// Returns the mutated text of a part.
 pub fn part(seed: u64) -> Input {
     let mut random = Sequence::new(seed);
     let path = random.one_of(&PARTS).clone();
@@ -126,7 +126,7 @@ fn structured(text: &str, random: &mut Sequence) -> Option<String> {
     Some(lines.join("\n") + "\n")
 }
 
-/// Changes one value of a tree of JSON: walks down from the root and stops somewhere.
+/// Changes one value of a JSON tree: walks down from the root and stops at a random place.
 fn change(value: &mut Value, random: &mut Sequence) {
     let down = !random.chance(0.15);
     match value {
@@ -173,7 +173,7 @@ fn replacement(old: &Value, random: &mut Sequence) -> Value {
     }
 }
 
-/// Copies the folder of the file that is replaced; gives the copy.
+/// Copies the folder of the file that is replaced and returns the copy.
 fn copy(input: &Input) -> PathBuf {
     let whole = input.beside.strip_prefix(own_folder()).expect("a file of this process");
     let from = own_folder().join(whole.components().next().expect("a folder"));

@@ -1,8 +1,8 @@
 //! Unusual inputs: mutations of real studies, surveys, drawings, results and parts, by the schema.
 //!
-//! One rule for all: an exit code from 0 to 3 or a message, no panic, bounded time and memory. Inputs follow from a seed, so
-//! that a failure can be repeated. Each target works in a child process: one that ends or hangs is started again behind the
-//! seed, and the seed is reported.
+//! One rule for all: an exit code from 0 to 3 or a message, no panic, bounded time and memory. Inputs follow from a
+//! seed, so that a failure can be repeated. Each target runs in a child process. If a child process ends or hangs, its
+//! seed is reported and a new process starts with the next seed.
 //!
 //! `VOUSSOIR_FUZZ_CASES=10000 cargo test --release -p voussoir-tests --test fuzz` tries that many inputs of each target;
 //! `VOUSSOIR_FUZZ_FROM=500` begins with another seed. Inputs of findings, and a single input, are kept in `target/tmp`.
@@ -18,7 +18,7 @@ mod worker;
 
 use supervisor::hold;
 
-/// Inputs of each target in the usual tests.
+/// Inputs of each target in the default tests.
 const SHORT: u64 = 150;
 
 #[test]

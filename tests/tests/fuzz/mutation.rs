@@ -4,7 +4,7 @@ use super::shapes::{entry, entry_of, number, text, value_of};
 use toml::{Table, Value};
 use voussoir_tests::sequence::Sequence;
 
-/// Mutates a tree some times.
+/// Mutates a tree a few times.
 pub fn mutate(tree: &mut Table, other: &Table, random: &mut Sequence) {
     let mut root = Value::Table(std::mem::take(tree));
     let times = *random.one_of(&[1, 1, 1, 2, 3, 5]);
@@ -16,7 +16,7 @@ pub fn mutate(tree: &mut Table, other: &Table, random: &mut Sequence) {
     }
 }
 
-/// The number of nodes of a tree, itself among them.
+/// Returns the number of nodes of a tree, including the root.
 fn size(value: &Value) -> usize {
     1 + match value {
         Value::Table(table) => table.values().map(size).sum(),
@@ -25,7 +25,7 @@ fn size(value: &Value) -> usize {
     }
 }
 
-/// Node number `index`, counted as [`size`] does; the caller's index is below it.
+/// Returns node number `index`, counted as in [`size`]; `index` must be below the number of nodes.
 fn node_mut(value: &mut Value, index: usize) -> &mut Value {
     if index == 0 {
         return value;
@@ -51,7 +51,7 @@ fn any<'a>(root: &'a mut Value, random: &mut Sequence) -> &'a mut Value {
     node_mut(root, index)
 }
 
-/// A table of the tree.
+/// Returns a table of the tree.
 fn any_table<'a>(root: &'a mut Value, random: &mut Sequence) -> &'a mut Table {
     let count = size(root);
     let mut index = random.whole(0, count - 1);
@@ -151,7 +151,7 @@ fn once(root: &mut Value, other: &Table, random: &mut Sequence) {
     }
 }
 
-/// A number that may be as right as another.
+/// Returns a plausible number near another one.
 fn near(old: &Value, random: &mut Sequence) -> Value {
     match old {
         Value::Integer(x) => Value::Integer((x + random.whole(0, 6) as i64 - 3).max(1)),
@@ -160,14 +160,14 @@ fn near(old: &Value, random: &mut Sequence) -> Value {
     }
 }
 
-/// A root is a table.
+/// Makes the root a table again.
 fn keep_root(root: &mut Value) {
     if !root.is_table() {
         *root = Table::from_iter([("name".to_string(), root.clone())]).into();
     }
 }
 
-/// Another value in place of one, often of the same type.
+/// Returns another value, often of the same type.
 fn scalar(old: &Value, random: &mut Sequence) -> Value {
     match (old, random.whole(0, 6)) {
         (Value::Float(x), 0..=2) => {
@@ -182,7 +182,7 @@ fn scalar(old: &Value, random: &mut Sequence) -> Value {
     }
 }
 
-/// Changes a list: an entry twice, none, fewer, or in another order.
+/// Changes a list: doubles an entry, empties or shortens it, or changes its order.
 fn list(root: &mut Value, random: &mut Sequence) {
     let count = size(root);
     let mut index = random.whole(0, count - 1);
@@ -202,7 +202,7 @@ fn list(root: &mut Value, random: &mut Sequence) {
     }
 }
 
-/// The dotted key of something in the tree.
+/// Returns the dotted key of a value in the tree.
 fn key_path(root: &Value, random: &mut Sequence) -> String {
     let (mut path, mut value) = (Vec::new(), root);
     loop {
@@ -223,7 +223,7 @@ fn key_path(root: &Value, random: &mut Sequence) -> String {
     }
 }
 
-/// Changes a text by its characters: some removed, doubled, replaced or cut off.
+/// Changes the characters of a text: some are removed, doubled, replaced or cut off.
 pub fn scramble(text: &str, random: &mut Sequence) -> String {
     const OTHERS: [char; 20] = [
         '"', '\'', '[', ']', '{', '}', '=', '.', ',', '#', '\n', '\\', '\0', '9', '-', 'e', ';', '\u{202e}', 'é',

@@ -7,7 +7,7 @@ use voussoir::core::plugin::{Need, Parameter, PluginKind, Shape, card, cards, ca
 use voussoir::study::study_keys;
 use voussoir_tests::sequence::Sequence;
 
-/// Numbers at which arithmetic breaks.
+/// Numbers at the limits of arithmetic.
 const NUMBERS: [f64; 22] = [
     0.0,
     -0.0,
@@ -60,7 +60,7 @@ const TEXTS: [&str; 24] = [
     "0",
 ];
 
-/// A number that is special, or not.
+/// Returns a special or an ordinary number.
 pub fn number(random: &mut Sequence) -> Value {
     match random.whole(0, 3) {
         0 => Value::Integer(*random.one_of(&WHOLES)),
@@ -70,7 +70,7 @@ pub fn number(random: &mut Sequence) -> Value {
     }
 }
 
-/// A text that is special, or a word of the schema.
+/// Returns a special text or a word of the schema.
 pub fn text(random: &mut Sequence) -> Value {
     if random.chance(0.5) {
         return (*random.one_of(&TEXTS)).into();
@@ -78,7 +78,7 @@ pub fn text(random: &mut Sequence) -> Value {
     random.one_of(cards()).tag.into()
 }
 
-/// A key of the schema with a value.
+/// Returns a key of the schema with a value.
 pub fn entry(random: &mut Sequence) -> (String, Value) {
     let parameters = match random.chance(0.3) {
         true => study_keys(),
@@ -90,7 +90,7 @@ pub fn entry(random: &mut Sequence) -> (String, Value) {
     }
 }
 
-/// Every key of the schema, however deep, by its name.
+/// Every key of the schema at any depth, by name.
 static KEYS: LazyLock<BTreeMap<&'static str, Vec<&'static Parameter>>> = LazyLock::new(|| {
     let mut keys = BTreeMap::new();
     let cards = cards().iter().flat_map(|card| card.parameters);
@@ -116,13 +116,13 @@ fn inside(shape: &'static Shape, keys: &mut BTreeMap<&'static str, Vec<&'static 
     }
 }
 
-/// A value that a key may have; `None` if the schema has no such key.
+/// Returns a value that a key may have; `None` if the schema has no such key.
 pub fn value_of(key: &str, random: &mut Sequence) -> Option<Value> {
     let parameters = KEYS.get(key)?;
     Some(of_shape(&random.one_of(parameters).shape, random, 0))
 }
 
-/// A key that a table may have, which holds the tag of a plug-in, with a value; `None` of other tables.
+/// Returns a key with a value for a table that contains the tag of a plug-in; `None` for other tables.
 pub fn entry_of(table: &Table, random: &mut Sequence) -> Option<(String, Value)> {
     let own = |kind: PluginKind| table.get(kind.tag_key()).and_then(Value::as_str).and_then(|tag| card(kind, tag));
     let found: Vec<_> =
@@ -148,10 +148,10 @@ fn table(parameters: &[Parameter], random: &mut Sequence, depth: usize) -> Table
     out
 }
 
-/// Deepest tables that are made.
+/// Greatest depth of generated tables.
 const DEPTH: usize = 6;
 
-/// A value of a shape, mostly within its range.
+/// Returns a value of a shape, usually within its range.
 fn of_shape(shape: &Shape, random: &mut Sequence, depth: usize) -> Value {
     if depth > DEPTH || random.chance(0.03) {
         return number(random);

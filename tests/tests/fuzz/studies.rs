@@ -1,4 +1,4 @@
-//! Mutated study files: `check`, and a run of the first case that is cancelled after a while.
+//! Mutated study files: `check`, and a run of the first case with a time limit.
 
 use super::corpus::{RIGHT, STUDIES};
 use super::mutation::{mutate, scramble};
@@ -10,10 +10,10 @@ use voussoir::solve::Observer;
 use voussoir::study::{StudyError, StudySource, beside};
 use voussoir_tests::sequence::Sequence;
 
-/// A run is cancelled after this time; limit analysis cannot be.
+/// A run is cancelled after this time; limit analysis cannot be cancelled.
 const LONGEST_RUN: Duration = Duration::from_millis(700);
 
-/// The study of a seed.
+/// Returns the study of a seed.
 pub fn input(seed: u64) -> Input {
     let mut random = Sequence::new(seed);
     let own = if random.chance(0.9) { random.one_of(&STUDIES[..*RIGHT]) } else { random.one_of(&STUDIES) };
@@ -25,7 +25,7 @@ pub fn input(seed: u64) -> Input {
     Input { text, beside: own.path.clone() }
 }
 
-/// Cancels after a while.
+/// Cancels a run after its time limit.
 struct Deadline(Mutex<Option<Instant>>);
 
 impl Observer for Deadline {
@@ -35,7 +35,7 @@ impl Observer for Deadline {
     }
 }
 
-/// Reads a study, and runs it if it is right.
+/// Reads a study, and runs it if it is valid.
 pub fn attempt(input: &Input) -> Result<(), String> {
     phase("check");
     let read = beside(&input.beside);
@@ -46,7 +46,7 @@ pub fn attempt(input: &Input) -> Result<(), String> {
     }
 }
 
-/// Every mistake has a message without characters that cannot be seen.
+/// Checks that every mistake has a message without invisible characters.
 pub fn refused(wrong: &StudyError) -> Result<(), String> {
     if wrong.mistakes().is_empty() {
         return Err("refused without a mistake".into());

@@ -1,4 +1,4 @@
-//! The parent process: starts children, ends those that hang, and gathers their findings.
+//! The parent process: starts children, ends children that hang, and collects their findings.
 
 use super::worker::{ASKED, MARK, TARGETS};
 use std::io::{BufRead, BufReader};
@@ -7,14 +7,14 @@ use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::Duration;
 
-/// A phase that takes longer hangs. Solving is another matter: it is cut short and counted.
+/// Time after which a phase counts as hanging. A slow solver is cancelled and counted separately.
 const LONGEST: Duration = Duration::from_secs(30);
 /// Address space of a child \[KiB\].
 const MEMORY: u64 = 6 << 20;
-/// Findings that are listed.
+/// Number of findings that are listed.
 const LISTED: usize = 20;
 
-/// Tries inputs of a target; none may be found wrong.
+/// Tries inputs of a target and fails if there are findings.
 pub fn hold(name: &str, short: u64) {
     let number = |variable: &str| std::env::var(variable).ok().map(|text| text.parse::<u64>().expect("a whole number"));
     let count = number("VOUSSOIR_FUZZ_CASES").unwrap_or(short);
@@ -42,7 +42,7 @@ struct Tally {
     slow: Vec<u64>,
 }
 
-/// Writes the input of a seed down for whoever looks after it. Inputs of folders are made by the children themselves.
+/// Writes the input of a seed to a file for later inspection. Children write inputs of folders themselves.
 fn keep(name: &str, seed: u64) {
     let target = TARGETS.iter().find(|target| target.name == name).expect("a target");
     if !["folders", "merge"].contains(&name) {
@@ -51,7 +51,7 @@ fn keep(name: &str, seed: u64) {
     }
 }
 
-/// Works through seeds until all are done, or one ends its process; the seed to go on with.
+/// Tries seeds until all are done or one ends the process; returns the next seed.
 fn one_child(name: &str, from: u64, to: u64, tally: &mut Tally) -> u64 {
     let mut child = start(name, from, to);
     let lines = lines_of(&mut child);
@@ -105,7 +105,7 @@ fn start(name: &str, from: u64, to: u64) -> Child {
         .expect("a child process")
 }
 
-/// The marked lines of a child, as they come.
+/// Receives the marked lines of a child.
 fn lines_of(child: &mut Child) -> Receiver<String> {
     let (sender, receiver) = channel();
     let output = child.stdout.take().expect("its output is a pipe");

@@ -20,7 +20,7 @@ const SURVEYED: &str = "name = \"s\"\n[scene]\nscene = \"arch\"\nprofile = { sha
     width = 1.0\nvoussoirs = 5\nmaterial = \"stone\"\njoint = \"dry\"\n[materials.stone]\nlaw = \"rigid\"\ndensity = 2200\n\
     [joints.dry]\nlaw = \"coulomb\"\nfriction = 0.6\n[[stages]]\nname = \"dead\"\ngravity = 9.81\n";
 
-/// The survey of a seed.
+/// Returns the survey of a seed.
 pub fn survey(seed: u64) -> Input {
     let mut random = Sequence::new(seed);
     let text = *random.one_of(&SURVEYS);
@@ -40,7 +40,7 @@ fn cells(text: &str, random: &mut Sequence) -> String {
     pieces.concat()
 }
 
-/// Reads a study with that survey.
+/// Reads a study with this survey.
 pub fn attempt_survey(input: &Input) -> Result<(), String> {
     let read = |_: &str| Ok(input.text.clone());
     phase("check");
@@ -48,7 +48,7 @@ pub fn attempt_survey(input: &Input) -> Result<(), String> {
     source.and_then(|source| read_source_beside(source, &read)).map(drop).or_else(|wrong| refused(&wrong))
 }
 
-/// The drawing of a seed, written as it is made.
+/// Returns the drawing of a seed, as its debug text.
 pub fn drawing(seed: u64) -> Input {
     Input { text: format!("{:?}", drawn(seed)), beside: seed.to_string().into() }
 }
@@ -70,7 +70,7 @@ fn drawn(seed: u64) -> Drawing {
     Drawing { unit: Some(1e-3), polylines, loose: vec![["LINE 1".into(), "0".into()]] }
 }
 
-/// The points and the blocks of that drawing.
+/// Reads the points and the blocks of this drawing.
 pub fn attempt_drawing(input: &Input) -> Result<(), String> {
     let seed = input.beside.display().to_string().parse().expect("a seed");
     phase("drawing");
@@ -83,7 +83,7 @@ pub fn attempt_drawing(input: &Input) -> Result<(), String> {
     Ok(())
 }
 
-/// A report of published points with an expression of a seed in its claim.
+/// Returns a report of published points with an expression of a seed in its claim.
 pub fn claim(seed: u64) -> Input {
     let mut random = Sequence::new(seed);
     let [value, holds] = [0, 1].map(|_| expression(&mut random, 0));
@@ -173,7 +173,7 @@ fn expression(random: &mut Sequence, depth: usize) -> String {
 
 const PART: &str = include_str!("../../../studies/src/commands/new/arch.toml");
 
-/// Reads the report, and evaluates its claims for results that it cannot rely on.
+/// Reads the report, and evaluates its claims with incomplete results.
 pub fn attempt_claim(input: &Input) -> Result<(), String> {
     let part = PART.replacen("name = \"arch\"", "name = \"s\"", 1);
     let read = |_: &str| Ok(part.clone());

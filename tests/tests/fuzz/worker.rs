@@ -30,7 +30,7 @@ pub const TARGETS: [Target; 6] = [
 
 /// The variable with the task of the child: target, first seed, seed after the last.
 pub const ASKED: &str = "VOUSSOIR_FUZZ_WORKER";
-/// The beginning of a line for the parent. Commands print other lines.
+/// The start of a line for the parent. Commands print other lines too.
 pub const MARK: &str = "@@ ";
 
 /// Place and message of the last panic.
@@ -72,7 +72,7 @@ pub fn work() {
         println!("\n{MARK}seed {seed}");
         let attempt = || (target.attempt)(&(target.input)(seed));
         let found = match std::panic::catch_unwind(attempt) {
-            // The program catches panics of solvers; they are findings here.
+            // The program catches panics of solvers; here they are findings.
             Ok(Ok(())) => match last_panic() {
                 Some(panic) => format!("caught {panic}"),
                 None => continue,

@@ -1,4 +1,4 @@
-//! What must not change a load factor: units, scale, rotation, reflection, numbering, solver.
+//! Changes that must not change a load factor: units, scale, rotation, reflection, numbering, solver.
 
 use voussoir::core::model::geometry::Vec2;
 use voussoir_tests::{Arch, answered_within, as_blocks, assert_close, changed, collapse_factor, crushing, friction};
@@ -14,7 +14,7 @@ fn variants() -> Vec<Arch> {
     ]
 }
 
-/// Newtons or pounds, metres or feet: the same text in other units.
+/// Units do not matter: newtons or pounds, metres or feet give the same load.
 #[test]
 fn units_do_not_matter() {
     for solver in SOLVERS {
@@ -30,7 +30,7 @@ fn units_do_not_matter() {
     }
 }
 
-/// A model a thousand times smaller or larger, loaded by a millinewton or a meganewton.
+/// Scale does not matter: a model a thousand times smaller or larger, loaded by a millinewton or a meganewton.
 #[test]
 fn scale_does_not_matter() {
     for solver in SOLVERS {
@@ -52,7 +52,8 @@ fn scale_does_not_matter() {
     }
 }
 
-/// The scene turned with its gravity, its mirror image, and its blocks in another order.
+/// Rotation, reflection and numbering do not matter: the scene rotated with its gravity, its mirror image, and its
+/// blocks in another order.
 #[test]
 fn rotation_reflection_and_numbering_do_not_matter() {
     for solver in SOLVERS {
@@ -90,7 +91,7 @@ fn the_load_grows_with_the_yield_set() {
     }
 }
 
-/// A crushing strength beyond all reason changes nothing and breaks nothing.
+/// A very large crushing strength gives the load of unlimited strength.
 #[test]
 fn a_huge_strength_tends_to_none() {
     for solver in SOLVERS {

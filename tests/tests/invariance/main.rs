@@ -1,4 +1,4 @@
-//! What must not change an answer: units, scale, rotation, reflection, numbering.
+//! Changes that must not change an answer: units, scale, rotation, reflection, numbering.
 
 mod limit;
 mod path;

@@ -1,5 +1,5 @@
-//! What must not matter to a path, with friction that is not associated: which way round the scene is,
-//! in which order its blocks are named, in which units it is written. Events are compared one by one.
+//! Changes that must not change a path with non-associated friction: reflection, order of the blocks, units. Events are
+//! compared one by one.
 
 use voussoir::core::model::geometry::Vec2;
 use voussoir::core::path::ContactEvent;
@@ -26,7 +26,7 @@ fn path(study: &str) -> CaseResult {
     result
 }
 
-/// (point, what, factor) of all events in an order of their own.
+/// Returns (point, event, factor) of all events in a canonical order.
 fn events(
     result: &CaseResult,
     place: impl Fn([f64; 2]) -> [f64; 2],
@@ -71,7 +71,7 @@ fn mirror_order_and_units_do_not_matter() {
     let expected = events(&plain, |p| p, keep);
     assert!(expected.len() > 50);
 
-    // In the mirror x changes sign, and with it the tangent's sense.
+    // Reflection changes the sign of x, and with it the sense of the tangent.
     let flip = |v: Vec2| Vec2::new(-v.x, v.y);
     let mirrored = path(&as_blocks(&arch(), flip, flip, &order));
     same(&mirrored, &plain);
@@ -82,7 +82,7 @@ fn mirror_order_and_units_do_not_matter() {
     };
     same_events(events(&mirrored, |[x, y]| [-x, y], other), expected.clone(), unit);
 
-    // Blocks named in another order change joints' minus and plus: normal and tangent turn with them.
+    // Another order of blocks exchanges minus and plus of joints: normal and tangent are reversed.
     let shuffled: Vec<usize> = (0..VOUSSOIRS).map(|k| (4 * k + 3) % VOUSSOIRS).collect();
     let renumbered = path(&as_blocks(&arch(), |p| p, |v| v, &shuffled));
     same(&renumbered, &plain);

@@ -1,4 +1,4 @@
-//! `conform` and a solver whose own statements are false although no certificate believes them.
+//! `conform` and a solver whose own statements are false although no certificate accepts them.
 
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -7,7 +7,7 @@ use voussoir::core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolve
 use voussoir::core::plugin::{Capability, Card, PluginKind, card};
 use voussoir::core::{inventory, typetag};
 
-/// Finds every collapse and calls it `stands`.
+/// Finds every collapse and reports `stands`.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct CallsItStanding {}

@@ -1,5 +1,5 @@
-//! Solvers that do not end. One never returns: no code in the same process can stop it, so `conform` gives up after a time.
-//! The other one shows the same state 20,000 times.
+//! Solvers that do not end. One never returns: code in the same process cannot stop it, so `conform` gives up after a
+//! time. The other one reports the same state 20,000 times.
 
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -12,7 +12,7 @@ use voussoir::core::{inventory, typetag};
 use voussoir::solvers::limit::conic::LimitConic;
 use voussoir::solvers::path::event::EventPath;
 
-/// Lets the endless solver go at the end of its test.
+/// Stops the endless solver at the end of its test.
 static ENDED: AtomicBool = AtomicBool::new(false);
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -33,12 +33,12 @@ impl LimitSolver for Endless {
     }
 }
 
-/// Shows the first state of the path until the observer stops it.
+/// Reports the first state of the path until the observer stops it.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SameState {}
 
-/// Keeps the states.
+/// Stores the states.
 #[derive(Default)]
 struct Kept(Vec<PathState>);
 
@@ -49,7 +49,7 @@ impl PathObserver for Kept {
     }
 }
 
-/// Greatest number of times that the state is shown.
+/// Greatest number of reports of the state.
 const TIMES: usize = 20_000;
 
 #[typetag::serde(name = "same_state")]

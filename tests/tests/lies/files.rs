@@ -1,4 +1,5 @@
-//! Results of liars as files: `run` ends with exit code 1, and `verify` finds a result that is forged to claim success.
+//! Results of dishonest solvers as files: `run` ends with exit code 1, and `verify` finds a result that is forged to
+//! claim success.
 
 use super::run::{liar, quiet};
 use serde_json::{Value, json};
@@ -16,12 +17,12 @@ use voussoir::solve_case;
 use voussoir::study::load;
 use voussoir::verify::{solve_again, verify_against};
 
-/// A scene by its name.
+/// Returns a scene by its name.
 fn scene(kind: PluginKind, name: &str) -> &'static KnownScene {
     scenes(kind).iter().find(|scene| scene.name == name).expect("a scene")
 }
 
-/// Changes that make a result claim more than it proves.
+/// Returns changes that make a result claim more than it proves.
 fn forgeries(entry: &Value, honest: &Value) -> Vec<(&'static str, Value)> {
     let certified = |entry: &Value| {
         let mut entry = entry.clone();
@@ -62,7 +63,7 @@ fn forgeries(entry: &Value, honest: &Value) -> Vec<(&'static str, Value)> {
     ]
 }
 
-/// Forged results of liars, as they are stored, that `verify` confirms.
+/// Returns the forged results of dishonest solvers that `verify` confirms.
 fn confirmed(kind: PluginKind, of: &str, names: &[&str]) -> Vec<String> {
     quiet();
     let mut confirmed = Vec::new();
@@ -121,7 +122,7 @@ fn voussoir(arguments: &[&str]) -> u8 {
     main_from(arguments.iter().map(Into::into)).expect("arguments that are understood")
 }
 
-/// A study by a liar, run into a folder: the exit code and the result.
+/// Runs a study with a dishonest solver into a folder. Returns the exit code, the folder and the result.
 fn run(folder: &Path, kind: PluginKind, of: &str, name: &str, lie: &str) -> (u8, PathBuf, CaseResult) {
     let file = folder.join(format!("{name}_{lie}.toml"));
     std::fs::write(&file, scene(kind, name).study(&liar(kind, of, lie))).expect("written");
@@ -132,7 +133,7 @@ fn run(folder: &Path, kind: PluginKind, of: &str, name: &str, lie: &str) -> (u8,
     (code, out, results.cases.into_iter().next().expect("a case"))
 }
 
-/// The command line: exit code 1 of `run`, and of `verify` where the stored result claims success.
+/// The command line ends with exit code 1 for `run`, and for `verify` if the stored result claims success.
 #[test]
 fn exit_codes_tell_a_lie() {
     quiet();
@@ -161,7 +162,7 @@ fn exit_codes_tell_a_lie() {
     std::fs::remove_dir_all(&folder).expect("removed");
 }
 
-/// The result of a solver from another project is verified by its stored states alone: the same program does not solve it again either.
+/// The path of a solver from another project is verified by its stored states alone, without solving again.
 #[test]
 fn the_path_of_a_stranger_is_verified_without_its_solver() {
     let mut proved = 0;
@@ -178,7 +179,7 @@ fn the_path_of_a_stranger_is_verified_without_its_solver() {
         let file = |name: &str| files.get(name).map(|bytes| Box::new(Cursor::new(bytes.clone())) as Box<dyn Read>);
         let found = study.verify_stored(&StoredResults { jobs: 1, file: &file }, &Unobserved).expect("results");
         let results: StudyResults = serde_json::from_slice(&files["results.json"]).expect("results");
-        // No state proves that a mechanism is not the only one.
+        // No state proves that a mechanism is the only one.
         let more = results.cases[0].mechanism.as_ref().is_some_and(|mechanism| mechanism.unique.is_some());
         let paths = [1, usize::from(!more)];
         assert_eq!((found.findings, found.files, found.paths), (vec![], vec![], paths), "{}", scene.name);

@@ -1,5 +1,5 @@
-//! Dishonest plug-ins, registered in the way of any plug-in outside the project: each names the honest plug-in `of` that it is made from, and the
-//! `lie` that it tells.
+//! Dishonest plug-ins, registered like any plug-in of another project. Each names the honest plug-in `of` that it is
+//! made from, and its `lie`.
 
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -15,10 +15,10 @@ use voussoir::core::path::{
 use voussoir::core::plugin::{Capability, Card, Need, Parameter, PluginKind, Shape};
 use voussoir::core::{inventory, typetag};
 
-/// The number of lies so far, by name.
+/// Number of lies so far, by name.
 static TOLD: LazyLock<Mutex<BTreeMap<String, usize>>> = LazyLock::new(Mutex::default);
 
-/// The number of times that a plug-in has told this lie.
+/// Returns the number of times that a plug-in has used this lie.
 pub fn told(kind: PluginKind, lie: &str) -> usize {
     TOLD.lock().map_or(0, |told| told.get(&format!("{kind:?} {lie}")).copied().unwrap_or(0))
 }

@@ -1,4 +1,4 @@
-//! Every lie in every scene: `run` makes no false statement of it.
+//! Every lie in every scene: `run` makes no false statement.
 
 use super::plug_ins::told;
 use std::sync::Once;
@@ -8,7 +8,7 @@ use voussoir::core::plugin::PluginKind;
 use voussoir::results::CaseResult;
 use voussoir::solve_case;
 
-/// Panics of dishonest solvers are no news.
+/// Silences the panics of dishonest solvers.
 pub fn quiet() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
@@ -22,7 +22,7 @@ pub fn quiet() {
     });
 }
 
-/// The keys of `[solver]` that name a liar.
+/// Returns the keys of `[solver]` for a dishonest plug-in.
 pub fn liar(kind: PluginKind, of: &str, lie: &str) -> String {
     let liar = format!("of = \"{of}\"\nlie = \"{lie}\"");
     match kind {
@@ -34,10 +34,11 @@ pub fn liar(kind: PluginKind, of: &str, lie: &str) -> String {
     }
 }
 
-/// Lies that are still believed.
+/// Lies that are still accepted.
 const BELIEVED: &[&str] = &[];
 
-/// The result of a scene by a liar, and the statements in it that are false. `None` if its solver refuses the scene.
+/// Returns the result of a scene with a dishonest plug-in, and the false statements in it. `None` if the solver refuses
+/// the scene.
 fn told_in(
     scene: &KnownScene,
     kind: PluginKind,
@@ -51,7 +52,7 @@ fn told_in(
     Some((result, wrong))
 }
 
-/// The lies of a kind that are believed, made from each of these honest plug-ins.
+/// Returns the accepted lies of a kind, made from each of these honest plug-ins.
 fn believed(kind: PluginKind, honest: &[&str]) -> Vec<String> {
     quiet();
     let mut believed = Vec::new();
@@ -83,7 +84,7 @@ fn believed(kind: PluginKind, honest: &[&str]) -> Vec<String> {
     believed
 }
 
-/// Each lie applies to some scene.
+/// Asserts that each lie applies to some scene.
 fn each_is_told(kind: PluginKind) {
     let never: Vec<_> = Lie::of(kind).iter().map(Lie::name).filter(|lie| told(kind, lie) == 0).collect();
     assert!(never.is_empty(), "never told: {never:?}");
@@ -109,7 +110,8 @@ fn no_lie_of_a_strategy_is_believed() {
     assert!(believed.is_empty(), "{} are believed:\n{}", believed.len(), believed.join("\n"));
 }
 
-/// A path that goes back from its proved limit point down the curve that it came is no collapse, though the load has fallen to half.
+/// A path that returns from its proved limit point along the same curve is not a collapse, although the load has fallen
+/// to half.
 #[test]
 fn unloading_is_no_fall() {
     let lie = "unloads_behind_its_limit_point";
@@ -125,7 +127,7 @@ fn unloading_is_no_fall() {
     assert!(told_of > 0);
 }
 
-/// A solver from outside this project that tells the truth is believed where its states and witnesses prove the end.
+/// An honest solver from another project is accepted if its states and witnesses prove the end.
 #[test]
 fn the_truth_of_a_stranger_is_proved() {
     let kind = PluginKind::PathSolver;
@@ -152,7 +154,7 @@ fn the_truth_of_a_stranger_is_proved() {
     assert!(3 * proved >= 2 * all, "{proved} of {all}");
 }
 
-/// Honest plug-ins contradict no known answer, and answer.
+/// Honest plug-ins contradict no known answer, and they give answers.
 #[test]
 fn honest_answers_are_true() {
     for (kind, tags) in [

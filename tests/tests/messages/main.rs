@@ -1,4 +1,4 @@
-//! What is said about wrong input, word for word.
+//! Messages about wrong input, word for word.
 
 mod book;
 mod mistakes;

@@ -1,7 +1,7 @@
-//! Wrong study files and what is said about them, word for word.
+//! Wrong study files and their messages, word for word.
 //!
-//! Each `mistakes/NAME.toml` has a sibling `NAME.expected`. A first line `# --set KEY=VALUE` stands
-//! for the command line. `UPDATE_EXPECTED=1` writes the expected files anew; read them aloud then.
+//! Each `mistakes/NAME.toml` has a file `NAME.expected`. A first line `# --set KEY=VALUE` replaces options of the
+//! command line. `UPDATE_EXPECTED=1` writes the expected files again; read the new messages aloud.
 
 use std::fs;
 use std::path::Path;

@@ -1,9 +1,9 @@
-//! What can be computed and is hardly meant: a note of the case, and no more.
+//! Input that can be computed but is probably a mistake: the case gets a note.
 
 use voussoir::study::load;
 use voussoir_tests::study;
 
-/// Notes of the first case with some text of an arch changed.
+/// Returns the notes of the first case, with some text of an arch changed.
 fn notes(changes: &[(&str, &str)]) -> Vec<String> {
     let text = "name = \"arch\"\n[scene]\nscene = \"arch\"\nprofile = { shape = \"segmental\", span = 4.0, rise = 1.0 }\n\
                 thickness = 0.4\nwidth = 1.0\nvoussoirs = 7\nends = \"jointed\"\nmaterial = \"stone\"\njoint = \"dry\"\n\
@@ -29,7 +29,8 @@ fn implausible_values_are_noted() {
     assert!(thick.len() == 1 && thick[0].contains("more than the span"), "{thick:?}");
 }
 
-/// Loads that point upwards, supports that move further than the ring is thick, and fills with nearly no friction.
+/// Loads that point upwards, supports that move by more than the thickness of the ring, and fills with almost no
+/// friction are noted.
 #[test]
 fn implausible_loads_settlements_and_fills_are_noted() {
     let live = |load: &str, more: &str| {
@@ -56,7 +57,7 @@ fn implausible_loads_settlements_and_fills_are_noted() {
     }
 }
 
-/// The fill's densities, those of layers and of backing.
+/// Implausible densities of fill, of its layers and of its backing are noted.
 #[test]
 fn implausible_densities_of_fill_are_noted() {
     let fill = "[scene.fill]\ncover = 0.3\ndensity = 18.0\nhaunching = { level = 0.5, density = 23.0 }\n\
@@ -73,7 +74,7 @@ fn implausible_densities_of_fill_are_noted() {
     }
 }
 
-/// Two blocks on a ground, the second with its left edge at `x` below and `top` above.
+/// Returns the notes for two blocks on a ground; the left edge of the second is at `x` below and `top` above.
 fn blocks(x: f64, top: f64, more: &str) -> Vec<String> {
     let text = format!(
         "name = \"blocks\"\n[scene]\nscene = \"blocks\"\nwidth = 1.0\nmaterial = \"s\"\njoint = \"d\"\n\
@@ -104,7 +105,7 @@ fn blocks_that_nearly_touch_or_float_are_named() {
     assert!(said.len() == 1 && said[0].contains("\"c\"") && said[0].contains("nothing holds"), "{said:?}");
 }
 
-/// An axle that is off the arch counts nothing, and a note says so; where all are off it is a mistake.
+/// An axle off the arch has no effect, and a note reports it; if all axles are off the arch, it is a mistake.
 #[test]
 fn an_axle_off_the_arch_counts_nothing() {
     let axles = |at: f64| {
@@ -123,7 +124,7 @@ fn an_axle_off_the_arch_counts_nothing() {
     assert!(axles(1.5).expect_err("none on it").contains("hits no block"));
 }
 
-/// Number of forces of the last stage, and notes; or the first mistake.
+/// Returns the number of forces of the last stage and the notes, or the first mistake.
 fn load_text(text: &str) -> Result<(usize, Vec<String>), String> {
     let study = load(text, "axles.toml", &[]).map_err(|wrong| wrong.mistakes()[0].to_string())?;
     let case = &study.cases[0];

@@ -1,5 +1,5 @@
-//! Scenes of the random stress test at whose corners a path once stopped where it need not: what it finds there now,
-//! and with how much work. The numbers are those from which `random::scene` makes the scene.
+//! Scenes of the random stress test with difficult corners of the path: the present result, and its work. The numbers
+//! define the scene for `random::scene`.
 
 use voussoir::core::certificate::MechanismKind;
 use voussoir::core::limit::Status;
@@ -11,7 +11,7 @@ fn scene_of(numbers: Numbers) -> RandomScene {
     scene(numbers).expect("a scene")
 }
 
-/// By a solver, after its history.
+/// Solves a scene with a solver, after its load history.
 fn followed(scene: &RandomScene, solver: &str) -> CaseResult {
     let limit = answered(&scene.associated());
     let known = if limit.status == Status::Collapse { limit.load_factor } else { None };
@@ -24,7 +24,7 @@ fn certified(result: &CaseResult, status: Status) -> f64 {
     result.load_factor.expect("a factor")
 }
 
-/// A wall of very unlike bricks: both path solvers follow the same pieces to the same collapse.
+/// On a wall of very different bricks both path solvers follow the same pieces to the same collapse.
 #[test]
 fn both_path_solvers_follow_the_same_pieces() {
     let scene = scene_of((
@@ -44,8 +44,8 @@ fn both_path_solvers_follow_the_same_pieces() {
     assert_close(factor, certified(&followed(&scene, "event_path"), Status::Collapse), 1e-12);
 }
 
-/// A wall on whose ground every brick slides by itself, at λ = μ: the regimes leave many motions, and the first that
-/// linear algebra picks closes a gap. One that goes on for ever is found by a linear program.
+/// Bricks that slide side by side are a mechanism. On this wall every brick slides on the ground by itself at λ = μ:
+/// the modes leave many motions, and a linear program finds one that can continue without closing a gap.
 #[test]
 fn bricks_that_slide_side_by_side_are_a_mechanism() {
     let exponent: f64 = -0.785_625_467_461_697_8;
@@ -66,7 +66,7 @@ fn bricks_that_slide_side_by_side_are_a_mechanism() {
     assert_eq!(newton.mechanism.as_ref().map(|m| m.kind), Some(MechanismKind::Sliding));
 }
 
-/// A limit point at a corner is proved, also if the way on is not found: the result is open and lists it.
+/// A limit point at a corner is proved also if no continuation is found: the result is open and lists it.
 #[test]
 fn a_proved_limit_point_is_listed_if_the_way_on_is_open() {
     let unloaded = [
@@ -103,8 +103,8 @@ fn a_proved_limit_point_is_listed_if_the_way_on_is_open() {
     }
 }
 
-/// 47 points at the verge of a change under the dead load, where nothing is loaded yet: the line search finds
-/// their rate. The wall slides on its ground at λ = μ.
+/// Many points at the limit of their mode are decided: under the dead load 47 points are at this limit before any live
+/// load, and the line search finds their rate. The wall slides on its ground at λ = μ.
 #[test]
 fn many_points_at_the_verge_of_a_change_are_decided() {
     let exponent: f64 = -0.263_854_514_873_449_8;
@@ -125,8 +125,8 @@ fn many_points_at_the_verge_of_a_change_are_decided() {
     }
 }
 
-/// With finite displacements the regimes of these steps do not settle when whole iterations are taken, and the
-/// steps were cut (twelve times; the second scene for minutes): with the line search none is.
+/// The line search saves cut-backs: with finite displacements the modes of these steps do not settle with full
+/// iterations.
 #[test]
 fn the_line_search_saves_cut_backs() {
     let strengths = (
@@ -157,11 +157,10 @@ fn the_line_search_saves_cut_backs() {
         let study = scene_of(numbers).study("newton_path\"\nkinematics = \"finite", None);
         let result = answered(&study);
         assert_close(certified(&result, Status::Collapse), factor, 1e-4);
-        // Steps are cut for their energy only.
+        // Steps are cut only for their energy.
         assert!(result.counters["cutbacks"] <= 20, "{:?}", result.counters);
         assert!(result.counters["line_searched_steps"] > 0, "{:?}", result.counters);
-        // Steps are as many as the history of slip needs; each takes few iterations (the second scene 5.4, 4.8 before a
-        // step that passed over an event was followed at its length; its peak is off by 1e-6 since then, by 5e-6 before).
+        // The history of slip needs many steps; each needs few iterations.
         assert!(result.counters["newton_iterations"] <= 6 * result.counters["steps"], "{:?}", result.counters);
     }
 }

@@ -1,4 +1,4 @@
-//! Work done, as counts: a performance regression fails here without a clock.
+//! Counts of work: a performance regression fails here without a clock.
 
 use voussoir::results::CaseResult;
 use voussoir_tests::known::peers_ring;
@@ -8,7 +8,7 @@ fn pivots(voussoirs: usize) -> u64 {
     answered(&Arch { voussoirs, ends: "jointed", solver: "limit_chain", ..Arch::default() }.study()).counters["pivots"]
 }
 
-/// The 14-joint arch takes two programs and no sparse factorisation in the chain solver.
+/// The chain solver needs two programs and no sparse factorisation for the 14-joint arch.
 #[test]
 fn the_chain_solver_factorises_nothing() {
     let result = answered(&Arch { voussoirs: 13, ends: "jointed", ..Arch::default() }.study());
@@ -18,21 +18,21 @@ fn the_chain_solver_factorises_nothing() {
     assert!(result.counters["pivots"] <= 16, "{:?}", result.counters);
 }
 
-/// Pivots hardly grow with the number of joints, so the cost of a pivot, linear, is the cost.
+/// The number of pivots hardly grows with the number of joints; the cost of one pivot is linear.
 #[test]
 fn pivots_do_not_grow_with_the_ring() {
     let counts = [13, 130, 1300, 10_000].map(pivots);
     assert!(counts.iter().all(|&count| count <= 30), "{counts:?}");
 }
 
-/// Dead load that the next stage checks anyway is not solved twice: two stages, two programs.
+/// Dead load that the next stage checks is not solved twice: two stages need two programs.
 #[test]
 fn a_stage_that_the_next_one_covers_costs_nothing() {
     let result = answered(&Arch::default().study());
     assert_eq!((result.stages.len(), result.counters["programs"]), (2, 2));
 }
 
-/// A ring of 10,000 voussoirs is answered and certified to rounding.
+/// A ring of 10,000 voussoirs is solved and certified within rounding.
 #[test]
 fn ten_thousand_voussoirs() {
     let result = answered(&Arch { voussoirs: 10_000, ends: "jointed", ..Arch::default() }.study());
@@ -41,7 +41,7 @@ fn ten_thousand_voussoirs() {
     assert!((high - low) / high < 1e-12);
 }
 
-/// The benches' ring of rigid voussoirs on compliant joints, followed to its collapse.
+/// Returns the result of the benches' ring of rigid voussoirs on compliant joints, followed to its collapse.
 fn traced(voussoirs: usize, solver: &'static str) -> CaseResult {
     let joint = compliant(&friction(0.6), 1e10, 4e9);
     let result = answered(&Arch { joint, solver, ..peers_ring(voussoirs) }.study());
@@ -49,8 +49,8 @@ fn traced(voussoirs: usize, solver: &'static str) -> CaseResult {
     result
 }
 
-/// On elastic voussoirs the whole system is asked at the beginning and at the end only; the chain is factorised anew once in a
-/// hundred events at most.
+/// An event of elastic voussoirs costs little: the whole system is solved at the beginning and at the end only, and the
+/// chain is factorised again at most once in a hundred events.
 #[test]
 fn an_event_of_elastic_voussoirs_costs_little() {
     for voussoirs in [13, 40] {
@@ -67,7 +67,7 @@ fn an_event_of_elastic_voussoirs_costs_little() {
     }
 }
 
-/// On rigid voussoirs with compliant joints as well.
+/// An event of rigid voussoirs on compliant joints costs little.
 #[test]
 fn an_event_of_rigid_voussoirs_costs_little() {
     for voussoirs in [13, 40, 130] {

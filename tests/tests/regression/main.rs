@@ -1,4 +1,4 @@
-//! Our own last answers: work counted, and scenes that once went wrong.
+//! Our last answers: counts of work, and difficult scenes.
 
 mod corners;
 mod counters;

@@ -1,4 +1,5 @@
-//! Linear and conic programs of limit analysis, written for Clarabel: what independent programs of several families share.
+//! Linear and conic programs of limit analysis, written for Clarabel and shared by the independent programs of several
+//! families.
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::SupportedConeT::{NonnegativeConeT, SecondOrderConeT, ZeroConeT};
@@ -8,9 +9,9 @@ use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Extreme {
     Value(f64),
-    /// No point fulfils the rows.
+    /// No point satisfies the rows.
     Infeasible,
-    /// No bound; whether any point fulfils the rows is another question.
+    /// The variable is unbounded; a point that satisfies the rows may or may not exist.
     Unbounded,
     /// The program was not decided.
     Unknown,
@@ -50,8 +51,8 @@ impl Rows {
         self.right[..self.linear_from].iter().fold(0.0, |most, value| value.abs().max(most))
     }
 
-    /// N'² ≤ F (N' − 2 |M|/h) with N' = N + F_t, for the variables N and M of a joint and \[F, F_t\]: two cones
-    /// (F + y, F − y, 2 N'), in units in which F counts as the `typical` force does.
+    /// Adds N'² ≤ F (N' − 2 |M|/h) with N' = N + F_t, for the variables N and M of a joint and \[F, F_t\], as two cones
+    /// (F + y, F − y, 2 N'), in units that scale F to the `typical` force.
     pub fn stress_block(&mut self, [n, m]: [usize; 2], h: f64, [force, tension]: [f64; 2], typical: f64) {
         let scale = (typical / force).sqrt().min(1.0);
         for sign in [-1.0, 1.0] {
@@ -63,12 +64,12 @@ impl Rows {
         }
     }
 
-    /// The greatest (`sense` 1) or least (−1) value of a variable, or whether any point fulfils the rows (0): then
-    /// the value is one of many. Forces in units of the typical load, so that tolerances mean something.
+    /// Returns the greatest (`sense` 1) or least (−1) value of a variable. With `sense` 0 it returns the value at any
+    /// point that satisfies the rows. Forces are in units of the typical load, so that tolerances are meaningful.
     pub fn extreme(&self, variable: usize, sense: f64) -> Extreme {
         let unit = if self.typical() > 0.0 { self.typical() } else { 1.0 };
         match self.extreme_in(unit, variable, sense) {
-            // Forces far beyond the typical one are found to more digits in their own unit.
+            // Forces far above the typical force get more digits in their own unit.
             Extreme::Value(value) if value.abs() > 30.0 * unit => self.extreme_in(value.abs(), variable, sense),
             Extreme::Unknown => [0.1 * unit, 10.0 * unit]
                 .into_iter()
@@ -96,7 +97,7 @@ impl Rows {
         cones.extend((0..self.cones).map(|_| SecondOrderConeT(3)));
         let mut q = vec![0.0; self.variables];
         q[variable] = -sense;
-        // Degenerate programs are sometimes decided at another scaling of rows and columns.
+        // Degenerate programs are sometimes decided with another scaling of rows and columns.
         [true, false].into_iter().find_map(|scaled| decided(&a, &b, &cones, &q, scaled)).map_or(
             Extreme::Unknown,
             |found| match found {
@@ -107,7 +108,7 @@ impl Rows {
     }
 }
 
-/// The solution, or why there is none; `None` where Clarabel does not decide.
+/// Returns the solution, or the reason why there is none; `None` if Clarabel does not decide.
 fn decided(
     a: &CscMatrix,
     b: &[f64],

@@ -4,8 +4,8 @@
 //! CASES=60 FIRST=0 cargo test --release -p voussoir-tests --test stress -- --ignored --nocapture energy_of_many
 //! ```
 //!
-//! The energy program holds the load point and finds stable states. Its first peak is the first limit point; behind a snap
-//! it may take another branch than the path. `CASES` counts the scenes that the energy program describes.
+//! The energy program holds the load point and finds stable states. Its first peak is the first limit point; after a
+//! snap it may be on another branch than the path. `CASES` counts the scenes that the energy program describes.
 
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -15,14 +15,14 @@ use voussoir_tests::energy::{EnergyScene, Landing, TraceLimits, dead_load, load_
 use voussoir_tests::family::{Family, FamilyScene, Form, family_scene};
 use voussoir_tests::{first_case, keep};
 
-/// Relative difference of two loads that agree.
+/// Relative difference of equal loads.
 const SAME_LOAD: f64 = 1e-6;
-/// Longest steps of the energy program, by the span; shorter ones do not pass over a dip.
+/// Longest steps of the energy program, in spans; shorter steps do not pass over a dip.
 const STEPS: [f64; 3] = [1e-3, 1e-4, 1e-5];
-/// Tangential gap by the height of a joint up to which a point stays in the middle of both blocks. Beyond it the program
-/// moves points to the corners of one block, and the energy program does not.
+/// Tangential gap, relative to the height of a joint, up to which a point stays in the middle of both blocks. Beyond it
+/// the program moves points to the corners of one block, and the energy program does not.
 const LARGEST_SHEAR: f64 = 0.005;
-/// Displacement of the load point at which the energy program ends, by the span.
+/// Displacement of the load point at which the energy program ends, in spans.
 const FARTHEST: f64 = 0.05;
 
 /// The outcome of a comparison.
@@ -30,9 +30,10 @@ const FARTHEST: f64 = 0.05;
 enum Outcome {
     /// First limit point and greatest load are peaks of the energy.
     Agrees,
-    /// The first limit point is; the greatest load lies behind a snap or beyond the range of the energy program.
+    /// Only the first limit point is a peak; the greatest load is after a snap or beyond the range of the energy
+    /// program.
     FirstAgrees,
-    /// The first limit points agree; the program's path is not followed to the end of its range.
+    /// The first limit points agree; the program's path does not reach the end of its range.
     FirstAgreesOpen,
     /// The energy program snaps at a lower load, before any smooth peak.
     SnapsBefore,
@@ -48,10 +49,10 @@ enum Outcome {
 /// A stable branch of the energy.
 #[derive(Debug, Clone)]
 struct Branch {
-    /// Peaks, and whether the branch snaps there.
+    /// Peaks, each with true if the branch snaps there.
     peaks: Vec<(f64, bool)>,
     snaps: bool,
-    /// Greatest load before any joint shears too much.
+    /// Greatest load before a joint shears too much.
     greatest: f64,
     shears: bool,
 }
@@ -71,13 +72,13 @@ fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= SAME_LOAD * a.abs().max(b.abs())
 }
 
-/// Scene `k`: the families with points loads in turn.
+/// Returns scene `k` of the families with point loads, in turn.
 fn scene(k: u64) -> FamilyScene {
     let families = [Family::Random, Family::Symmetric, Family::Settlements, Family::Finite];
     family_scene(families[(k % 4) as usize], 2_000 + k / 4).on_springs()
 }
 
-/// The stable branches; `None` if the energy program is lost.
+/// Returns the stable branches; `None` if the energy program fails.
 fn branches(text: &str, largest: f64) -> Option<Vec<Branch>> {
     let energy = EnergyScene::of_study(text);
     let limits = TraceLimits { largest, farthest: FARTHEST };
@@ -133,7 +134,7 @@ fn compared(result: &CaseResult, branches: Option<&Vec<Branch>>) -> Outcome {
     branches.iter().map(of_branch).min().unwrap_or(Outcome::EnergyLost)
 }
 
-/// The outcome of a scene with a line for the table; `None` if it has other loads than forces.
+/// Returns the outcome of a scene with a line for the table; `None` if it has other loads than forces.
 fn outcome(k: u64) -> Option<(Outcome, String)> {
     let scene = scene(k);
     if !scene.has_point_loads() {
@@ -163,18 +164,19 @@ fn outcome(k: u64) -> Option<(Outcome, String)> {
     Some((outcome, line))
 }
 
-/// A few scenes.
+/// On a few scenes the path agrees with the energy program.
 #[test]
 fn energy_of_some() {
     let found: Vec<_> = (0..6).filter_map(outcome).collect();
-    // Energy ends earlier than some paths, and some paths are not followed to their ends: there the first limit points agree.
+    // The energy program ends earlier than some paths, and some paths do not reach their ends: then the first limit
+    // points agree.
     let agrees =
         |outcome: &Outcome| matches!(outcome, Outcome::Agrees | Outcome::FirstAgrees | Outcome::FirstAgreesOpen);
     assert!(found.iter().filter(|(outcome, _)| agrees(outcome)).count() >= 3, "{found:?}");
     assert!(found.iter().all(|(outcome, _)| *outcome != Outcome::Contradicts), "{found:?}");
 }
 
-/// The table of many scenes.
+/// Many scenes: no path contradicts the energy program. The test prints a table.
 #[test]
 #[ignore = "minutes; CASES and FIRST choose the scenes"]
 fn energy_of_many() {

@@ -1,4 +1,4 @@
-//! Five families of random scenes by every strategy, in every form: the answer does not change.
+//! Five families of random scenes with every strategy and in every form: the answer does not change.
 //!
 //! ```sh
 //! FAMILY=random CASES=100 FIRST=0 OUT=/tmp/scenes \
@@ -10,9 +10,9 @@
 //! | `load_control`, finite displacements | the first limit point |
 //! | all others | status, greatest load, first limit point, all limit points |
 //!
-//! The reference of a scene is the answer that most runs share. `FAMILY` is one family, several with commas, or absent for
-//! all. Scenes with an even seed, and all of `finite`, have finite displacements; `KINEMATICS=finite` or `small` overrides
-//! this. `OUT` writes the study of each run that disagrees and its `default`; `ALL=1` writes every run.
+//! The reference of a scene is the answer that most runs share. `FAMILY` is one family, several with commas, or absent
+//! for all. Scenes with an even seed, and all of `finite`, have finite displacements; `KINEMATICS=finite` or `small`
+//! overrides this. `OUT` writes the study of each run that disagrees and its `default`; `ALL=1` writes every run.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use voussoir::core::limit::Status;
@@ -21,9 +21,9 @@ use voussoir::solve_case;
 use voussoir_tests::family::{Family, FamilyScene, Form, family_scene};
 use voussoir_tests::{first_case, keep_in};
 
-/// Relative difference of two loads that agree.
+/// Relative difference of equal loads.
 const SAME_LOAD: f64 = 1e-6;
-/// Loads below it are zero: live loads are of the size of the weights.
+/// Loads below it are zero: live loads have the size of the weights.
 const ZERO_LOAD: f64 = 1e-8;
 
 /// The runs of a scene: name, form, lines of the solver's table.
@@ -55,7 +55,7 @@ struct Answer {
     certified: bool,
     load: f64,
     first: f64,
-    /// Limit points of the last stage with the fall of the load behind each.
+    /// Limit points of the last stage, each with the fall of the load after it.
     points: Vec<[f64; 2]>,
     lower: Option<f64>,
     seconds: f64,
@@ -78,12 +78,12 @@ impl Answer {
         }
     }
 
-    /// True if the run is certified and neither open nor stalled.
+    /// Returns true if the run is certified and neither open nor stalled.
     fn is_answer(&self) -> bool {
         self.status.is_answer() && self.certified
     }
 
-    /// The first statement in which two answers differ.
+    /// Returns the first quantity in which two answers differ.
     fn difference(&self, other: &Answer) -> Option<&'static str> {
         if !same(self.first, other.first) {
             Some("first")
@@ -109,7 +109,7 @@ fn same(a: f64, b: f64) -> bool {
     a.is_nan() && b.is_nan() || (a - b).abs() <= (SAME_LOAD * a.abs().max(b.abs())).max(ZERO_LOAD)
 }
 
-/// Compares two lists of limit points. A point may be missing if the load behind it falls by less than the tolerance.
+/// Compares two lists of limit points. A point may be missing if the load after it falls by less than the tolerance.
 fn same_points(a: &[[f64; 2]], b: &[[f64; 2]]) -> bool {
     let small = |point: &[f64; 2]| point[1] <= SAME_LOAD * point[0].abs();
     match (a, b) {
@@ -134,7 +134,7 @@ fn runs(scene: &FamilyScene) -> Vec<Run> {
     RUNS.into_iter().map(run).collect()
 }
 
-/// The answer that most runs share, except load control.
+/// Returns the answer that most runs share, except load control.
 fn reference(runs: &[Run]) -> Option<&Answer> {
     let answers: Vec<&Answer> = runs
         .iter()
@@ -142,11 +142,11 @@ fn reference(runs: &[Run]) -> Option<&Answer> {
         .filter_map(|run| run.2.as_ref().filter(|answer| answer.is_answer()))
         .collect();
     let shared = |answer: &&&Answer| answers.iter().filter(|other| answer.difference(other).is_none()).count();
-    // The first of several: `default` comes first.
+    // If there are several, the first is used: `default` comes first.
     answers.iter().rev().max_by_key(shared).copied()
 }
 
-/// The difference of a run from the reference.
+/// Returns the difference of a run from the reference.
 fn differs(name: &str, answer: &Answer, reference: &Answer, finite: bool) -> Option<&'static str> {
     if !answer.is_answer() {
         let above = answer.lower.is_some_and(|lower| lower > reference.load * (1.0 + SAME_LOAD));
@@ -164,13 +164,13 @@ struct Tally {
     scenes: usize,
     /// Scenes in which two certified answers contradict each other.
     disagree: usize,
-    /// Among them: only the lists of limit points or the statuses differ.
+    /// Of these, the scenes in which only the lists of limit points or the statuses differ.
     mild: usize,
-    /// Open and stalled default runs, and such as fail their certificate.
+    /// Default runs that are open, that are stalled, and that fail their certificate.
     default_open: Vec<u64>,
     default_stalled: Vec<u64>,
     default_refused: Vec<u64>,
-    /// Open and stalled runs of all.
+    /// Counts over all runs.
     runs: usize,
     open: usize,
     stalled: usize,
@@ -271,7 +271,7 @@ fn family(family: Family, seeds: impl Iterator<Item = u64>) -> Tally {
     tally
 }
 
-/// One small scene of each family.
+/// One small scene of each family has the same answer in all forms and with all strategies.
 #[test]
 fn families_of_some() {
     for (of, seed) in Family::ALL.into_iter().zip([1, 1, 1, 1, 1]) {
@@ -280,7 +280,7 @@ fn families_of_some() {
     }
 }
 
-/// The table of many scenes.
+/// Many scenes have the same answer in all forms and with all strategies. The test prints a table.
 #[test]
 #[ignore = "a minute for 100 scenes; FAMILY, CASES and FIRST choose the scenes"]
 fn families_of_many() {

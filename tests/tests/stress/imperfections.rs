@@ -1,15 +1,15 @@
-//! Scenes whose load, or whose support, stands 1e-6 of the scene beside its place: the answer changes by less than 1e-3,
-//! or one of the two results names the bifurcation.
+//! Scenes whose load or support is shifted by 1e-6 of the scene: the answer changes by less than 1e-3, or one of the
+//! two results names the bifurcation.
 
 use crate::strategies::scene;
 use voussoir_tests::{answered, names_bifurcation};
 
 const FINITE: &str = "solver = \"newton_path\"\nkinematics = \"finite\"";
 
-/// Change of a load factor, relative, that an imperfection may cause.
+/// Greatest relative change of a load factor from an imperfection.
 const CHANGE: f64 = 1e-3;
 
-/// How often what became of imperfect scenes, and which ones depend on the imperfection without a word.
+/// Counts the outcomes of imperfect scenes, and lists the scenes that depend on the imperfection without a note.
 fn imperfect(scenes: impl Iterator<Item = usize>) {
     let [mut alike, mut bifurcate, mut refused] = [0; 3];
     let mut apart = Vec::new();

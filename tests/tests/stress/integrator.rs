@@ -13,21 +13,21 @@ use voussoir_tests::integrator::families::SmallScene;
 use voussoir_tests::integrator::{End, Found, integrate};
 use voussoir_tests::{first_case, keep};
 
-/// Relative difference of two loads that agree.
+/// Relative difference of equal loads.
 const SAME_LOAD: f64 = 1e-5;
 /// Longest step of the integrator.
 const LONGEST_STEP: f64 = 1e-3;
-/// Relative difference of two loads at which a joint is lost: the integrator asks after each step whether it is.
+/// Relative difference of two loads at which a joint is lost: the integrator checks this only after each step.
 const JOINT_LOST: f64 = 1e-3;
-/// Maxima behind which the load falls by a smaller share of itself are not compared.
+/// Maxima after which the load falls by a smaller share are not compared.
 const SMALLEST_FALL: f64 = 1e-7;
 
 /// The outcome of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Outcome {
-    /// The greatest load is a maximum behind which the integrator falls.
+    /// The greatest load is a maximum after which the integrator's load falls.
     Agrees,
-    /// The integrator ends at the greatest load without a step behind it.
+    /// The integrator ends at the greatest load, without a step after it.
     AgreesUpToItsEnd,
     FirstPeakDiffers,
     /// The load rises until a joint is lost; the program ends at this load, open or with a limit point.
@@ -42,7 +42,7 @@ fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= SAME_LOAD * a.abs().max(b.abs())
 }
 
-/// Returns true if the load falls behind the greatest maximum.
+/// Returns true if the load falls after the greatest maximum.
 fn falls_behind(found: &Found) -> bool {
     let falls = |[load, fall]: &[f64; 2]| fall.is_finite() && *fall > SMALLEST_FALL * load.abs();
     found.peaks.iter().any(|peak| same(peak[0], found.greatest) && falls(peak))
@@ -69,7 +69,7 @@ fn compared(result: &CaseResult, found: Option<&Found>) -> Outcome {
             }
         }
         (Status::LimitPoint, Some(load)) if lost_together(found, load) => Outcome::JointLost,
-        // A greater load of the integrator contradicts, wherever its path ends.
+        // A greater load of the integrator is a contradiction, wherever its path ends.
         (Status::Collapse | Status::LimitPoint, Some(load)) if load < found.greatest => Outcome::Contradicts,
         (Status::Collapse | Status::LimitPoint, Some(_)) => lost_or(Outcome::Contradicts),
         (Status::Open, _) => {
@@ -106,7 +106,7 @@ fn outcomes(seed: u64, associated: bool) -> ([Outcome; 2], String) {
     (outcomes, line)
 }
 
-/// A stack, a portal, an arch and a wall carry the load of the integrator, and so do their mirror images.
+/// A stack, a portal, an arch and a wall carry the load of an independent integrator, and so do their mirror images.
 #[test]
 fn integrator_of_some() {
     let found: Vec<_> = std::thread::scope(|scope| {
@@ -116,13 +116,13 @@ fn integrator_of_some() {
         work.into_iter().flat_map(|part| part.join().expect("no panic")).collect()
     });
     for (outcomes, line) in found {
-        // The loads agree; the integrator may end without a step behind the greatest one.
+        // The loads agree; the integrator may end without a step after the greatest load.
         let agrees = |outcome: &Outcome| matches!(outcome, Outcome::Agrees | Outcome::AgreesUpToItsEnd);
         assert!(outcomes.iter().all(agrees), "{line}");
     }
 }
 
-/// The table of many scenes.
+/// Many scenes: no path contradicts the independent integrator. The test prints a table.
 #[test]
 #[ignore = "minutes; CASES and FIRST choose the scenes"]
 fn integrator_of_many() {

@@ -5,7 +5,7 @@ use proptest::test_runner::{Config, TestRunner};
 use voussoir::core::limit::Status;
 use voussoir_tests::{Arch, Wall, answered, answered_within, assert_close, crushing, friction};
 
-/// Random walls, pushed in random directions, with windows, dry or mortared: every answer is certified.
+/// Random walls are certified: pushed in random directions, with windows, dry or with mortar.
 #[test]
 fn random_walls_are_certified() {
     let scenes = (
@@ -47,8 +47,8 @@ fn random_walls_are_certified() {
     assert!(collapses.get() > 80, "{}", collapses.get());
 }
 
-/// Random arches, from slender to stout, deep to flat, slippery to rough, with and without crushing,
-/// bonded and jointed, loaded anywhere: both solvers certify the same status and factor.
+/// Random arches have the same certified status and factor with both solvers: from slender to stout, deep to flat, low
+/// to high friction, with and without crushing, bonded and jointed, loaded anywhere.
 #[test]
 fn random_arches_are_answered_alike_by_both_solvers() {
     let scenes = (
@@ -81,7 +81,7 @@ fn random_arches_are_answered_alike_by_both_solvers() {
                 span_fraction,
                 ..Arch::default()
             };
-            // A load on a voussoir that is part of the ground is an input error, not a scene.
+            // A load on a voussoir that is part of the ground is an input error.
             if voussoir::study::load(&arch.study(), "random.toml", &[]).is_err() {
                 return Ok(());
             }

@@ -1,8 +1,7 @@
 //! Random small walls: the certified least load agrees with an independent mixed-integer program.
 //!
-//! `fixtures/small_walls.jsonl` is made by `fixtures/small_walls.py`, which shares nothing with this
-//! project: other code, other formulation, another solver. Walls of 10 to 12 blocks are added by
-//! `fixtures/larger_walls.py`.
+//! `fixtures/small_walls.py` makes `fixtures/small_walls.jsonl`. It shares nothing with this project: other code, other
+//! formulation, another solver. `fixtures/larger_walls.py` adds walls of 10 to 12 blocks.
 
 use serde_json::Value;
 use voussoir::core::limit::Status;
@@ -41,8 +40,8 @@ fn answer_with(wall: &Value, law: &str, solver: &str) -> CaseResult {
     answered(&wall.study())
 }
 
-/// Least load, proved bracket, and the order least ≤ sequential ≤ associated. No more than `most_open`
-/// brackets stay open, those by less than 1e-3. Returns how many are below 0.98 of the associated load.
+/// Checks least load, proved bracket, and the order least ≤ sequential ≤ associated. At most `most_open` brackets stay
+/// open, by less than 1e-3. Returns the number of least loads below 0.98 of the associated load.
 fn check(walls: &[Value], most_open: usize) -> usize {
     let mut lower = 0;
     let (mut slowest, mut open, mut stalled) = (0.0f64, 0, 0);
@@ -84,7 +83,7 @@ fn check(walls: &[Value], most_open: usize) -> usize {
     lower
 }
 
-/// The walls of up to six blocks.
+/// The least loads of walls with up to six blocks agree with an independent mixed-integer program.
 #[test]
 fn least_loads_of_the_smallest_walls_agree_with_a_mixed_integer_program() {
     let small: Vec<Value> = walls().into_iter().filter(|wall| blocks(wall) <= 6).collect();
@@ -92,7 +91,8 @@ fn least_loads_of_the_smallest_walls_agree_with_a_mixed_integer_program() {
     check(&small, 0);
 }
 
-/// All of up to nine blocks: at least 300, at least 50 with a least load below 0.98 of the associated one.
+/// The least loads of all walls with up to nine blocks agree with an independent mixed-integer program: at least 300
+/// walls, at least 50 of them with a least load below 0.98 of the associated one.
 #[test]
 #[ignore = "minutes"]
 fn least_loads_of_all_small_walls_agree_with_a_mixed_integer_program() {
@@ -101,8 +101,8 @@ fn least_loads_of_all_small_walls_agree_with_a_mixed_integer_program() {
     assert!(check(&all, 0) >= 50);
 }
 
-/// The program of products alone, without any search, proves a bound that never lies above the
-/// independent least load, and nearly always is that load.
+/// The program of products alone, without any search, proves a bound that is never above the independent least load,
+/// and that usually is this load.
 #[test]
 fn products_alone_bound_the_least_loads() {
     let small: Vec<Value> = walls().into_iter().filter(|wall| blocks(wall) <= 5).step_by(3).collect();
@@ -118,7 +118,7 @@ fn products_alone_bound_the_least_loads() {
     assert!(closed * 10 >= small.len() * 9, "{closed} of {}", small.len());
 }
 
-/// Splitting the program of all products never proves more than the independent least load, and mostly nearly that.
+/// Splitting the program of all products never proves more than the independent least load, and usually nearly as much.
 #[test]
 fn split_products_bound_the_least_loads() {
     let small: Vec<Value> = walls().into_iter().filter(|wall| blocks(wall) <= 5).step_by(9).collect();
@@ -138,8 +138,9 @@ fn split_products_bound_the_least_loads() {
     assert!(near * 4 >= tried * 3, "{near} of {tried}");
 }
 
-/// The walls of 10 to 12 blocks: search and products together close every bracket but one, which stays
-/// open by 4e-4 (a wall that slides as a whole, found to the last digit).
+/// The least loads of walls of 10 to 12 blocks agree with an independent mixed-integer program: search and products
+/// together close every bracket but one, which stays open by 4e-4 (a wall that slides as a whole, found to the last
+/// digit).
 #[test]
 #[ignore = "minutes"]
 fn least_loads_of_larger_walls_agree_with_a_mixed_integer_program() {

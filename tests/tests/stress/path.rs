@@ -9,7 +9,7 @@ use voussoir::results::CaseResult;
 use voussoir_tests::random::{History, Law, RandomScene, numbers, scene};
 use voussoir_tests::{answered, changed, keep};
 
-/// What a solver did over all scenes.
+/// The results of a solver over all scenes.
 #[derive(Default)]
 struct Tally {
     scenes: usize,
@@ -37,14 +37,14 @@ fn shown(result: &CaseResult) -> String {
     format!("{:?} {:?} {:?} {:?}", result.status, result.load_factor, result.notes, result.certificate.failures)
 }
 
-/// One solver's path against the associated limit.
+/// Checks the path of one solver against the associated limit load.
 fn check(scene: &RandomScene, solver: &'static str, path: &CaseResult, limit: &CaseResult, tally: &mut Tally) -> bool {
     let number = tally.scenes;
     let mut wrong = Vec::new();
     *tally.statuses.entry(format!("{solver} {:?}", path.status)).or_default() += 1;
     if path.status == Status::Stalled {
         tally.sure_stalls += usize::from(solver == "newton_path" && scene.law.is_monotone());
-        // Exact paths with strengths are counted apart.
+        // Exact paths with strengths are counted separately.
         let solver =
             if scene.law == Law::Strengths && solver == "event_path" { "event_path, strengths" } else { solver };
         tally.unsolved.entry(solver).or_default().push(format!("{number} {:?}: {:?}", scene.law, path.notes));
@@ -136,7 +136,7 @@ fn tried(scene: &RandomScene, tally: &mut Tally) {
     }
 }
 
-/// Whether steps that are much smaller bring Newton's end load much closer to the exact path's.
+/// Returns true if much smaller steps bring Newton's end load much closer to the load of the exact path.
 fn tends(scene: &RandomScene, event: &CaseResult, newton: &CaseResult) -> bool {
     let (Some(exact), Some(coarse), Some(displacements)) =
         (event.load_factor, newton.load_factor, event.path.displacements.as_ref())
@@ -155,19 +155,12 @@ fn tends(scene: &RandomScene, event: &CaseResult, newton: &CaseResult) -> bool {
     fine.load_factor.is_some_and(|fine| (fine - exact).abs() <= 0.5 * (coarse - exact).abs())
 }
 
-/// Random walls, rings and arches, some with settlements or unloading before the load grows; μ from
-/// 0.05 to 2, stiffnesses of blocks spread up to 1e6: without slip or with associated flow event path,
-/// Newton path and limit analysis agree to 1e-8, and no Newton path stalls; otherwise both paths are
-/// certified and not above the associated load, or (in less than a tenth) given up with their reason.
-/// SCENES sets how many are tried (24 by default), SHOW prints each, KEEP keeps their studies, ONLY
-/// tries one.
-///
-/// The 24 scenes of the default (35 s on two busy cores): every path is solved and all loads agree.
-/// SCENES=220 (13 minutes on two busy cores): 108 walls, 129 with sliding, 32 with a history, 100 not associated, median 108
-/// events. All 220 are solved by both paths. Associated and stuck flow: all 120 loads agree. Not associated: the exact path
-/// ends in 11 limit points, two of which leave it undecided how the path goes on after them (scenes 86 and 91), Newton's in 9.
-/// No load above the associated one, 13 pairs on different branches that their notes name, none apart without a reason.
-/// The scenes at whose corners paths once stopped are tests of their own (regression_corners).
+/// Random walls, rings and arches, some with settlements or unloading before the load grows; μ from 0.05 to 2,
+/// stiffnesses of blocks different by up to 1e6. Without slip or with associated flow event path, Newton path and limit
+/// analysis agree to 1e-8, and no Newton path stalls. Otherwise both paths are certified and not above the associated
+/// load, or stop with a reason (in less than a tenth of the scenes). SCENES sets the number of scenes (24 by default),
+/// SHOW prints each, KEEP stores their studies, ONLY selects one. Two exact paths may end at different branches, which
+/// their notes name.
 #[test]
 fn paths_end_where_limit_analysis_does() {
     let cases = std::env::var("SCENES").ok().and_then(|n| n.parse().ok()).unwrap_or(24);

@@ -1,7 +1,8 @@
-//! Supports that move, by hand in thousands of cases and in the default tests in a hundred: every way to move, what
-//! deforms, small and finite displacements, each solver; every answer against a second route named for its class.
+//! Moving supports, in thousands of cases by hand and in a hundred in the default tests: every motion of supports,
+//! every combination of deforming parts, small and finite displacements, each solver. Every answer is checked by a
+//! second method for its class.
 //!
-//! | class | second route |
+//! | class | second method |
 //! |---|---|
 //! | rigid blocks that follow their supports or cannot | a linear program over the motions: the least overlap |
 //! | small displacements, no slip or rigid | limit analysis of the unmoved scene: a settlement changes no limit load (1e-6) |
@@ -29,7 +30,7 @@ pub struct Stratum {
     solver: &'static str,
 }
 
-/// Case `k`: levels in turn, so that each level of each factor comes up equally often.
+/// Returns case `k`: levels in turn, so that each level of each factor is equally frequent.
 fn stratum(k: usize, random: &mut Random) -> Stratum {
     let settling = Settling::ALL[k % 5];
     let routes = [(false, "event_path"), (false, "newton_path"), (true, "newton_path"), (false, "limit_conic")];
@@ -51,7 +52,7 @@ pub fn keys(stratum: &Stratum, more: &str) -> String {
     format!("solver = \"{}\"\nkinematics = \"{kinematics}\"\n{more}", stratum.solver)
 }
 
-/// How a case came out.
+/// The outcome of a case.
 #[derive(Debug, Clone, PartialEq)]
 enum Class {
     Agrees,
@@ -69,14 +70,14 @@ fn factor(result: &CaseResult) -> Option<f64> {
     result.load_factor.filter(|_| result.status != Status::Stalled && result.certificate.passed)
 }
 
-/// Whether a result says that its answer may not be the only one.
+/// Returns true if a result reports that its answer may not be the only one.
 fn names_other_states(result: &CaseResult) -> bool {
     let several = |note: &String| ["solutions", "no rate of solution"].iter().any(|words| note.contains(words));
     names_bifurcation(result) || result.notes.iter().any(several)
 }
 
-/// What is wrong with the greatest and the first limit point where they are not, both on one branch, peaks of the energy
-/// within 1 %; by shorter steps of its program, too, which may pass over a dip.
+/// Returns the fault if the greatest and the first limit point are not both peaks of the energy on one branch, within 1
+/// %. Shorter steps of the energy program are tried too, since it may pass over a dip.
 fn no_peaks_of_the_energy(study: &str, result: &CaseResult, own: f64) -> Option<String> {
     let energy = EnergyScene::of_study(study);
     let first = result.path.first_limit_point.unwrap_or(own);
@@ -103,7 +104,7 @@ fn no_peaks_of_the_energy(study: &str, result: &CaseResult, own: f64) -> Option<
     Some(format!("{first:.9} and {own:.9} are no peaks of the energy: {peaks:?}"))
 }
 
-/// Compares an answer with the second route of its class; what is wrong, if it is.
+/// Compares an answer with the second method for its class; returns the fault, if any.
 fn second_route(stratum: &Stratum, scene: &SettledScene, result: &CaseResult, own: f64) -> Option<String> {
     let apart = |a: f64, b: f64, tolerance: f64| (a - b).abs() > tolerance * b.abs().max(1e-9);
     if !stratum.finite {
@@ -131,7 +132,8 @@ fn second_route(stratum: &Stratum, scene: &SettledScene, result: &CaseResult, ow
     (apart(own, value, 1e-3) && unnamed).then(|| format!("{own:.9}, the mirror image with half the step {value:.9}"))
 }
 
-/// Processor time of this thread \[s\], where the machine tells it; other work on the machine does not make a case slow.
+/// Returns the processor time of this thread \[s\], if the machine reports it; other work on the machine then has no
+/// effect.
 fn processor_seconds(started: Instant) -> f64 {
     let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
     let nanoseconds = told.and_then(|told| told.split(' ').next()?.parse::<f64>().ok());
@@ -145,9 +147,10 @@ pub fn scene(k: usize) -> (Stratum, SettledScene) {
     (stratum, scene)
 }
 
-/// The least overlap (or slip, where joints are stuck) in settlements of any motion of the rigid blocks whose supports move
-/// as the study says: zero where they can follow. Joints slide and open as Coulomb friction without dilatancy lets them.
-/// A linear program in the motions, seen at the origin; nothing is shared with limit analysis but ends and frames of joints.
+/// Returns the least overlap (or slip, if joints are stuck), in units of settlements, of any motion of the rigid blocks
+/// whose supports move as in the study: zero if the blocks can follow. Joints slide and open as Coulomb friction
+/// without dilatancy allows. This is a linear program in the motions about the origin; it shares only ends and frames
+/// of joints with limit analysis.
 fn least_overlap(text: &str) -> Extreme {
     let case = first_case(text);
     let stuck = text.contains("tangential = \"stuck\"");
@@ -155,7 +158,7 @@ fn least_overlap(text: &str) -> Extreme {
     let length = case.assembly.size();
     let settlements = || case.stages.iter().flat_map(|stage| &stage.settlements);
     let size = settlements().map(|s| s.displacement.norm() + s.rotation.abs() * length).fold(1e-300, f64::max);
-    // Velocity of a point of a block in a direction: entries over its own motion, and what is told.
+    // Velocity of a point of a block in a direction: entries over its own motion, and the prescribed part.
     let along = |body: usize, point: Vec2, direction: Vec2| -> ([f64; 3], f64) {
         let own = if bodies[body].fixed { 0.0 } else { 1.0 };
         let lever = (point.x * direction.y - point.y * direction.x) / length;
@@ -198,7 +201,7 @@ fn least_overlap(text: &str) -> Extreme {
     rows.extreme(overlap, -1.0)
 }
 
-/// What is wrong with an answer to whether rigid blocks follow their supports.
+/// Returns the fault of an answer to the question if rigid blocks follow their supports.
 fn wrongly_followed(text: &str, result: &CaseResult) -> Option<String> {
     let blocked = match result.status {
         Status::NoEquilibrium if result.proof.ray.is_some() => true,
@@ -233,7 +236,7 @@ fn classify(k: usize) -> (Stratum, Class) {
         {
             Class::Wrong(why)
         }
-        // Dead load alone, or the settlement itself, may leave nothing that stands.
+        // Dead load alone, or the settlement itself, may be impossible to carry.
         Some(result) if matches!(result.status, Status::NoEquilibrium | Status::Unbounded | Status::LimitPoint) => {
             Class::Agrees
         }
@@ -255,7 +258,7 @@ fn family(range: std::ops::Range<usize>) -> [usize; 5] {
     let mut total = [0; 5];
     for k in range {
         let (stratum, class) = classify(k);
-        // Each as it comes: what a run that is ended has done is known.
+        // Print each case at once, so that the results of an interrupted run are known.
         println!("case {k}: {class:?}");
         let column = match &class {
             Class::Agrees => None,
@@ -296,8 +299,9 @@ fn family(range: std::ops::Range<usize>) -> [usize; 5] {
     total
 }
 
-/// A hundred cases of small displacements, every way to move: exact and Newton paths, compliant and elastic, and rigid
-/// blocks without compliance. Those with finite displacements take longer (`supports_that_move`).
+/// A hundred cases of small displacements with every motion of supports: exact and Newton paths on compliant and
+/// elastic scenes, and rigid blocks without compliance. Cases with finite displacements take longer
+/// (`supports_that_move`).
 #[test]
 fn a_hundred_supports_that_move() {
     let tens = [0, 3, 4, 7, 8, 11, 12, 16, 5, 9];
@@ -309,8 +313,8 @@ fn a_hundred_supports_that_move() {
     assert!(wrong.is_empty(), "{wrong:?}");
 }
 
-/// Rigid blocks that no motion lets follow their supports, and one scene in which they do: the ray, and the program over
-/// the motions.
+/// A ray and a linear program over the motions both prove that rigid blocks cannot follow their supports; in one scene
+/// they can follow.
 #[test]
 fn supports_that_rigid_blocks_cannot_follow() {
     for k in [1312, 2030, 2837] {
@@ -328,7 +332,7 @@ fn supports_that_rigid_blocks_cannot_follow() {
     }
 }
 
-/// A path that folds sharply does not go back the way it came: a thousandth of the arch as the longest step gives 11 484.9171.
+/// A path passes a sharp fold in the right direction: a longest step of a thousandth of the arch gives 11 484.9171.
 #[test]
 fn a_sharp_fold_is_passed_in_the_right_sense() {
     let (stratum, scene) = scene(1463);
@@ -337,8 +341,8 @@ fn a_sharp_fold_is_passed_in_the_right_sense() {
     assert!((found - 11_484.917).abs() <= 1e-6 * found, "{found} {:?}", result.notes);
 }
 
-/// At a corner at which the load is greatest a path does not turn back, however steep the branch behind it: it went back all
-/// its way, past its beginning, and said 208.258682401 from another branch. The energy has 158.41213799 on this one.
+/// A path does not turn back at a corner with the greatest load, however steep the branch after it. The energy program
+/// gives 158.41213799 on this branch.
 #[test]
 fn a_path_does_not_turn_back_at_a_corner() {
     let (stratum, scene) = scene(2343);
@@ -352,8 +356,8 @@ fn a_path_does_not_turn_back_at_a_corner() {
     }
 }
 
-/// Folds beyond which one rate among thousands leads on: a point opens while all that slides comes to rest (1264), or one begins
-/// to slide as others come to rest (1508). Arc lengths lost these paths; those with another first step came to the same loads.
+/// Folds at which only one rate among thousands continues the path are passed: a point opens while all sliding points
+/// stop (1264), or one begins to slide while others stop (1508). Paths with another first step give the same loads.
 #[test]
 fn folds_of_many_points_are_passed() {
     for (k, known) in [(1264, 7.462_409_788), (1508, 7_481.227_062)] {
@@ -365,8 +369,8 @@ fn folds_of_many_points_are_passed() {
     }
 }
 
-/// A settlement that goes no further by itself at a corner snaps, and goes on to where it is told. Steps of a thousandth to
-/// a hundred thousandth of the arch say the same factor to 2e-10.
+/// A settlement that cannot continue at a corner snaps and then reaches its prescribed value. Steps of a thousandth to
+/// a hundred thousandth of the arch give the same factor to 2e-10.
 #[test]
 fn a_settlement_that_turns_back_at_a_corner_snaps() {
     let (stratum, scene) = scene(383);
@@ -376,8 +380,8 @@ fn a_settlement_that_turns_back_at_a_corner_snaps() {
     assert!(result.notes.iter().any(snap), "{:?}", result.notes);
 }
 
-/// A settlement that can go on does: by a step that jumped, this one was said to snap, and ended leaning the other way, with
-/// its greatest opening at joint 7. Steps of 1e-4 and 3e-5 of the arch end where it ends now, to 1e-13.
+/// A step of a settlement does not jump to another branch. Steps of 1e-4 and 3e-5 of the arch end at the same state to
+/// 1e-13.
 #[test]
 fn a_step_of_a_settlement_does_not_jump() {
     let (stratum, scene) = scene(1904);

@@ -1,6 +1,6 @@
-//! Random scenes with finite displacements, each by several continuation strategies and in several disguises: load factor
-//! and limit points do not depend on the strategy, its step, a mirror or the numbers of the blocks. Load control, which
-//! follows no falling load, ends at the first limit point.
+//! Random scenes with finite displacements, each with several continuation strategies and in several equivalent forms:
+//! load factor and limit points do not depend on the strategy, its step, a reflection or the numbers of the blocks.
+//! Load control, which cannot follow a falling load, ends at the first limit point.
 
 use std::collections::BTreeMap;
 use voussoir::core::limit::Status;
@@ -17,21 +17,22 @@ const STRATEGIES: [(&str, &str); 5] = [
     ("dissipation", "{ strategy = \"dissipation\" }"),
 ];
 
-/// Loads that are equal, relative.
+/// Relative difference of equal loads.
 pub const APART: f64 = 1e-6;
 
-/// Scene `k` of the family: elastic voussoirs or compliant joints, with friction or stuck, half of them settled.
+/// Returns scene `k` of the family: elastic voussoirs or compliant joints, with friction or stuck, half of them
+/// settled.
 pub fn scene(k: usize) -> SettledScene {
     let mut random = Random::new(5000 + k as u64);
     let shape = if k % 3 == 2 { Shape::Pier } else { Shape::Arch };
     let deforming = if k.is_multiple_of(2) { Deforming::Compliant } else { Deforming::Elastic };
     let settling = Settling::ALL[(k / 2) % 5];
-    // Half of them without settlement.
+    // Half of them have no settlement.
     let size = if (k / 2).is_multiple_of(2) { 0.0 } else { 10f64.powf(random.uniform(-4.0, -2.3)) };
     settled_scene(&mut random, Draw { shape, deforming, settling, size, stuck: k % 4 == 3 })
 }
 
-/// What one run said: the load factor and the limit points up to the greatest.
+/// The result of one run: the load factor and the limit points up to the greatest.
 pub struct Said {
     run: String,
     pub factor: f64,
@@ -39,7 +40,7 @@ pub struct Said {
 }
 
 impl Said {
-    /// Of a run that answered.
+    /// Creates it from a run with an answer.
     pub fn of(run: String, result: &CaseResult) -> Option<Said> {
         let factor = result.load_factor.filter(|_| result.status != Status::Stalled)?;
         let all = result.path.limit_points.iter().filter(|point| point.stage == "live").map(|point| point.factor);
@@ -48,7 +49,7 @@ impl Said {
         Some(Said { run, factor, limit_points: limit_points[..greatest].to_vec() })
     }
 
-    /// Whether both say the same load and list the same limit points up to it.
+    /// Returns true if both have the same load and the same limit points up to it.
     pub fn same_way(&self, other: &Said) -> bool {
         let same = |(a, b): (&f64, &f64)| (a - b).abs() <= APART * b.abs();
         let [a, b] = [&self.limit_points, &other.limit_points];
@@ -56,16 +57,16 @@ impl Said {
     }
 }
 
-/// What the runs of one scene said.
+/// The results of the runs of one scene.
 struct Runs {
     said: Vec<Said>,
     stalled: Vec<(String, String)>,
     names_bifurcation: bool,
-    /// What load control said.
+    /// The result of load control.
     first: Result<f64, String>,
 }
 
-/// The table of the solver with a strategy.
+/// Returns the table of the solver with a strategy.
 fn solver(strategy: &str) -> String {
     format!("solver = \"newton_path\"\nkinematics = \"finite\"\ncontinuation = {strategy}")
 }
@@ -105,8 +106,8 @@ fn runs(k: usize) -> Runs {
     out
 }
 
-/// What does not agree in one scene: runs whose load or whose limit points are others than those of most, and the first limit
-/// point by load control.
+/// Returns the disagreements in one scene: runs whose load or limit points differ from those of most runs, and the
+/// first limit point of load control.
 fn differing(runs: &Runs, middle: &Said) -> Vec<String> {
     let other = |said: &&Said| (said.factor - middle.factor).abs() > APART * middle.factor.abs();
     let loads = runs.said.iter().filter(other).map(|said| format!("{}: {:.9}", said.run, said.factor));
@@ -117,7 +118,7 @@ fn differing(runs: &Runs, middle: &Said) -> Vec<String> {
     loads.chain(ways).chain(by_load.map(|load| format!("load control: {load:.9} for {first:.9}"))).collect()
 }
 
-/// Sees that all answers of each scene agree; prints the table.
+/// Asserts that all answers of each scene agree, and prints the table.
 fn agree(scenes: &[usize]) {
     let (mut table, mut apart, mut unanswered) = (BTreeMap::<String, [usize; 3]>::new(), Vec::new(), Vec::new());
     let mut stalls = Vec::new();
@@ -157,19 +158,19 @@ fn agree(scenes: &[usize]) {
     }
     println!("{}\n{}\nunanswered {unanswered:?}", apart.join("\n"), stalls.join("\n"));
     assert!(apart.is_empty(), "{} of {count} scenes depend on how they are traced:\n{}", apart.len(), apart.join("\n"));
-    // A refusal that another strategy answers counts as a stall.
+    // A refusal of a scene that another strategy solves counts as a stall.
     let runs: usize = table.values().flatten().sum();
     assert!(50 * stalls.len() <= runs, "{} of {runs} runs stalled:\n{}", stalls.len(), stalls.join("\n"));
 }
 
-/// Five strategies, three disguises: one answer.
+/// Five strategies and three equivalent forms agree.
 #[test]
 fn strategies_and_disguises_agree() {
     agree(&[7, 8, 15]);
 }
 
-/// A path ends where the load has fallen to half of its greatest limit point. If the stage asks for a movement beyond, it goes on:
-/// here to a still greater load.
+/// A path ends when the load has fallen to half of its greatest limit point. If the stage asks for a displacement
+/// beyond it, the path continues: here to a still greater load.
 #[test]
 fn the_range_ends_at_half_of_the_greatest_limit_point() {
     let result = answered(&scene(147).study(&solver(STRATEGIES[0].1)));
@@ -182,7 +183,7 @@ fn the_range_ends_at_half_of_the_greatest_limit_point() {
     assert!(passed(6.261_187_249) && passed(82.019_912_930), "{:?}", result.path.limit_points);
 }
 
-/// A peak counts where it is placed. By half the step nothing between was found, and the path ended at the corner before it.
+/// A peak that is not located in a step shortens the step, so that the path does not end at the corner before it.
 #[test]
 fn a_peak_that_is_not_placed_shortens_the_step() {
     for (name, strategy) in &STRATEGIES[..2] {

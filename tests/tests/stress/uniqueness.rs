@@ -1,5 +1,5 @@
-//! Whether a mechanism is the only one, by linear programs: the least and the greatest value of a random functional over
-//! all motions that prove the factor. Nothing is shared with the solver but the problem's data.
+//! Uniqueness of a mechanism by linear programs: the least and the greatest value of a random functional over all
+//! motions that prove the factor. The programs share only the data of the problem with the solver.
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::SupportedConeT::{NonnegativeConeT, ZeroConeT};
@@ -12,13 +12,14 @@ use voussoir::core::model::stage_loads;
 use voussoir::solvers::limit::conic::LimitConic;
 use voussoir_tests::{Wall, first_case, friction};
 
-/// What the load on an optimal motion may exceed the factor by, relative.
+/// Greatest relative excess of the load on an optimal motion over the factor.
 const OPTIMAL: f64 = 1e-9;
-/// Spread of the functional, relative to the greatest velocity, that is none; and that is one.
+/// Spread of the functional, relative to the greatest velocity: below the first value the motion is unique, above the
+/// second it is not.
 const SPREAD: [f64; 2] = [1e-4, 3e-3];
 
-/// Greatest value of `functional` over velocities [v_x, v_y, ω × length] of all groups that prove the factor, each
-/// velocity within ± `box_size`. `None` where the program is not solved.
+/// Returns the greatest value of `functional` over velocities [v_x, v_y, ω × length] of all groups that prove the
+/// factor, each velocity within ± `box_size`. `None` if the program is not solved.
 fn greatest(problem: &LimitProblem, factor: f64, length: f64, box_size: f64, functional: &[f64]) -> Option<f64> {
     let velocities = 3 * problem.groups;
     let force = problem.magnitude(&problem.varying).max(problem.magnitude(&problem.fixed));
@@ -31,7 +32,7 @@ fn greatest(problem: &LimitProblem, factor: f64, length: f64, box_size: f64, fun
             values.push(v);
         }
     };
-    // The jump of each joint is that of its yielding rows.
+    // The jump of each joint is the jump of its yielding rows.
     let mut z = velocities;
     let mut dissipated = Vec::new();
     for joint in &problem.joints {
@@ -54,7 +55,7 @@ fn greatest(problem: &LimitProblem, factor: f64, length: f64, box_size: f64, fun
     }
     right.push(1.0);
     let equations = right.len();
-    // What is dissipated less the work of the fixed load is the factor.
+    // The dissipation minus the work of the fixed load is the factor.
     for (group, wrench) in problem.fixed.iter().enumerate() {
         (0..3).for_each(|i| push(equations, 3 * group + i, -power(wrench)[i]));
     }
@@ -90,7 +91,7 @@ fn greatest(problem: &LimitProblem, factor: f64, length: f64, box_size: f64, fun
     solved.then(|| -solver.solution.obj_val)
 }
 
-/// Whether the motion is the only one by two programs; `None` where the spread is neither nothing nor something.
+/// Returns true if the motion is the only one by two programs; `None` if the spread is between the two limits.
 fn only_one(problem: &LimitProblem, answer: &LimitAnswer) -> Option<bool> {
     let (factor, motion, length) = (answer.factor?, answer.motion.as_ref()?, 0.4);
     // With varying·q̇ = 1 in units of the force.
@@ -109,8 +110,8 @@ fn only_one(problem: &LimitProblem, answer: &LimitAnswer) -> Option<bool> {
     }
 }
 
-/// So many random walls, some pushed along an axis: the solver's word on whether the mechanism is the only one is that
-/// of the programs.
+/// Checks random walls, some of them pushed along an axis: the solver's statement on uniqueness of the mechanism agrees
+/// with the linear programs.
 fn check(cases: u32) {
     let scenes = (1usize..6, 1usize..5, 0.1f64..1.2, -180.0f64..180.0, prop::option::of(0usize..8));
     let config = Config { cases, failure_persistence: None, ..Config::default() };
@@ -144,7 +145,8 @@ fn check(cases: u32) {
     assert!(unique > cases / 8 && several > cases / 50 && unclear * 20 < cases, "{unique} {several} {unclear}");
 }
 
-/// `VOUSSOIR_UNIQUE=2000` tries more.
+/// The solver's statement that a mechanism is the only one agrees with linear programs. `VOUSSOIR_UNIQUE=2000` tries
+/// more walls.
 #[test]
 fn mechanisms_are_the_only_ones_where_the_solver_says_so() {
     check(std::env::var("VOUSSOIR_UNIQUE").ok().and_then(|n| n.parse().ok()).unwrap_or(60));

@@ -8,7 +8,7 @@ use voussoir::core::plugin::{
     Capability, Card, KnownPath, Need, Parameter, PluginKind, Property, Quantity, Range, Sample, Shape,
 };
 
-/// Associated friction with cohesion that crushes.
+/// Associated friction with cohesion and crushing.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct MutantFacets {

@@ -1,4 +1,4 @@
-//! Stresses from strains with one fault each: a cone that softens.
+//! Stress updates with one fault each: a cone that softens.
 
 use super::every_fault_is_found;
 use serde::{Deserialize, Serialize};
@@ -115,7 +115,8 @@ const CARD: Card = Card {
     ],
     provides: &[Capability::STRESS_UPDATE, Capability::RIGID_LIMIT],
     claims: &[Property::DISSIPATIVE, Property::ISOTROPIC, Property::SYMMETRIC_TANGENT],
-    // q = √3 G γ in pure shear yields at R, and A presses: from a strain within the cone and back.
+    // In pure shear yield begins at q = √3 G γ = R, and A is the pressure coefficient: the path leaves the cone and
+    // returns.
     known_paths: &[KnownPath {
         table: TABLE,
         source: "by hand: tension from all sides ends at the tip, where q = 0 and A tr σ = R(κ); then back with 3 K",
@@ -135,7 +136,7 @@ const TABLE: &str = "young_modulus = 5e9\nyield_stress = 1e7";
 
 /// 3 K = E / (1 − 2ν).
 const TRIPLE_BULK: f64 = 5e9 / 0.6;
-/// κ at which 3 A σ = R falls to R_u: the tip stands at R_u / (3 A) where 3 K (ε − A κ) is that.
+/// κ at which 3 A σ = R decreases to R_u: the tip is at R_u / (3 A) where 3 K (ε − A κ) has this value.
 const TIP: f64 = 1e6 / 0.9;
 const BACK: f64 = TRIPLE_BULK * 1e-4;
 

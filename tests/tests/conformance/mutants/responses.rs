@@ -1,4 +1,4 @@
-//! Tractions from gaps with one fault each: a joint that slides with friction and tears without softening.
+//! Responses with one fault each: a joint that slides with friction and tears without softening.
 
 use super::every_fault_is_found;
 use serde::{Deserialize, Serialize};
@@ -112,7 +112,7 @@ impl InterfaceResponse for Mutated {
             "nothing_stored" => said.stored = 0.0,
             "not_a_number_at_no_gap" if gap[0] == 0.0 => said.traction[1] *= 0.0 / gap[0],
             "allocates" => said.stored += vec![0.0; 1 + usize::from(gap[0] > 0.0)].iter().sum::<f64>(),
-            // Friction that pushes: what slides is carried on.
+            // Friction that pushes in the direction of slip.
             "creates_energy" if slides => said.traction[1] *= -self.friction,
             "refuses_to_open" if gap[0] > 1e-4 => return Err(UpdateFailure::NoConvergence),
             "presses_when_open" if gap[0] > 0.0 => said.traction[0] = said.traction[0].abs(),
@@ -183,7 +183,7 @@ fn responses_with_a_fault_are_found() {
     every_fault_is_found(&CARD, TABLE, SAMPLE, &faults);
 }
 
-/// Parameters whose cards say another unit, or none, or a default that is not the type's.
+/// Parameters whose cards have a wrong or missing unit, or a default of the wrong type, are found.
 #[test]
 fn parameters_without_a_unit_are_found() {
     const NO_UNIT: Parameter = Parameter::number("cohesion", Quantity::Ratio, Range::POSITIVE, "c");
@@ -221,8 +221,8 @@ fn parameters_without_a_unit_are_found() {
     every_fault_is_found(&CARD, TABLE, SAMPLE, &[("a_number_of_its_own", &["units"])]);
 }
 
-/// What was found can be run: the study drives the law to the place. The law of this test is no plug-in of a study, so
-/// another is driven along the same path.
+/// A failure writes a study that drives the law to the place of the failure. The law of this test is not a plug-in of a
+/// study, so another law is driven along the same path.
 #[test]
 fn a_failure_writes_a_study_that_shows_it() {
     const REFUSES: &str =

@@ -1,4 +1,4 @@
-//! A bridge as numbers, and as the text of a study.
+//! A bridge as numbers, and the text of its study.
 
 use std::fmt::Write;
 use voussoir_tests::sequence::Sequence;
@@ -8,22 +8,22 @@ use voussoir_tests::sequence::Sequence;
 pub struct Span {
     pub span: f64,
     pub rise: f64,
-    /// At the crown and at the springings.
+    /// Thickness at the crown and at the springings.
     pub thickness: [f64; 2],
     pub voussoirs: usize,
     pub rings: usize,
 }
 
-/// Ground of one kind up to a level.
+/// Fill or backing of one material up to a level.
 #[derive(Debug, Clone)]
 pub struct Soil {
     pub to_level: f64,
     pub density: f64,
     pub friction_angle: f64,
     pub cohesion: f64,
-    /// Of the spread of loads \[deg\].
+    /// Angle of the spread of loads \[deg\].
     pub spread: f64,
-    /// A horizontal pressure where it is backing.
+    /// Strength as a horizontal pressure, if this is backing.
     pub backing: Option<f64>,
 }
 
@@ -35,7 +35,7 @@ pub struct Axle {
     pub wheel: f64,
 }
 
-/// Joints that have lost mortar: span, ring, joint, from the intrados, depth.
+/// Joints that have lost mortar: span, ring, joint, true if from the intrados, depth.
 pub type Lost = (usize, usize, usize, bool, f64);
 
 #[derive(Debug, Clone)]
@@ -47,14 +47,14 @@ pub struct Bridge {
     /// Crushing strength and cohesion of all joints.
     pub crushing: Option<f64>,
     pub spans: Vec<Span>,
-    /// Height, width, width at the foot, courses.
+    /// Height, width, width at the foot, and number of courses.
     pub piers: Vec<(f64, f64, f64, usize)>,
     pub cover: f64,
-    /// Rise of the road over its length.
+    /// Slope of the road: rise over length.
     pub slope: f64,
-    /// From the lowest; the last reaches up to the road.
+    /// Layers from the lowest; the last one reaches up to the road.
     pub soils: Vec<Soil>,
-    /// Shares of passive pressure by friction and cohesion; `None`: no resistance.
+    /// Shares of passive pressure by friction and cohesion; `None` for no resistance.
     pub passive: Option<[f64; 2]>,
     pub lower: &'static str,
     pub springings_only: bool,
@@ -63,16 +63,16 @@ pub struct Bridge {
     pub axles: Vec<Axle>,
     pub at: f64,
     pub lost: Vec<Lost>,
-    /// Voussoirs of outermost rings that are gone: span, number.
+    /// Lost voussoirs of outermost rings: span, number.
     pub gone: Vec<(usize, usize)>,
-    /// Bed joints of piers that have lost mortar: pier, joint, from the left, depth.
+    /// Bed joints of piers that have lost mortar: pier, joint, true if from the left, depth.
     pub bed: Vec<(usize, usize, bool, f64)>,
-    /// Loads spread as the stress of a half-plane, cut off under the angles of spread.
+    /// True if loads spread as the stress of a half-plane, cut off at the angles of spread.
     pub half_plane: bool,
     pub factors: Factors,
 }
 
-/// Partial factors: weights and loads are multiplied, strengths and tangents divided.
+/// Partial factors: weights and loads are multiplied, strengths and tangents are divided.
 #[derive(Debug, Clone)]
 pub struct Factors {
     pub masonry_weight: f64,
@@ -98,9 +98,9 @@ impl Factors {
     };
 }
 
-/// Seeds from here on have partial factors and loads that spread as in a half-plane besides.
+/// Seeds from this one on also have partial factors and loads that spread as in a half-plane.
 pub const MORE: u64 = 10_000;
-/// Seeds from here on have damage of outermost rings and of piers besides.
+/// Seeds from this one on also have damage of outermost rings and of piers.
 pub const DAMAGED: u64 = 1_000_000;
 
 impl Bridge {
@@ -146,7 +146,7 @@ impl Bridge {
             soils.push(soil(&mut r, level));
         }
         soils.push(soil(&mut r, f64::INFINITY));
-        // Backing spreads as the fill does: it has no angle of its own.
+        // Backing spreads loads as the fill does: it has no separate angle.
         let last = soils[soils.len() - 1].spread;
         soils.iter_mut().filter(|soil| soil.backing.is_some()).for_each(|soil| soil.spread = last);
         let total: f64 = spans.iter().map(|span| span.span).sum();
@@ -215,7 +215,7 @@ impl Bridge {
         bridge
     }
 
-    /// Voussoirs lost from outermost rings of two, none at a springing, and mortar from bed joints.
+    /// Removes voussoirs from outermost rings of two, but not at springings, and mortar from bed joints.
     fn damage(&mut self, r: &mut Sequence) {
         for span in 0..self.spans.len() {
             self.spans[span].rings = if r.chance(0.8) { 2 } else { 1 };
@@ -235,7 +235,7 @@ impl Bridge {
         }
     }
 
-    /// The bridge whose characteristic values are the design values of this one.
+    /// Returns the bridge whose characteristic values are the design values of this one.
     pub fn design(&self) -> Bridge {
         let (f, mut design) = (&self.factors, self.clone());
         design.factors = Factors::NONE;
@@ -253,7 +253,7 @@ impl Bridge {
         design
     }
 
-    /// The study of the same numbers.
+    /// Returns the study with the same numbers.
     pub fn study(&self) -> String {
         let mut text = format!(
             "name = \"random\"\n[scene]\nscene = \"bridge\"\nwidth = {:?}\nmaterial = \"stone\"\njoint = \"dry\"\nring_joint = \"ring\"\nspans = [\n",
@@ -381,10 +381,10 @@ impl Bridge {
         text
     }
 
-    /// Two points of a straight road.
+    /// Returns two points of a straight road.
     pub fn road(&self) -> [[f64; 2]; 2] {
         let top = self.spans.iter().map(|span| span.rise + span.thickness[0]).fold(0.0, f64::max) + self.cover;
-        // High enough everywhere, also where thick springings of a deep ring rise.
+        // High enough everywhere, also above thick springings of a deep ring.
         [[-5.0, top + 0.3], [40.0, top + 0.3 + 45.0 * self.slope]]
     }
 

@@ -1,10 +1,10 @@
-//! Fill above and beside a chord: by clipping polygons and by fine sums, not by the formulas of the scene.
+//! Fill above and beside a chord, computed by clipping polygons and by fine sums instead of the formulas of the scene.
 
 use super::bridge::{Bridge, Soil};
 
 pub type Point = [f64; 2];
 
-/// The part of a polygon where `side` is ≥ 0.
+/// Returns the part of a polygon with `side` ≥ 0.
 fn clip(polygon: &[Point], side: impl Fn(Point) -> f64) -> Vec<Point> {
     let mut out = Vec::new();
     for i in 0..polygon.len() {
@@ -21,7 +21,7 @@ fn clip(polygon: &[Point], side: impl Fn(Point) -> f64) -> Vec<Point> {
     out
 }
 
-/// Area and x of the centroid times the area.
+/// Returns the area, and the centroid times the area.
 pub fn area_moment(polygon: &[Point]) -> [f64; 3] {
     let mut sums = [0.0; 3];
     for i in 0..polygon.len() {
@@ -34,7 +34,7 @@ pub fn area_moment(polygon: &[Point]) -> [f64; 3] {
     if sums[0] < 0.0 { sums.map(|s| -s) } else { sums }
 }
 
-/// A horizontal force of the fill: least and greatest.
+/// A horizontal force of the fill with its least and greatest value.
 pub struct Reaction {
     pub point: Point,
     /// +1 to the right.
@@ -47,7 +47,7 @@ impl Bridge {
         if soil == 0 { f64::NEG_INFINITY } else { self.soils[soil - 1].to_level }
     }
 
-    /// Mass above a chord between two x, and its moment about x = 0.
+    /// Returns the mass above a chord between two x, and its moment about x = 0.
     pub fn column(&self, [a, b]: [Point; 2], [low, high]: [f64; 2]) -> [f64; 2] {
         let road = |p: Point| [p[0], self.road_at(p[0])];
         let above = [a, b, road(b), road(a)];
@@ -63,14 +63,14 @@ impl Bridge {
         sums
     }
 
-    /// Weight of what stands above a point \[Pa\].
+    /// Returns the vertical stress from the weight above a point \[Pa\].
     fn vertical_stress(&self, p: Point) -> f64 {
         let top = self.road_at(p[0]);
         let depth = |i: usize, soil: &Soil| (top.min(soil.to_level) - p[1].max(self.bottom_of(i))).max(0.0);
         self.soils.iter().enumerate().map(|(i, soil)| 9.81 * soil.density * depth(i, soil)).sum()
     }
 
-    /// Least and greatest pressure of one kind of fill.
+    /// Returns the least and greatest pressure of one material.
     fn pressures(&self, soil: &Soil, stress: f64) -> [f64; 2] {
         if let Some(strength) = soil.backing {
             return [0.0, strength];
@@ -87,7 +87,7 @@ impl Bridge {
         [least.min(most), most]
     }
 
-    /// The force beside a chord, in pieces of one kind, by Simpson's rule between the levels.
+    /// Returns the force beside a chord, in pieces of one material, by Simpson's rule between the levels.
     pub fn reaction(&self, [a, b]: [Point; 2], [low, high]: [f64; 2]) -> Option<Reaction> {
         let (from, to) = ((low - a[0]) / (b[0] - a[0]), (high - a[0]) / (b[0] - a[0]));
         let (from, to) = (from.min(to).max(0.0), from.max(to).min(1.0));
@@ -99,7 +99,7 @@ impl Bridge {
         for soil in self.soils.iter().filter(|soil| soil.to_level.is_finite()) {
             let t = (soil.to_level - a[1]) / (b[1] - a[1]);
             cuts.extend((from < t && t < to).then_some(t));
-            // Where the road itself passes the level.
+            // The x at which the road itself crosses the level.
             let gap = |t: f64| self.road_at(at(t)[0]) - soil.to_level;
             let (g0, g1) = (gap(from), gap(to));
             cuts.extend((g0 * g1 < 0.0).then(|| from + (to - from) * g0 / (g0 - g1)));
@@ -130,7 +130,7 @@ impl Bridge {
         Some(Reaction { point, sense: if b[1] > a[1] { 1.0 } else { -1.0 }, bounds })
     }
 
-    /// How far a load spreads to each side above a point of the extrados.
+    /// Returns the spread of a load to each side above a point of the extrados.
     pub fn reach(&self, p: Point) -> f64 {
         if !self.spreads {
             return 0.0;

@@ -1,6 +1,6 @@
-//! Random bridges against a program of their own: geometry, fill, spread, strengths and equilibrium written down again from
-//! the equations of docs/theory/bridges.md, as a conic program for Clarabel. It shares no code with the scenes, loads and
-//! solvers of Voussoir; only the study's text is made from the same numbers.
+//! Random bridges against an independent program: geometry, fill, spread, strengths and equilibrium are written again
+//! from the equations of docs/theory/bridges.md, as a conic program for Clarabel. It shares no code with the scenes,
+//! loads and solvers of Voussoir; only the text of the study uses the same numbers.
 
 mod bridge;
 mod fill;
@@ -11,21 +11,23 @@ use self::bridge::{Bridge, DAMAGED, MORE};
 use voussoir::core::limit::Status;
 use voussoir_tests::answered;
 
-/// Ring joints, piers, layers, backing, resistance of every kind, spread, crushing, tapered rings, lost
-/// mortar: 12 bridges (`VOUSSOIR_BRIDGES` for more, from
-/// `VOUSSOIR_FIRST` on).
+/// 12 random bridges carry the load of an independent program: with ring joints, piers, layers, backing, resistance of
+/// every kind, spread, crushing, tapered rings and lost mortar. `VOUSSOIR_BRIDGES` sets the number, `VOUSSOIR_FIRST`
+/// the first seed.
 #[test]
 fn random_bridges_carry_what_an_independent_program_says() {
     compare(0, 12);
 }
 
-/// The same with partial factors, and loads that spread as in a half-plane.
+/// Random bridges with partial factors, and with loads that spread as in a half-plane, carry the load of an independent
+/// program.
 #[test]
 fn random_bridges_with_partial_factors_carry_what_an_independent_program_says() {
     compare(MORE, 10);
 }
 
-/// The same with voussoirs lost from outermost rings, and bed joints of piers that have lost mortar.
+/// Random bridges with voussoirs lost from outermost rings, and with bed joints of piers that have lost mortar, carry
+/// the load of an independent program.
 #[test]
 fn random_bridges_with_damage_carry_what_an_independent_program_says() {
     compare(DAMAGED, 10);
@@ -48,7 +50,7 @@ fn compare(first: u64, count: u64) {
                 compared += 1;
                 result.certificate.passed && (factor - expected).abs() <= 2e-6 * expected.abs()
             }
-            // Dead load alone may fail where a load that is added stands.
+            // Dead load alone may fail although the structure carries it with an additional load.
             (Some(expected), Status::NoEquilibrium, _) => {
                 let most = result.feasible_interval.and_then(|interval| interval[1]);
                 most.is_some_and(|most| (most - expected).abs() <= 2e-6 * expected.abs())

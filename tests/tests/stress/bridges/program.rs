@@ -10,30 +10,31 @@ struct Block {
     polygon: Vec<Point>,
 }
 
-/// A straight joint between two blocks, `None` is the ground: the second lies to the right of the way between its ends.
+/// A straight joint between two blocks (`None` is the ground). The second block is on the right of the direction
+/// between its ends.
 struct Contact {
     on: [Option<usize>; 2],
     ends: [Point; 2],
     friction: f64,
 }
 
-/// A face on a block, and whether fill presses sideways on it.
+/// A face of a block, and true if fill presses sideways on it.
 type Face = (usize, [Point; 2], bool);
 
-/// All of it.
+/// All parts of the bridge.
 #[derive(Default)]
 struct Parts {
     blocks: Vec<Block>,
     contacts: Vec<Contact>,
-    /// Upper faces of outermost rings and tops of piers, from left to right; whether fill presses sideways there.
+    /// Upper faces of outermost rings and tops of piers, from left to right; true if fill presses sideways there.
     faces: Vec<Face>,
-    /// Blocks that are not there.
+    /// Blocks that are lost.
     gone: Vec<usize>,
     springings: [f64; 2],
 }
 
 impl Parts {
-    /// The part of a face that no other one stands above.
+    /// Returns the part of a face that is not below another face.
     fn visible(&self, face: &[Point; 2]) -> [f64; 2] {
         let y = |face: &[Point; 2], x: f64| {
             face[0][1] + (face[1][1] - face[0][1]) * (x - face[0][0]) / (face[1][0] - face[0][0])
@@ -56,7 +57,7 @@ impl Parts {
 }
 
 impl Bridge {
-    /// Vertex on the line of joint k of a span at a share of the thickness, with the left springing at x.
+    /// Returns the vertex on the line of joint k of a span at a share of the thickness, with the left springing at x.
     fn vertex(&self, span: usize, x: f64, k: usize, share: f64) -> Point {
         let s = &self.spans[span];
         let radius = (s.span * s.span / 4.0 + s.rise * s.rise) / (2.0 * s.rise);
@@ -112,8 +113,9 @@ impl Bridge {
         parts
     }
 
-    /// The faces open to the sky where voussoir k of the outermost ring is gone, `first` its first block: the side of the
-    /// left neighbour, the ring below, the side of the right neighbour, as far as they look upwards.
+    /// Returns the faces that are exposed if voussoir k of the outermost ring is lost: the side of the left neighbour,
+    /// the ring below, and the side of the right neighbour, as far as they face upwards. `first` is the first block of
+    /// the ring.
     fn uncovered(&self, span: usize, k: usize, first: usize, at: &dyn Fn(usize, usize) -> Point) -> Vec<Face> {
         let (n, outer) = (self.spans[span].voussoirs, self.spans[span].rings);
         let stays = |k: usize| !self.gone.contains(&(span, k));
@@ -130,7 +132,7 @@ impl Bridge {
         faces
     }
 
-    /// What lost mortar leaves of a joint.
+    /// Returns the remaining part of a joint that has lost mortar.
     fn remaining(&self, span: usize, ring: usize, joint: usize, [a, b]: [Point; 2]) -> [Point; 2] {
         let height = (b[0] - a[0]).hypot(b[1] - a[1]);
         let (mut from, mut to) = (0.0_f64, height);
@@ -140,7 +142,7 @@ impl Bridge {
         [from, to].map(|s| [a[0] + (b[0] - a[0]) * s / height, a[1] + (b[1] - a[1]) * s / height])
     }
 
-    /// Cap and courses of a pier between the springing face of the span before and that of the span after; the cap.
+    /// Adds cap and courses of a pier between the springing faces of two spans and returns the cap.
     fn pier(&self, parts: &mut Parts, index: usize, [inner, outer]: [Point; 2], next_x: f64) -> usize {
         let (height, width, foot, courses) = self.piers[index];
         let (next_inner, next_outer) = (self.vertex(index + 1, next_x, 0, 0.0), self.vertex(index + 1, next_x, 0, 1.0));
@@ -166,7 +168,7 @@ impl Bridge {
         cap
     }
 
-    /// What lost mortar leaves of a bed joint between its right and its left end.
+    /// Returns the remaining part of a bed joint that has lost mortar, between its right and its left end.
     fn bed_left(&self, pier: usize, joint: usize, [mut right, mut left]: [Point; 2]) -> [Point; 2] {
         for (_, _, from_left, depth) in self.bed.iter().filter(|bed| (bed.0, bed.1) == (pier, joint)) {
             if *from_left { left[0] += depth } else { right[0] -= depth }
@@ -174,7 +176,7 @@ impl Bridge {
         [right, left]
     }
 
-    /// Live forces downwards: block, x, force.
+    /// Returns the live forces, downwards: block, x, force.
     fn live(&self, parts: &Parts) -> Vec<(usize, f64, f64)> {
         let at = |face: &[Point; 2], x: f64| {
             face[0][1] + (face[1][1] - face[0][1]) * (x - face[0][0]) / (face[1][0] - face[0][0])
@@ -206,13 +208,13 @@ impl Bridge {
         out
     }
 
-    /// Patches of even pressure as (from, to, share) of a patch about x with this half width.
+    /// Returns patches of uniform pressure as (from, to, share) for a patch at x with this half width.
     fn patches(&self, [x, half, reach, depth]: [f64; 4]) -> Vec<(f64, f64, f64)> {
         let most = half + reach;
         if !self.half_plane || reach <= 0.0 || depth <= 0.0 {
             return vec![(x - most, x + most, 1.0)];
         }
-        // Share of the load to the left of u; of a line load where the patch has no width.
+        // Share of the load to the left of u; the share of a line load if the patch has no width.
         let left = |u: f64| {
             let of = |u: f64| u * (u / depth).atan();
             match half {
@@ -225,7 +227,7 @@ impl Bridge {
         (0..40).map(|i| (x + place(i), x + place(i + 1), (left(place(i + 1)) - left(place(i))) / whole)).collect()
     }
 
-    /// The greatest λ; `None` where there is none, or no greatest one.
+    /// Returns the greatest λ; `None` if there is no λ or no greatest one.
     pub fn load_factor(&self) -> Option<f64> {
         let parts = self.parts();
         let (lowest, highest) = match self.springings_only {
@@ -241,7 +243,7 @@ impl Bridge {
         let (joints, blocks) = (parts.contacts.len(), parts.blocks.len());
         let variables = 3 * joints + reactions.len() + 1;
         let mut rows = Rows::new(variables);
-        // Equilibrium: 3 rows a block, forces on the block = 0.
+        // Equilibrium: 3 rows per block, the forces on the block are zero.
         let centres: Vec<[f64; 3]> = parts.blocks.iter().map(|block| area_moment(&block.polygon)).collect();
         let mut right = vec![[0.0; 3]; blocks];
         let mut dead = |block: usize, [x, _]: Point, weight: f64| {
@@ -263,7 +265,7 @@ impl Bridge {
             let [a, b] = contact.ends;
             let (h, p) = ((b[0] - a[0]).hypot(b[1] - a[1]), [(a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0]);
             let t = [(b[0] - a[0]) / h, (b[1] - a[1]) / h];
-            // From the first block to the second.
+            // The normal points from the first block to the second.
             let n = [t[1], -t[0]];
             let moment = |f: [f64; 2]| p[0] * f[1] - p[1] * f[0];
             for (side, sign) in [(0, -1.0), (1, 1.0)] {
@@ -301,7 +303,7 @@ impl Bridge {
         }
     }
 
-    /// |T| ≤ μ N and |M| ≤ N h/2.
+    /// Adds |T| ≤ μ N and |M| ≤ N h/2.
     fn strengths(&self, parts: &Parts, rows: &mut Rows) {
         for (j, contact) in parts.contacts.iter().enumerate() {
             let [a, b] = contact.ends;
@@ -313,7 +315,7 @@ impl Bridge {
         }
     }
 
-    /// N² ≤ f_c A (N − 2 |M|/h) as cones.
+    /// Adds N² ≤ f_c A (N − 2 |M|/h) as cones.
     fn crushing(&self, parts: &Parts, strength: f64, rows: &mut Rows) {
         rows.cones_from = rows.right.len();
         let typical = rows.typical();

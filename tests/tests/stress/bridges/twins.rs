@@ -1,5 +1,5 @@
-//! Random bridges as blocks: the same load mirrored, turned with their gravity, far from the origin and in another size. What the
-//! scene `blocks` does not have, forces of the fill and joints that have lost mortar, is left out.
+//! Random bridges as blocks carry the same load mirrored, rotated with their gravity, far from the origin and in
+//! another size. Fill forces and joints that have lost mortar, which the scene `blocks` does not have, are left out.
 
 use super::bridge::Bridge;
 use toml::Value;
@@ -7,10 +7,10 @@ use voussoir::core::limit::Status;
 use voussoir::study::as_blocks;
 use voussoir_tests::{answered, keep};
 
-/// Relative difference of loads that is none: twice what the bounds of each may be apart, and some.
+/// Relative difference of equal loads: twice the allowed difference of the bounds, plus a margin.
 const SAME: f64 = 4e-9;
 
-/// p ↦ size · R p + shift, R a rotation or, where `mirrored`, one after x ↦ −x.
+/// p ↦ size · R p + shift, where R is a rotation, after x ↦ −x if `mirrored`.
 #[derive(Clone, Copy)]
 struct Twin {
     mirrored: bool,
@@ -31,7 +31,7 @@ impl Twin {
         [0, 1].map(|d| self.size * turned[d] + self.shift[d])
     }
 
-    /// What stands under a key: weights grow with the cube of the size, so strengths with the size.
+    /// Transforms the value of a key: weights grow with the cube of the size, so strengths grow with the size.
     fn entry(&self, key: &str, value: &mut Value) {
         let force = self.size.powi(3);
         match (key, &mut *value) {
@@ -63,8 +63,9 @@ fn change(pair: &mut Value, of: impl Fn([f64; 2]) -> [f64; 2]) {
     *list = vec![x.into(), y.into()];
 }
 
-/// 4 bridges, one of which does not stand without its fill; `VOUSSOIR_BRIDGES` for more, from `VOUSSOIR_FIRST` on;
-/// `KEEP=FOLDER` writes those that stall.
+/// 4 bridges as blocks, one of which needs its fill, carry the same load mirrored, rotated, shifted and in another
+/// size. `VOUSSOIR_BRIDGES` sets the number, `VOUSSOIR_FIRST` the first seed; `KEEP=FOLDER` writes the bridges that
+/// stall.
 #[test]
 fn bridges_as_blocks_carry_the_same_mirrored_turned_away_and_in_another_size() {
     let number = |name: &str| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
@@ -74,13 +75,13 @@ fn bridges_as_blocks_carry_the_same_mirrored_turned_away_and_in_another_size() {
     assert!(compared as u64 >= 2 * count && stalled * 100 <= compared);
 }
 
-/// Rings that crush, which the conic program's polish left unsettled: answered with tangents.
+/// Rings with crushing, for which the conic program needs tangents, are solved as blocks.
 #[test]
 fn bridges_that_once_stalled_as_blocks_are_answered() {
     assert_eq!(compare(5188, 1), (4, 0));
 }
 
-/// Twins of so many bridges from a seed on: how many were compared and how many stalled.
+/// Compares the twins of some bridges from a seed on. Returns the numbers of compared and of stalled bridges.
 fn compare(first: u64, count: u64) -> (usize, usize) {
     let plain = Twin { mirrored: false, angle: 0.0, size: 1.0, shift: [0.0, 0.0] };
     let twins = [
@@ -103,7 +104,8 @@ fn compare(first: u64, count: u64) -> (usize, usize) {
         if own.status != Status::Stalled && study.cases[0].assembly.fill_reactions().is_empty() {
             let bridge = answered(&text);
             let [a, b] = [bridge.load_factor, own.load_factor].map(|factor| factor.unwrap_or(0.0));
-            // As blocks all weights are loads of one stage, in which less than they are is carried where they are not.
+            // As blocks all weights are loads of one stage: less than the full weights may be carried although the full
+            // weights are not.
             let first = own.stages.len() == 1 && own.status == Status::Collapse && b < 1.0;
             let none = bridge.status == Status::NoEquilibrium && first;
             let same = none || (bridge.status == own.status && (a - b).abs() <= SAME * a.abs());

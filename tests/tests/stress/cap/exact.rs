@@ -1,5 +1,5 @@
-//! The return to the cap model to fifty digits: Newton's method in 200-bit numbers on the printed
-//! equations, started from the bisection in ordinary ones.
+//! The return to the cap model with fifty digits: Newton's method with 200-bit numbers on the printed equations,
+//! started from a bisection with ordinary numbers.
 
 use super::{active_pieces, on_cap};
 use dashu_float::{FBig, round::mode::HalfEven};
@@ -23,8 +23,8 @@ fn hypot(a: &Big, b: &Big) -> Big {
     if sum == big(0.0) { sum } else { sum.sqrt() }
 }
 
-/// Constants of a law; β enters through the law's own tan β and cos β, so that what is compared is the
-/// return and not the trigonometry.
+/// Constants of a law. β enters through the law's own tan β and cos β, so that the return is compared and not the
+/// trigonometry.
 struct Constants<'a> {
     law: &'a DruckerPragerCap,
     tan: Big,
@@ -38,7 +38,7 @@ struct Constants<'a> {
 }
 
 impl Constants<'_> {
-    /// p_b by the piece of the table that holds near the solution.
+    /// Returns p_b from the piece of the table near the solution.
     fn strength(&self, compaction: &Big, piece: usize) -> Big {
         let table = self.law.hardening();
         if piece == 0 || piece == table.len() {
@@ -48,7 +48,7 @@ impl Constants<'_> {
         big(weak) + (compaction - big(from)) / (big(to) - big(from)) * (big(strong) - big(weak))
     }
 
-    /// p_a and D.
+    /// Returns p_a and D.
     fn centre(&self, compaction: &Big, piece: usize) -> (Big, Big) {
         let one = big(1.0);
         let strength = self.strength(compaction, piece);
@@ -58,7 +58,7 @@ impl Constants<'_> {
     }
 }
 
-/// (p, q) of the return of (P, Q) at a compaction, from a solution (p, μ) to the precision of `f64`.
+/// Returns (p, q) of the return of (P, Q) at a compaction, from a solution (p, μ) with the precision of `f64`.
 pub fn exact(
     law: &DruckerPragerCap,
     [p_trial, q_trial]: [f64; 2],

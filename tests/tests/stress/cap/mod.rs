@@ -1,5 +1,5 @@
-//! The return to the cap model on random trial states at any distance, against a solver of fifty digits
-//! that shares nothing with it, and its tangent against finite differences.
+//! The return to the cap model on random trial states at any distance, against an independent solver with fifty digits;
+//! its tangent against finite differences.
 
 mod exact;
 
@@ -33,7 +33,7 @@ fn law(angle: f64, cohesion: f64, eccentricity: f64, transition: f64, hardening:
     }
 }
 
-/// The paper's parameters with both readings of its strength, and ordinary ones.
+/// Returns laws with the parameters of the paper, with both interpretations of its strength, and ordinary laws.
 fn laws() -> Vec<(&'static str, DruckerPragerCap)> {
     let table = vec![[-0.02, 5e6], [0.0, 10e6], [0.002, 14e6], [0.01, 20e6], [0.05, 60e6]];
     vec![
@@ -47,7 +47,7 @@ fn laws() -> Vec<(&'static str, DruckerPragerCap)> {
     ]
 }
 
-/// Softening laws: the paper's cap with both readings of its strength, and a stone with friction.
+/// Returns softening laws: the cap of the paper with both interpretations of its strength, and a stone with friction.
 fn crushing_laws() -> Vec<(&'static str, DruckerPragerCap)> {
     let crushing = |law: DruckerPragerCap, energy| DruckerPragerCap { crushing_fracture_energy: Some(energy), ..law };
     let constant = |p_b: f64| vec![[0.0, p_b]];
@@ -58,8 +58,8 @@ fn crushing_laws() -> Vec<(&'static str, DruckerPragerCap)> {
     ]
 }
 
-/// The hardening law that is the same as a softening one, as long as flow stays on the side on which a
-/// trial point starts: its table falls.
+/// Returns the hardening law that equals a softening law as long as flow stays on the side where a trial point starts:
+/// its table decreases.
 fn as_hardening(law: &DruckerPragerCap, p_trial: f64, crushing: f64, length: f64) -> DruckerPragerCap {
     let p_b = law.hardening()[0][1];
     let [drop, end] = law.softening().unwrap();
@@ -74,7 +74,7 @@ fn as_hardening(law: &DruckerPragerCap, p_trial: f64, crushing: f64, length: f64
     DruckerPragerCap { hardening: Some(vec![[0.0, strength(&falling, crushing)]]), ..falling }
 }
 
-/// p_b by the table.
+/// Returns p_b from the table.
 fn strength(law: &DruckerPragerCap, compaction: f64) -> f64 {
     let table = law.hardening();
     if compaction <= table[0][0] {
@@ -88,7 +88,7 @@ fn strength(law: &DruckerPragerCap, compaction: f64) -> f64 {
     table[table.len() - 1][1]
 }
 
-/// The manual's yield functions as they are printed: (cap, transition, shear), p_a and D.
+/// Returns the yield functions as printed in the manual, (cap, transition, shear), with p_a and D.
 fn printed(law: &DruckerPragerCap, p: f64, q: f64, compaction: f64) -> ([f64; 3], f64, f64) {
     let (tan, cos) = (law.cap_friction_angle.to_radians().tan(), law.cap_friction_angle.to_radians().cos());
     let (d, r, a) = (law.cap_cohesion, law.cap_eccentricity, law.transition);
@@ -99,13 +99,13 @@ fn printed(law: &DruckerPragerCap, p: f64, q: f64, compaction: f64) -> ([f64; 3]
     ([cap, transition, q - p * tan - d], p_a, size)
 }
 
-/// The active one of them, which is which side of p_a and of the tangent point decides.
+/// Returns the active yield function, chosen by the side of p_a and of the tangent point.
 fn active(law: &DruckerPragerCap, p: f64, q: f64, compaction: f64) -> f64 {
     let (f, p_a, size) = printed(law, p, q, compaction);
     if p >= p_a {
         f[0]
     } else if p >= p_a - law.transition * size * law.cap_friction_angle.to_radians().sin() {
-        // Inside the circle's strip the lower half of the circle is no yield surface.
+        // Within the strip of the circle its lower half is not part of the yield surface.
         let cos = law.cap_friction_angle.to_radians().cos();
         if q > (1.0 - law.transition / cos) * size { f[1] } else { -size }
     } else {
@@ -113,13 +113,13 @@ fn active(law: &DruckerPragerCap, p: f64, q: f64, compaction: f64) -> f64 {
     }
 }
 
-/// Whether a trial point returns to the cap.
+/// Returns true if a trial point returns to the cap.
 fn on_cap(law: &DruckerPragerCap, p_trial: f64, compaction: f64) -> bool {
     p_trial > printed(law, 0.0, 0.0, compaction).1
 }
 
-/// Entries of the table below the compaction that a return to (p, q) ends at, and whether (p, q) is on
-/// the arc of the transition.
+/// Returns the number of entries of the table below the compaction at the end of a return to (p, q), and true if (p, q)
+/// is on the arc of the transition.
 fn active_pieces(law: &DruckerPragerCap, p: f64, q: f64, p_trial: f64, compaction: f64) -> (usize, bool) {
     let bulk = Isotropic::new(law.young_modulus, law.poisson_ratio).bulk;
     let now = compaction + (p_trial - p) / bulk;
@@ -130,15 +130,15 @@ fn active_pieces(law: &DruckerPragerCap, p: f64, q: f64, p_trial: f64, compactio
     (law.hardening().iter().filter(|entry| entry[0] < now).count(), in_arc)
 }
 
-/// (p, μ) of the return by plain bisection on the plastic multiplier, with p found by an inner
-/// bisection: slow, and it shares neither unknowns nor formulas with the law's own return.
+/// Returns (p, μ) of the return by bisection on the plastic multiplier, with an inner bisection for p. It is slow, and
+/// shares neither unknowns nor formulas with the law's own return.
 fn bisected(law: &DruckerPragerCap, p_trial: f64, q_trial: f64, compaction: f64) -> [f64; 2] {
     let Isotropic { bulk, shear } = Isotropic::new(law.young_modulus, law.poisson_ratio);
     let (tan, cos) = (law.cap_friction_angle.to_radians().tan(), law.cap_friction_angle.to_radians().cos());
     let k = 1.0 + law.transition - law.transition / cos;
     let p_a = |p: f64| printed(law, 0.0, 0.0, compaction + (p_trial - p) / bulk).1;
     let on_cap = on_cap(law, p_trial, compaction);
-    // p − P + K μ ∂ = 0 with the gradients of F_c² / 2 and G_s² / 2 (the multiplier absorbs their scale).
+    // p − P + K μ ∂ = 0 with the gradients of F_c² / 2 and G_s² / 2 (their scale is part of the multiplier).
     let at = |mu: f64| {
         let weight = if on_cap { mu } else { mu * tan * tan };
         let balance = |p: f64| p - p_trial + bulk * weight * (p - p_a(p));
@@ -146,7 +146,7 @@ fn bisected(law: &DruckerPragerCap, p_trial: f64, q_trial: f64, compaction: f64)
         if !on_cap {
             high = p_a(p_trial).max(p_trial) + 1.0;
         } else {
-            // The table may rise or fall up to its end.
+            // The table may increase or decrease up to its end.
             low = p_a(p_trial).min(p_trial).min(p_a(-1e30)) - 1.0;
         }
         for _ in 0..2000 {
@@ -163,7 +163,7 @@ fn bisected(law: &DruckerPragerCap, p_trial: f64, q_trial: f64, compaction: f64)
     let outside = |mu: f64| {
         let (p, q) = at(mu);
         let centre = p_a(p);
-        // On the way p and p_a may cross by rounding only; keep the side.
+        // During the search p and p_a may cross by rounding only; keep the side.
         let p = if on_cap { p.max(centre) } else { p.min(centre - 1e-300) };
         let c = compaction + (p_trial - p) / bulk;
         if on_cap { printed(law, p, q, c).0[0] > 0.0 } else { active(law, p, q, c) > 0.0 }
@@ -184,13 +184,13 @@ fn bisected(law: &DruckerPragerCap, p_trial: f64, q_trial: f64, compaction: f64)
     [at(mu).0, mu]
 }
 
-/// A random trial strain: its stress is up to 1e6 times `size`, its direction anywhere in (p, q), at
-/// times exactly hydrostatic; and a random compaction.
+/// Returns a random trial strain and a random compaction. The stress is up to 1e6 times `size`, with any direction in
+/// (p, q), sometimes exactly hydrostatic.
 fn trial(rng: &mut TestRng, law: &DruckerPragerCap, size: f64) -> ([f64; 6], f64) {
     trial_up_to(6.0, rng, law, size)
 }
 
-/// The same where the stress is up to so many powers of ten of `size`.
+/// The same with a stress up to this number of powers of ten of `size`.
 fn trial_up_to(powers: f64, rng: &mut TestRng, law: &DruckerPragerCap, size: f64) -> ([f64; 6], f64) {
     let Isotropic { bulk, shear } = Isotropic::new(law.young_modulus, law.poisson_ratio);
     let magnitude = size * 10f64.powf(uniform(rng, -0.5, powers));
@@ -215,8 +215,8 @@ fn invariants(stress: &[f64; 6]) -> (f64, f64) {
     (p, von_mises(&deviator))
 }
 
-/// Greatest error of a tangent along a direction against central differences with Richardson's correction, and
-/// by how much the quotients over h and h/2 differ: where they have not settled they say nothing.
+/// Returns the greatest error of a tangent along a direction against central differences with Richardson's correction,
+/// and the difference of the quotients over h and h/2: if it is large, they are not accurate enough for a comparison.
 fn tangent_error<const N: usize>(
     tangent: &[[f64; N]; N],
     strain: &[f64; N],
@@ -236,8 +236,8 @@ fn tangent_error<const N: usize>(
     (error, spread)
 }
 
-/// Random trial states of each law, with stresses up to so many powers of ten of the strength: how often each branch was
-/// taken, and how far the worst is off, in units of what is allowed.
+/// Returns random trial states of each law, with stresses up to this number of powers of ten of the strength: counts
+/// the branches and returns the worst error in units of the tolerance.
 fn returned(laws: &[(&str, DruckerPragerCap)], samples: usize, powers: f64) -> (BTreeMap<&'static str, usize>, f64) {
     let mut rng = rng();
     let mut regions: BTreeMap<&'static str, usize> = BTreeMap::new();
@@ -287,9 +287,9 @@ fn returned(laws: &[(&str, DruckerPragerCap)], samples: usize, powers: f64) -> (
     (regions, worst)
 }
 
-/// On 14,000 random trial states: |f| ≤ 1e-10 of the strength + 8 ε |trial stress|, (p, q) as the
-/// solver of fifty digits finds them (at most 3 % of the tolerance away), plastic work as large as the
-/// page says, and the state is what the strain says.
+/// 14,000 random trial states return to the surface: |f| ≤ 1e-10 of the strength + 8 ε |trial stress|, (p, q) agree
+/// with an independent solver with fifty digits (errors of at most 3 % of the tolerance), the plastic work is that of
+/// the page, and the state follows from the strain.
 #[test]
 fn every_trial_state_returns_to_the_surface() {
     let (regions, worst) = returned(&laws(), 2000, 6.0);
@@ -299,8 +299,8 @@ fn every_trial_state_returns_to_the_surface() {
     }
 }
 
-/// The same of caps from nearly flat to ten times as deep as wide, with friction up to 89°, and stresses up to 1e12 times the
-/// strength.
+/// Trial states of extreme caps return to the surface: caps from nearly flat to ten times as deep as wide, friction up
+/// to 89°, and stresses up to 1e12 times the strength. An independent solver has fifty digits.
 #[test]
 #[ignore = "a minute; what came out stands in docs/notebook/random_scenes.md"]
 fn trial_states_of_extreme_caps_return_to_the_surface() {
@@ -314,8 +314,8 @@ fn trial_states_of_extreme_caps_return_to_the_surface() {
     }
 }
 
-/// Softening laws at lengths up to the largest: 6,000 random trial states on the surface and where the
-/// solver of fifty digits finds them; crushing never falls, and the tangent is the derivative.
+/// Softening laws at lengths up to the largest: 6,000 random trial states return to the surface, as the independent
+/// solver with fifty digits finds them; crushing never decreases, and the tangent is the exact derivative.
 #[test]
 fn crushed_material_returns_to_its_shrunken_surface() {
     let mut rng = rng();
@@ -331,7 +331,7 @@ fn crushed_material_returns_to_its_shrunken_surface() {
             let unit = if sample % 2 == 0 { strength(&law, 0.0) } else { size };
             let (mut strain, _) = trial(&mut rng, &law, unit);
             if sample % 3 == 0 {
-                // Near the surface, so that it ends on the falling branch.
+                // Near the surface, so that the state ends on the falling branch.
                 let (s, p) = elastic.split(&strain);
                 let near = unit * uniform(&mut rng, 0.5, 3.0) / p.hypot(von_mises(&s));
                 strain.iter_mut().for_each(|e| *e *= near);
@@ -394,8 +394,8 @@ fn crushed_material_returns_to_its_shrunken_surface() {
     }
 }
 
-/// The tangent is the derivative of the update: central differences with Richardson's correction,
-/// where ±h stays in one region and one piece of the table.
+/// The tangent is the derivative of the update: it equals central differences with Richardson's correction, if ±h stays
+/// in one region and one piece of the table.
 #[test]
 fn the_tangent_is_the_derivative() {
     let mut rng = rng();
@@ -460,8 +460,8 @@ fn the_tangent_is_the_derivative() {
     }
 }
 
-/// In plane stress σ_zz vanishes, σ is that of the law in space at the ε_zz found, and the condensed
-/// tangent is the derivative.
+/// In plane stress σ_zz vanishes, σ equals that of the law in space at the ε_zz found, and the condensed tangent is the
+/// derivative.
 #[test]
 fn plane_stress_has_no_stress_across_and_its_own_tangent() {
     let mut rng = rng();
@@ -508,7 +508,7 @@ fn plane_stress_has_no_stress_across_and_its_own_tangent() {
     }
 }
 
-/// The same numbers in other units: stresses scaled by a power of two give the same strains to the bit.
+/// Results do not depend on the unit of stress: stresses scaled by a power of two give the same strains to the bit.
 #[test]
 fn results_do_not_depend_on_the_unit_of_stress() {
     let mut rng = rng();
@@ -534,7 +534,7 @@ fn results_do_not_depend_on_the_unit_of_stress() {
     }
 }
 
-/// What is not a number is refused, and so are arrays of the wrong length; nothing panics.
+/// Values that are not numbers and arrays of the wrong length are refused without panic.
 #[test]
 fn nonsense_is_refused() {
     let update = laws()[0].1.stress_update().unwrap();

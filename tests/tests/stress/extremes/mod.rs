@@ -1,5 +1,5 @@
-//! Numerical stability: scenes at the ends of what numbers can be, by every solver that takes them. An answer is certified and
-//! right, or refused with a reason; it is never wrong, never a crash, and never late.
+//! Numerical stability: scenes with extreme numbers, by every solver that supports them. Each answer is certified and
+//! right, or refused with a reason. No answer is wrong, crashes or takes too long.
 
 mod scenes;
 
@@ -15,22 +15,22 @@ use voussoir::solve_case;
 use voussoir_tests::gates::above_gates;
 use voussoir_tests::{first_case, keep};
 
-/// Processor time that an answer may take \[s\].
+/// Greatest processor time of an answer \[s\].
 const LATE: f64 = 60.0;
 
-/// What an answer came to.
+/// The verdict on an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Verdict {
     Right,
-    /// Not proven, with a reason, or refused as input.
+    /// Not proved, with a reason, or refused as input.
     Refused,
-    /// Proven and not true, or refused without a reason.
+    /// Proved but not true, or refused without a reason.
     Wrong,
     Crash,
     Late,
 }
 
-/// The answer of a scene by a solver, in a thread of its own: verdict, what was said.
+/// Solves a scene with a solver in a separate thread. Returns the verdict and the message.
 fn tried(extreme: &Extreme, solver: &'static str) -> (Verdict, String) {
     let (text, known) = (extreme.text.replace("SOLVER", solver), extreme.known);
     let (send, answer) = mpsc::channel();
@@ -41,7 +41,7 @@ fn tried(extreme: &Extreme, solver: &'static str) -> (Verdict, String) {
             (Verdict::Crash, said.or(panic.downcast_ref::<&str>().copied()).unwrap_or("a panic").to_string())
         }));
     });
-    // On a machine that does other things too.
+    // The machine may have other work too.
     answer.recv_timeout(Duration::from_secs_f64(5.0 * LATE)).unwrap_or((Verdict::Late, "no answer".into()))
 }
 
@@ -62,7 +62,7 @@ fn judged(text: &str, known: Known) -> (Verdict, String) {
     (verdict, said)
 }
 
-/// Processor time of this thread \[s\], where the system tells it.
+/// Returns the processor time of this thread \[s\], if the system reports it.
 fn processor_time() -> f64 {
     let said = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
     said.split(' ').next().and_then(|ns| ns.parse::<f64>().ok()).unwrap_or(0.0) * 1e-9
@@ -73,7 +73,7 @@ fn verdict(result: &CaseResult, known: Known) -> Verdict {
         let reason = !result.notes.is_empty() || !result.certificate.failures.is_empty();
         return if reason && !result.certificate.passed { Verdict::Refused } else { Verdict::Wrong };
     }
-    // Bounds may differ by the rounding of enormous strengths, as the certificate says.
+    // Bounds may differ by the rounding of very large strengths, as the certificate allows.
     if !above_gates(result, 1e-9, f64::INFINITY).is_empty() {
         return Verdict::Wrong;
     }
@@ -92,14 +92,14 @@ fn verdict(result: &CaseResult, known: Known) -> Verdict {
     if right { Verdict::Right } else { Verdict::Wrong }
 }
 
-/// A scene of ordinary numbers, solved by whatever takes it.
+/// Returns the load factor of a scene with ordinary numbers, by the solver chosen automatically.
 fn ordinary(text: &str) -> f64 {
     let result = solve_case(&first_case(&text.replace("SOLVER", "auto")));
     assert!(result.certificate.passed, "{:?}\n{text}", result.notes);
     result.load_factor.expect("scenes of ordinary numbers collapse")
 }
 
-/// Tries the scenes that `wanted` takes; prints each that was not answered, and how often each family ended how.
+/// Tries the scenes that `wanted` selects. Prints each scene that was not solved, and the number of verdicts by family.
 fn try_all(wanted: impl Fn(&Extreme, &str) -> bool) -> BTreeMap<Verdict, usize> {
     let only = std::env::var("ONLY").unwrap_or_default();
     let mut table: BTreeMap<(&str, &str), BTreeMap<Verdict, usize>> = BTreeMap::new();
@@ -131,7 +131,8 @@ fn none_is_wrong(counts: &BTreeMap<Verdict, usize>) {
     assert_eq!([Verdict::Wrong, Verdict::Crash, Verdict::Late].map(count), [0, 0, 0], "{counts:?}");
 }
 
-/// All families by limit analysis but those that take long.
+/// Limit analysis solves or refuses the scenes of all families, except for slow ones; the known answers are by hand or
+/// from a change of units.
 #[test]
 fn extreme_scenes_are_answered_or_refused_by_limit_analysis() {
     let counts = try_all(|extreme, solver| {
@@ -141,8 +142,8 @@ fn extreme_scenes_are_answered_or_refused_by_limit_analysis() {
     assert!(counts.get(&Verdict::Right).is_some_and(|&right| right > 100), "{counts:?}");
 }
 
-/// All families by all solvers. `ONLY=ring` takes some of them, `SHOW=1` prints all, `KEEP=folder` writes the studies of
-/// those that were not answered.
+/// All solvers solve or refuse the scenes of all families; the known answers are by hand or from a change of units.
+/// `ONLY=ring` selects scenes, `SHOW=1` prints all, `KEEP=folder` writes the studies that were not solved.
 #[test]
 #[ignore = "minutes; what came out stands in docs/notebook/random_scenes.md"]
 fn extreme_scenes_are_answered_or_refused_by_all_solvers() {

@@ -1,22 +1,22 @@
-//! Scenes at the ends of what numbers can be, each with an answer that is known without solving it: by hand, or by a change of
-//! units, size or stiffness that must not matter.
+//! Scenes with extreme numbers. Each has an answer that is known without solving it: by hand, or by a change of units,
+//! size or stiffness that must not matter.
 
 use std::f64::consts::PI;
 use voussoir::core::limit::Status;
 use voussoir_tests::{Arch, Wall, changed, compliant, crushing, elastic, friction};
 
-/// What is known of an answer.
+/// The known answer.
 #[derive(Debug, Clone, Copy)]
 pub enum Known {
-    /// The load factor, within so much of itself.
+    /// The load factor, with a relative tolerance.
     Factor(f64, f64),
-    /// How it ends.
+    /// The status.
     Ends(Status),
-    /// On the edge between two answers, where both are right: a factor above this one, or any of these ends.
+    /// At the border between two answers both are right: a factor above this one, or any of these statuses.
     Edge(&'static [Status], f64),
 }
 
-/// A scene whose solver is written in place of `SOLVER`.
+/// A scene; its text has `SOLVER` instead of the solver.
 pub struct Extreme {
     pub family: &'static str,
     pub name: String,
@@ -25,26 +25,26 @@ pub struct Extreme {
     pub known: Known,
 }
 
-/// Limit solvers of rings.
+/// Limit solvers for rings.
 const CHAIN: &[&str] = &["limit_chain", "limit_conic"];
-/// All that can be asked about rigid blocks with facets of friction.
+/// All solvers for rigid blocks with facets of friction.
 const RIGID: &[&str] = &["limit_chain", "limit_conic", "limit_sequential"];
 const WALLS: &[&str] = &["limit_conic", "limit_sequential"];
 const PATHS: &[&str] = &["limit_conic", "event_path", "newton_path"];
 const FINITE: &[&str] = &["newton_path"];
 
-/// One block on the ground, pushed; closed forms.
+/// One block on the ground that is pushed, with closed forms.
 #[derive(Debug, Clone)]
 struct OneBlock {
-    /// Length along the ground and height.
+    /// Length along the ground, and height.
     size: [f64; 2],
-    /// Share of the length that stands on the ground, from the left.
+    /// Share of the length that is in contact with the ground, from the left.
     seated: f64,
-    /// Of the ground, anticlockwise.
+    /// Slope of the ground, anticlockwise.
     slope: f64,
     density: f64,
     gravity: [f64; 2],
-    /// Where the load acts, in shares of the block.
+    /// Point of action of the load, in shares of the block.
     at: [f64; 2],
     force: [f64; 2],
     joint: String,
@@ -64,7 +64,7 @@ impl OneBlock {
         }
     }
 
-    /// ρ b h g, of unit width.
+    /// Returns the weight ρ b h g, for unit width.
     fn weight(&self) -> f64 {
         self.density * self.size[0] * self.size[1] * self.gravity[0].hypot(self.gravity[1])
     }
@@ -104,12 +104,12 @@ loads = [{{ kind = "point", block = "block", point = {point:?}, force = {force:?
     }
 }
 
-/// The ring of all families: nine voussoirs between springers.
+/// Returns the ring of all families: nine voussoirs between springers.
 fn ring() -> Arch {
     Arch { voussoirs: 9, ends: "jointed", span_fraction: 0.3, solver: "SOLVER", ..Arch::default() }
 }
 
-/// A ring and its load s times as large, of the same stone.
+/// Returns a ring and its load s times as large, of the same stone.
 fn scaled(arch: &Arch, s: f64) -> Arch {
     Arch {
         span: arch.span * s,
@@ -134,7 +134,7 @@ impl Family<'_> {
     }
 }
 
-/// All scenes. `factor` solves the scenes of ordinary numbers that others are compared with.
+/// Returns all scenes. `factor` solves the scenes with ordinary numbers that other scenes are compared with.
 pub fn all(factor: impl Fn(&str) -> f64) -> Vec<Extreme> {
     let mut all = Vec::new();
     one_block(&mut all);
@@ -149,7 +149,7 @@ pub fn all(factor: impl Fn(&str) -> f64) -> Vec<Extreme> {
     all
 }
 
-/// min(μ, b/2h at the height of the push) of the weight.
+/// Known load: min(μ, b/2h at the height of the push) times the weight.
 fn one_block(all: &mut Vec<Extreme>) {
     let mut family = Family { all, family: "one block", solvers: RIGID };
     let tight = |x: f64| Known::Factor(x, 1e-9);
@@ -167,21 +167,21 @@ fn one_block(all: &mut Vec<Extreme>) {
         family.add(format!("load {load:e} N"), block.study(), tight(0.5 * block.weight() / load));
     }
     for mu in [1e-12, 1e-9, 1e-6, 1e-3, 1e3] {
-        // Pushed at the foot it slides, however rough; it cannot turn.
+        // Pushed at the foot the block slides, with any friction; it cannot rotate.
         let block = OneBlock { joint: friction(mu), ..OneBlock::new() };
         family.add(format!("friction {mu:e}"), block.study(), tight(mu * block.weight() / 1000.0));
     }
-    // Pushed at its head it turns over its foot: λ F h = W b/2.
+    // Pushed at the top it rotates about its foot: λ F h = W b/2.
     for ratio in [1e-6, 1e-3, 1.0, 1e3, 1e6] {
         let block = OneBlock { size: [ratio, 1.0], at: [0.5, 1.0], joint: friction(1e9), ..OneBlock::new() };
         family.add(format!("b/h {ratio:e}"), block.study(), tight(0.5 * ratio * block.weight() / 1000.0));
     }
     for mu in [1.0 - 1e-12, 1.0, 1.0 + 1e-12] {
-        // Slides and turns at once.
+        // It slides and rotates at the same load.
         let block = OneBlock { at: [0.5, 1.0], joint: friction(mu), ..OneBlock::new() };
         family.add(format!("turns and slides, {:e}", mu - 1.0), block.study(), tight(block.weight() / 1000.0));
     }
-    // A joint of almost no length: seated from its middle on, turned over there by nothing more than W x.
+    // A joint of almost no length: the block rests on slightly more than one half and overturns at W x.
     for share in [1e-9, 1e-6, 1e-3] {
         let block = OneBlock { seated: 0.5 + share, at: [0.5, 1.0], joint: friction(1e3), ..OneBlock::new() };
         let arm = share * block.size[0] / block.size[1];
@@ -191,7 +191,7 @@ fn one_block(all: &mut Vec<Extreme>) {
         let block = OneBlock { seated: share, ..OneBlock::new() };
         family.add(format!("seated on {share:e}"), block.study(), Known::Ends(Status::NoEquilibrium));
     }
-    // Gravity off, upwards; across it slides off.
+    // Without gravity, with gravity upwards, and with gravity sideways, where it slides off.
     let lifted = OneBlock { gravity: [0.0, 9.81], ..OneBlock::new() };
     family.add("gravity upwards".into(), lifted.study(), Known::Ends(Status::NoEquilibrium));
     let across = OneBlock { gravity: [9.81, 0.0], ..OneBlock::new() };
@@ -204,13 +204,13 @@ fn one_block(all: &mut Vec<Extreme>) {
     family.add("lifted".into(), lifted.study(), tight(lifted.weight()));
 }
 
-/// A block on a slope: μ cos α − sin α of the weight downhill, and at the angle of friction nothing.
+/// A block on a slope: downhill it carries μ cos α − sin α times the weight, and nothing at the angle of friction.
 fn slopes(all: &mut Vec<Extreme>) {
     let mut family = Family { all, family: "slope", solvers: RIGID };
     let mu = 0.5_f64;
     for below in [1e-9, 1e-6, 1e-3] {
         let slope = mu.atan() - below;
-        // At the foot of the block, down the slope; flat enough not to turn.
+        // The load acts at the foot of the block, down the slope; the block is flat enough not to rotate.
         let block = OneBlock { size: [1.0, 0.1], slope, force: [-1000.0, 0.0], ..OneBlock::new() };
         let room = (mu * slope.cos() - slope.sin()) * block.weight() / 1000.0;
         family.add(format!("{below:e} rad below friction"), block.study(), Known::Factor(room, 1e-4));
@@ -221,7 +221,7 @@ fn slopes(all: &mut Vec<Extreme>) {
     family.add("at the angle of friction".into(), block.study(), Known::Edge(&[Status::NoEquilibrium], 0.0));
 }
 
-/// Loads at the edge of the cone of friction and on vertices.
+/// Loads at the edge of the friction cone and on vertices.
 fn edges(all: &mut Vec<Extreme>) {
     let mut family = Family { all, family: "edge of a cone", solvers: RIGID };
     let mu = 0.5_f64;
@@ -230,7 +230,7 @@ fn edges(all: &mut Vec<Extreme>) {
         let outside = mu.atan() + beside;
         let block = pushed(outside);
         let factor = mu * block.weight() / 1e3 / (outside.sin() - mu * outside.cos());
-        // Of the difference of two numbers that nearly agree as many digits are lost.
+        // The difference of two nearly equal numbers loses this number of digits.
         let digits = (1e-15 / beside).max(1e-9) * 10.0;
         family.add(format!("{beside:e} rad outside"), block.study(), Known::Factor(factor, digits));
         family.add(
@@ -251,7 +251,7 @@ fn edges(all: &mut Vec<Extreme>) {
     }
 }
 
-/// A ring of any size, weight and load; friction that is nothing or without end.
+/// A ring of any size, weight and load, with very small or very large friction.
 fn rings(all: &mut Vec<Extreme>, factor: &impl Fn(&str) -> f64) {
     let mut family = Family { all, family: "ring", solvers: RIGID };
     let base = ring();
@@ -284,7 +284,7 @@ fn rings(all: &mut Vec<Extreme>, factor: &impl Fn(&str) -> f64) {
     let upside_down = changed(&base.study(), "gravity = 9.81", "gravity = [0.0, 9.81]");
     family.add("gravity upwards".into(), upside_down, Known::Ends(Status::NoEquilibrium));
     let mut chains = Family { solvers: CHAIN, ..family };
-    // Slivers: the load lies on a joint of each division, and only the joint beneath it may matter.
+    // Slivers: the load is on a joint of each division, and only the joint below it matters.
     for voussoirs in [300, 3000] {
         let arch = Arch { voussoirs, ..base.clone() };
         let near = factor(&changed(&arch.study(), "0.3,", "0.3000000001,"));
@@ -301,7 +301,7 @@ fn strengths(all: &mut Vec<Extreme>, factor: &impl Fn(&str) -> f64) {
         let arch = Arch { joint: crushing(0.6, 10f64.powi(exponent)), ..base.clone() };
         family.add(format!("1e{exponent} Pa"), arch.study(), Known::Ends(Status::NoEquilibrium));
     }
-    // A hinge crushes over N/f of its height: the load misses that of no crushing by as little.
+    // A hinge crushes over N/f of its height: the load differs from the load without crushing by this share.
     for (exponent, within) in [(9, 1e-2), (12, 1e-5), (15, 1e-8), (18, 1e-8), (30, 1e-8)] {
         let arch = Arch { joint: crushing(0.6, 10f64.powi(exponent)), ..base.clone() };
         family.add(format!("1e{exponent} Pa"), arch.study(), Known::Factor(reference, within));
@@ -354,7 +354,7 @@ fn walls(all: &mut Vec<Extreme>, factor: &impl Fn(&str) -> f64) {
         family.add(format!("pushed by {push:e} m/s2"), wall.study(), tight(reference * 9.81 / push));
     }
     for mu in [0.0, 1e-12, 1e-9, 1e-6] {
-        // The topmost course slides.
+        // The uppermost course slides.
         let wall = Wall { joint: friction(mu), ..base.clone() };
         let known = if mu > 0.0 { tight(mu) } else { Known::Edge(&[Status::NoEquilibrium], 0.0) };
         family.add(format!("friction {mu:e}"), wall.study(), known);
@@ -378,7 +378,7 @@ fn walls(all: &mut Vec<Extreme>, factor: &impl Fn(&str) -> f64) {
     let flat = Wall { brick: [0.4, 0.4e-6], ..base.clone() };
     family.add("slivers a millionth as high as long".into(), flat.study(), tight(0.65));
     let slender = Wall { brick: [0.4e-4, 0.4], ..base.clone() };
-    // λ of a tower of bricks whose length is nothing: it falls over at a slope of its own slenderness, or less.
+    // λ of a tower of bricks of almost no length: it overturns at a slope of its own slenderness, or less.
     family.add(
         "slivers ten thousand times as high as long".into(),
         slender.study(),
@@ -386,7 +386,7 @@ fn walls(all: &mut Vec<Extreme>, factor: &impl Fn(&str) -> f64) {
     );
 }
 
-/// Elastic blocks and compliant joints under small displacements: whatever their stiffness, they end at the load of limit
+/// Elastic blocks and compliant joints under small displacements: for any stiffness they end at the load of limit
 /// analysis.
 fn stiffness(all: &mut Vec<Extreme>, factor: &impl Fn(&str) -> f64) {
     let mut family = Family { all, family: "stiffness", solvers: PATHS };
@@ -423,7 +423,7 @@ fn stiffness(all: &mut Vec<Extreme>, factor: &impl Fn(&str) -> f64) {
     family.add("friction 1e6".into(), rough.study(), Known::Factor(unilateral, 1e-7));
 }
 
-/// Finite displacements: the same ring s times as large is the same problem where E grows with it.
+/// Finite displacements: a ring s times as large is the same problem if E is also s times as large.
 fn finite(all: &mut Vec<Extreme>, factor: &impl Fn(&str) -> f64) {
     let mut family = Family { all, family: "finite displacements", solvers: FINITE };
     let kinematics =
@@ -439,12 +439,12 @@ fn finite(all: &mut Vec<Extreme>, factor: &impl Fn(&str) -> f64) {
         let s = span / base.span;
         family.add(format!("span {span:e} m"), joints(1e9, s), Known::Factor(reference, 1e-5));
     }
-    // A hinge that turns by θ is pressed over a, a² θ = 2 N/k: the loss is least of a and of what θ moves, so of order (N/k L²)^(1/3),
-    // until a is less than the distance of contact points.
+    // A hinge with the rotation θ is pressed over a length a, a² θ = 2 N/k. The loss is the least of a and of the
+    // displacement from θ, so of the order (N/k L²)^(1/3), until a is less than the distance of contact points.
     for (kn, within) in [(1e12, 2e-2), (1e15, 2e-3)] {
         family.add(format!("joints {kn:e} Pa/m"), joints(kn, 1.0), Known::Factor(limit, within));
     }
-    // Joints that the dead load presses by metres: nothing is known but that nothing may go wrong.
+    // Joints that the dead load compresses by metres: the answer is not known, but no step may fail.
     let any: &[Status] = &[Status::NoEquilibrium, Status::Stands, Status::LimitPoint, Status::Collapse];
     for kn in [1.0, 1e4] {
         family.add(format!("joints {kn:e} Pa/m"), joints(kn, 1.0), Known::Edge(any, f64::NEG_INFINITY));

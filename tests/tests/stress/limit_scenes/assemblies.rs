@@ -1,4 +1,4 @@
-//! Blocks of any shape in place.
+//! Assemblies of blocks of any shape.
 
 use super::families::{extreme, law};
 use super::model::{Block, Law, Model, Point, area_centroid};
@@ -19,7 +19,7 @@ fn rectangle([x0, y0]: Point, [x1, y1]: Point) -> Vec<Point> {
     vec![[x0, y0], [x1, y0], [x1, y1], [x0, y1]]
 }
 
-/// Both parts of a convex polygon cut along a line through a point.
+/// Returns both parts of a convex polygon that is cut along a line through a point.
 fn cut(polygon: &[Point], through: Point, angle: f64) -> [Vec<Point>; 2] {
     let (sin, cos) = angle.sin_cos();
     let side = |p: Point| cos * (p[1] - through[1]) - sin * (p[0] - through[0]);
@@ -37,7 +37,7 @@ fn cut(polygon: &[Point], through: Point, angle: f64) -> [Vec<Point>; 2] {
     parts
 }
 
-/// Whether no edge is too short and the part is not a splinter.
+/// Returns true if no edge is too short and the part is not too thin.
 fn stout(polygon: &[Point], size: f64) -> bool {
     let edge = |i: usize| {
         let (a, b) = (polygon[i], polygon[(i + 1) % polygon.len()]);
@@ -48,8 +48,8 @@ fn stout(polygon: &[Point], size: f64) -> bool {
         && area_centroid(polygon).0 > 0.002 * size * size
 }
 
-/// A rectangle on the ground cut into convex blocks by lines, mostly bed and head joints or mostly at any angle; some
-/// blocks are gone, and ground may stand beside it.
+/// Adds a rectangle on the ground that lines cut into convex blocks, usually at bed and head joints or at any angle.
+/// Some blocks are removed, and there may be ground beside it.
 pub fn arranged(r: &mut Sequence, model: &mut Model) {
     let (width, height) = (r.between(0.5, 3.0), r.between(0.5, 3.0));
     let (count, regular) = (r.whole(1, 18), r.chance(0.5));
@@ -90,15 +90,15 @@ pub fn arranged(r: &mut Sequence, model: &mut Model) {
     }
 }
 
-/// Towers, leaning stacks, flat arches, wedges, blocks on slopes, hanging blocks, beams between walls; without weight, without
-/// friction, alike on both sides.
+/// Adds towers, leaning stacks, flat arches, wedges, blocks on slopes, hanging blocks or beams between walls, also
+/// without weight, without friction, or symmetric.
 pub fn degenerate(r: &mut Sequence, model: &mut Model) {
     let strengths = r.chance(0.5);
     model.laws = vec![if r.chance(0.5) { extreme(r) } else { law(r, strengths) }];
     let density = if r.chance(0.15) { 0.0 } else { 2000.0 };
     match r.whole(0, 6) {
         0 => {
-            // A tower, straight or leaning.
+            // A tower, vertical or leaning.
             let (lean, mut y, mut x) = (if r.chance(0.5) { 0.0 } else { r.between(-0.2, 0.2) }, 0.0, 0.0);
             for _ in 0..r.whole(1, 12) {
                 let height = r.between(0.2, 0.6);
@@ -118,7 +118,7 @@ pub fn degenerate(r: &mut Sequence, model: &mut Model) {
             fixed(model, vec![[half + foot, 0.0], [2.0, 0.0], [2.0, 1.0], [top, 1.0]]);
         }
         3 => {
-            // Blocks on a slope, at times exactly at the angle of friction.
+            // Blocks on a slope, sometimes exactly at the angle of friction.
             let mu = model.laws[0].friction;
             let slope = if r.chance(0.2) && mu < 2.0 { mu } else { r.between(0.05, 1.5) };
             let at = |s: f64, n: f64| {
@@ -132,7 +132,7 @@ pub fn degenerate(r: &mut Sequence, model: &mut Model) {
             fixed(model, vec![at(-1.0, -1.0), at(6.0, -1.0), at(6.0, 0.0), at(-1.0, 0.0)]);
         }
         4 => {
-            // Blocks that hang.
+            // Hanging blocks.
             model.laws = vec![Law { tensile: r.power(3.0, 6.0), cohesion: r.power(3.0, 6.0), ..model.laws[0].clone() }];
             model.laws[0].tag = "mohr_coulomb";
             model.laws[0].friction = r.between(0.1, 1.0);
@@ -152,7 +152,7 @@ pub fn degenerate(r: &mut Sequence, model: &mut Model) {
             fixed(model, rectangle([count as f64, 0.0], [count as f64 + 1.0, 1.0]));
         }
         _ => {
-            // A gate, alike on both sides.
+            // A symmetric gate.
             let (height, length) = (r.between(0.5, 3.0), r.between(1.5, 3.0));
             free(model, rectangle([0.0, 0.0], [1.0, height]), density);
             free(model, rectangle([length, 0.0], [length + 1.0, height]), density);
@@ -162,7 +162,7 @@ pub fn degenerate(r: &mut Sequence, model: &mut Model) {
     }
 }
 
-/// Wedges with upright or slanted joints between two walls, with a level soffit.
+/// Adds wedges with vertical or inclined joints between two walls, with a level soffit.
 fn flat_arch(r: &mut Sequence, model: &mut Model, density: f64) {
     let (count, height) = (r.whole(1, 11), r.between(0.2, 0.8));
     let (span, spread) = (2.0, r.between(0.0, 0.5));

@@ -1,4 +1,4 @@
-//! Random scenes: a study's text, and the same blocks, laws and loads as a model.
+//! Random scenes: the text of a study, and the same blocks, laws and loads as a model.
 
 use super::assemblies::{arranged, degenerate};
 use super::model::{Block, Contact, Force, Law, Model, Point, area_centroid};
@@ -17,7 +17,7 @@ pub struct Scene {
 pub const FAMILIES: [&str; 6] =
     ["arch", "arch, other loads", "wall", "assembly", "assembly of strengths", "degenerate"];
 
-/// The scene of a seed; `None` where its numbers give none that can be read.
+/// Returns the scene of a seed; `None` if its numbers give no valid scene.
 pub fn scene(seed: u64) -> Option<Scene> {
     let mut r = Sequence::new(seed);
     match seed % 6 {
@@ -30,7 +30,7 @@ pub fn scene(seed: u64) -> Option<Scene> {
     }
 }
 
-/// A law of any kind.
+/// Returns a law of any kind.
 pub fn law(r: &mut Sequence, strengths: bool) -> Law {
     let friction = r.between(0.05, 1.2);
     let kind = if strengths { r.whole(4, 7) } else { r.whole(0, 5) };
@@ -51,7 +51,7 @@ pub fn law(r: &mut Sequence, strengths: bool) -> Law {
     }
 }
 
-/// No friction, more friction than there is, strengths that never count.
+/// Returns a law without friction, with unrealistic friction, or with strengths that have no effect.
 pub fn extreme(r: &mut Sequence) -> Law {
     match r.whole(0, 5) {
         0 => Law::dry("unilateral", 0.0),
@@ -63,7 +63,7 @@ pub fn extreme(r: &mut Sequence) -> Law {
     }
 }
 
-/// `law` for the joints of one law, and a solver.
+/// Returns the tables of laws, materials and solver.
 fn tables(laws: &[Law], solver: &str, densities: &[f64]) -> String {
     let mut text = String::new();
     for (i, density) in densities.iter().enumerate() {
@@ -82,7 +82,7 @@ fn gravity(r: &mut Sequence) -> Point {
     }
 }
 
-/// Dead load, and the loads that grow.
+/// Returns the stages: dead load, and the loads that grow.
 fn stages(gravity: Point, loads: &[String]) -> String {
     format!(
         "[[stages]]\nname = \"dead\"\ngravity = {gravity:?}\n[[stages]]\nname = \"live\"\nuntil = \"collapse\"\nloads = [{}]\n",
@@ -90,7 +90,7 @@ fn stages(gravity: Point, loads: &[String]) -> String {
     )
 }
 
-/// A direction, straight down, upwards or across more often than others.
+/// Returns a direction; downwards, upwards and horizontal are more frequent.
 fn direction(r: &mut Sequence) -> Point {
     match r.whole(0, 5) {
         0 | 1 => [0.0, -1.0],
@@ -103,9 +103,9 @@ fn direction(r: &mut Sequence) -> Point {
     }
 }
 
-/// The solver asked for by name.
+/// Returns the solver named in the study.
 fn solver(r: &mut Sequence, laws: &[Law], chain: bool) -> &'static str {
-    // By default these are read with their own flow.
+    // By default these laws have their own flow.
     let own = laws.iter().any(|law| law.tag == "coulomb");
     match r.whole(0, 4) {
         0 if chain => "limit_chain",
@@ -115,7 +115,7 @@ fn solver(r: &mut Sequence, laws: &[Law], chain: bool) -> &'static str {
     }
 }
 
-/// A load on the free blocks of a model.
+/// Adds a load on the free blocks of a model and returns its text.
 fn load_on(r: &mut Sequence, model: &mut Model) -> String {
     let free: Vec<usize> = (0..model.blocks.len()).filter(|b| !model.blocks[*b].held).collect();
     let block = *r.one_of(&free);
@@ -149,7 +149,7 @@ fn load_on(r: &mut Sequence, model: &mut Model) -> String {
     }
 }
 
-/// Bodies of a scene as it is read, with a stage that does nothing.
+/// Returns the bodies of a scene that is read with an idle stage.
 fn bodies(head: &str, tables: &str) -> Option<Vec<Body>> {
     let text = format!("name = \"random\"\n{head}{tables}[[stages]]\nname = \"dead\"\ngravity = 9.81\n");
     let study = voussoir::study::load(&text, "random.toml", &[]).ok()?;
@@ -162,7 +162,7 @@ fn blocks_of(bodies: &[Body], density: f64) -> Vec<Block> {
     bodies.iter().filter(|body| !body.vertices.is_empty()).map(block).collect()
 }
 
-/// The intrados of an arch.
+/// Returns the intrados profile of an arch.
 fn profile(r: &mut Sequence, span: f64) -> (String, f64) {
     let shape =
         *r.one_of(&["segmental", "segmental", "elliptical", "parabolic", "catenary", "pointed", "three_centred"]);
@@ -181,7 +181,7 @@ fn profile(r: &mut Sequence, span: f64) -> (String, f64) {
     (format!("{{ shape = \"{shape}\", span = {span:?}, rise = {rise:?}{more} }}"), rise)
 }
 
-/// Rings of every profile.
+/// Returns a ring with any profile.
 fn arch(r: &mut Sequence, family: &'static str, other_loads: bool) -> Option<Scene> {
     let span = r.power(-0.3, 1.6);
     let (profile, rise) = profile(r, span);
@@ -220,7 +220,7 @@ fn arch(r: &mut Sequence, family: &'static str, other_loads: bool) -> Option<Sce
     Some(Scene { family, text, model })
 }
 
-/// Joints of a ring whose edges are intrados, right, extrados, left; the ground is one held block more.
+/// Adds the joints of a ring whose edges are intrados, right, extrados, left; the ground is an additional held block.
 fn ring_contacts(model: &mut Model, bonded: bool) {
     let count = model.blocks.len();
     let far = model.blocks[0].clone();
@@ -238,7 +238,7 @@ fn ring_contacts(model: &mut Model, bonded: bool) {
     }
 }
 
-/// A force on the upper extrados chord at x.
+/// Adds a force on the upper extrados chord at x.
 fn on_extrados(model: &mut Model, x: f64, force: Point) -> Option<()> {
     let chord = |block: &Block| [block.polygon[3], block.polygon[2]];
     let y = |[a, b]: [Point; 2]| a[1] + (b[1] - a[1]) * (x - a[0]) / (b[0] - a[0]);
@@ -255,7 +255,7 @@ fn on_extrados(model: &mut Model, x: f64, force: Point) -> Option<()> {
     Some(())
 }
 
-/// Strips and axles where no chord hangs over another, and what acts on any block.
+/// Adds strips and axles if no chord is above another one, else loads on any block.
 fn ring_load(r: &mut Sequence, model: &mut Model, span: f64, rise: f64) -> String {
     let kind = if rise < 0.45 * span { r.whole(0, 3) } else { 3 };
     match kind {
@@ -291,7 +291,7 @@ fn ring_load(r: &mut Sequence, model: &mut Model, span: f64, rise: f64) -> Strin
     }
 }
 
-/// Walls in running bond with windows.
+/// Returns a wall in running bond with windows.
 fn wall(r: &mut Sequence, family: &'static str) -> Option<Scene> {
     let (courses, bricks) = (r.whole(1, 6), r.whole(1, 6));
     let brick = [r.between(0.2, 0.8), r.between(0.1, 0.4)];
@@ -316,7 +316,7 @@ fn wall(r: &mut Sequence, family: &'static str) -> Option<Scene> {
     Some(Scene { family, text, model })
 }
 
-/// Convex blocks that fill a rectangle, some of them gone.
+/// Returns convex blocks that fill a rectangle; some of them are removed.
 fn assembly(r: &mut Sequence, family: &'static str, strengths: bool) -> Option<Scene> {
     let laws: Vec<Law> = match r.whole(0, 9) {
         0 => vec![extreme(r)],
@@ -328,8 +328,8 @@ fn assembly(r: &mut Sequence, family: &'static str, strengths: bool) -> Option<S
     }))
 }
 
-/// Text of a scene `blocks` whose blocks and laws `fill` has put into the model: turned, scaled and moved,
-/// with random loads where it has none.
+/// Returns a scene `blocks` whose blocks and laws `fill` has put into the model. It is rotated, scaled and shifted,
+/// with random loads if it has none.
 fn finish(r: &mut Sequence, family: &'static str, fill: impl FnOnce(&mut Sequence, &mut Model)) -> Scene {
     let mut model = Model { width: r.between(0.2, 2.0), gravity: gravity(r), ..Model::default() };
     fill(r, &mut model);
@@ -368,7 +368,7 @@ fn finish(r: &mut Sequence, family: &'static str, fill: impl FnOnce(&mut Sequenc
     Scene { family, text, model }
 }
 
-/// The scene turned with its gravity, in other units of length, and far from the origin.
+/// Rotates the scene with its gravity, changes the unit of length, and moves it far from the origin.
 fn disguise(r: &mut Sequence, model: &mut Model) {
     let (angle, scale) = (r.between(-PI, PI), r.power(-2.0, 2.0));
     let off = if r.chance(0.3) { [r.between(-1e3, 1e3), 1e3 * scale] } else { [0.0; 2] };

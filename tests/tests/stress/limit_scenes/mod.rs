@@ -1,7 +1,7 @@
-//! Random limit scenes against a program of their own: arches of every profile, walls, blocks of any shape, degenerate ones;
-//! laws of every kind, loads in all directions. The program reads the vertices of blocks and writes everything else down
-//! again: joints as overlaps of edges, weights, loads, strengths, equilibrium. It shares no code with the
-//! model and the solvers of Voussoir.
+//! Random limit scenes against an independent program: arches of every profile, walls, blocks of any shape, degenerate
+//! scenes; laws of every kind, loads in all directions. The program reads the vertices of blocks and computes the rest
+//! again: joints as overlaps of edges, weights, loads, strengths, equilibrium. It shares no code with the model and the
+//! solvers of Voussoir.
 
 mod assemblies;
 mod families;
@@ -16,10 +16,10 @@ use voussoir::solve_case;
 use voussoir_tests::gates::above_gates;
 use voussoir_tests::{first_case, keep};
 
-/// Relative difference of factors that is none.
+/// Relative difference of equal factors.
 const SAME: f64 = 2e-6;
 
-/// What a comparison came to.
+/// The outcome of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Verdict {
     Collapse,
@@ -33,7 +33,7 @@ enum Verdict {
     Wrong,
 }
 
-/// Answers of some scenes against what they carry; a share may be refused as no scenes.
+/// Compares the answers of some scenes with the independent program; a share of the scenes may be refused as invalid.
 fn compare(seeds: std::ops::Range<u64>) -> BTreeMap<(&'static str, Verdict), usize> {
     let (mut counts, mut bad) = (BTreeMap::new(), Vec::new());
     for seed in seeds {
@@ -48,8 +48,9 @@ fn compare(seeds: std::ops::Range<u64>) -> BTreeMap<(&'static str, Verdict), usi
         assert_eq!(case.assembly.joints.len(), joints_of(&model, &text), "{seed}\n{text}");
         let result = solve_case(&case);
         let (carried, unit) = (model.carried(), model.typical_factor());
-        // Bounds may differ by the rounding of enormous strengths, as the certificate says, and by that of vertices far from
-        // the origin, which turns joints: of scene 1157, 140 sizes away, by 1.2e-11 of its loads.
+        // Bounds may differ by the rounding of very large strengths, as the certificate allows, and by the rounding of
+        // vertices far from the origin, which rotates joints: by 1.2e-11 of the loads for a scene that is 140 sizes
+        // away.
         let enormous = model.laws.iter().any(|law| law.is_enormous());
         let rounding = 1e-8 * (model.sizes_from_origin() / 100.0).max(1.0);
         let above = above_gates(&result, 1e-9, if enormous { f64::INFINITY } else { rounding });
@@ -68,18 +69,19 @@ fn compare(seeds: std::ops::Range<u64>) -> BTreeMap<(&'static str, Verdict), usi
     counts
 }
 
-/// Joints that the text's scene must have: as many as the model found, with those that bonds take from it.
+/// Returns the number of joints of the scene of the text: as many as in the model, plus those that bonded ends remove
+/// from it.
 fn joints_of(model: &model::Model, text: &str) -> usize {
     model.contacts.len() + if text.contains("ends = \"bonded\"") { 2 } else { 0 }
 }
 
 fn verdict(result: &CaseResult, carried: Carried, unit: f64) -> Verdict {
-    // Of loads far beyond the dead ones the independent program finds fewer digits.
+    // For loads far above the dead load the independent program has fewer digits.
     let same = |a: f64, b: f64| {
         let digits = if b.abs() > 100.0 * unit { 5.0 } else { 1.0 };
         a == b || (a - b).abs() <= digits * SAME * (b.abs() + 1e-3 * unit)
     };
-    // Where the dead load is only just carried, both answers are right.
+    // If the dead load is only just carried, both answers are right.
     let at_zero = |end: f64| end.abs() <= 1e-6 * unit;
     if result.status == Status::Stalled || !result.certificate.passed {
         return Verdict::Stalled;
@@ -93,7 +95,7 @@ fn verdict(result: &CaseResult, carried: Carried, unit: f64) -> Verdict {
     };
     let zero = (low < 0.0 || at_zero(low)) && (high > 0.0 || at_zero(high));
     match (result.status, result.load_factor) {
-        // As great as strengths that are great beyond all loads: no digit means anything.
+        // Strengths are far above all loads: no digit of the load is significant.
         (Status::Collapse, Some(factor)) if zero && factor.min(high) > 1e6 * unit => Verdict::Unbounded,
         (Status::Collapse, Some(factor)) if zero && same(factor, high) => Verdict::Collapse,
         (Status::Unbounded, _) if zero && high.is_infinite() => Verdict::Unbounded,
@@ -114,7 +116,8 @@ fn count(counts: &BTreeMap<(&'static str, Verdict), usize>, verdict: Verdict) ->
     counts.iter().filter(|((_, own), _)| *own == verdict).map(|(_, count)| count).sum()
 }
 
-/// 60 scenes; `LIMIT_SCENES` for more, from `LIMIT_FIRST` on, `KEEP=FOLDER` writes those that are not right.
+/// 60 random scenes carry the load of an independent program. `LIMIT_SCENES` sets the number, `LIMIT_FIRST` the first
+/// seed, `KEEP=FOLDER` writes the scenes with a wrong answer.
 #[test]
 fn random_scenes_carry_what_an_independent_program_says() {
     let number = |name: &str| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
@@ -131,8 +134,8 @@ fn random_scenes_carry_what_an_independent_program_says() {
     assert!(count(&counts, Verdict::Collapse) * 3 > all, "{counts:?}");
 }
 
-/// Cohesion of 1e10 Pa and more, friction of 1e12, beams without weight, blocks a kilometre from the origin, a tower on its
-/// edge, a wall that crushes: what once stalled is answered.
+/// Difficult scenes are solved, as an independent program confirms: cohesion of 1e10 Pa and more, friction of 1e12,
+/// beams without weight, blocks a kilometre from the origin, a tower on its edge, a wall with crushing.
 #[test]
 fn scenes_that_once_stalled_are_answered() {
     for seed in [470, 890, 982, 1157, 1355, 1541, 1657, 1725, 1990] {

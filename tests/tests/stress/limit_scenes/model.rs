@@ -4,28 +4,28 @@ use crate::conic::{Extreme, Rows};
 
 pub type Point = [f64; 2];
 
-/// Friction from which on a joint does not slide.
+/// Friction above which a joint does not slide.
 const NO_SLIDING: f64 = 1e11;
 
-/// What a joint carries: |T| ≤ c A + μ N, |M| ≤ (N + f_t A)(f_c A − N) h / (2 A (f_c + f_t)).
+/// Strength of a joint: |T| ≤ c A + μ N, |M| ≤ (N + f_t A)(f_c A − N) h / (2 A (f_c + f_t)).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Law {
     pub tag: &'static str,
-    /// Infinite where it never slides.
+    /// Infinite if it never slides.
     pub friction: f64,
     pub cohesion: f64,
     pub tensile: f64,
-    /// Infinite where it never crushes.
+    /// Infinite if it never crushes.
     pub compressive: f64,
 }
 
 impl Law {
-    /// Dry friction under some tag.
+    /// Returns dry friction with a tag.
     pub fn dry(tag: &'static str, friction: f64) -> Law {
         Law { tag, friction, cohesion: 0.0, tensile: 0.0, compressive: f64::INFINITY }
     }
 
-    /// The table of a study.
+    /// Returns the table for a study.
     pub fn table(&self) -> String {
         let mut text = format!("law = \"{}\"\n", self.tag);
         match self.tag {
@@ -42,12 +42,12 @@ impl Law {
         text
     }
 
-    /// Whether rounding of a motion times its strengths is no small thing.
+    /// Returns true if the rounding of a motion times the strengths is significant.
     pub fn is_enormous(&self) -> bool {
         self.cohesion > 1e9 || (self.compressive > 1e9 && self.compressive.is_finite())
     }
 
-    /// Tension at which opening or sliding ends, per area.
+    /// Returns the tension per area at which opening or sliding ends.
     fn apex(&self) -> f64 {
         if self.friction > 0.0 && self.friction.is_finite() {
             self.tensile.min(self.cohesion / self.friction)
@@ -57,7 +57,7 @@ impl Law {
     }
 }
 
-/// A block; `held` where the ground or a bond to it holds it.
+/// A block; `held` if the ground holds it, directly or by a bond.
 #[derive(Debug, Clone)]
 pub struct Block {
     pub name: String,
@@ -66,7 +66,7 @@ pub struct Block {
     pub density: f64,
 }
 
-/// A straight joint: the second block lies to the right of the way between its ends.
+/// A straight joint. The second block is on the right of the direction between its ends.
 #[derive(Debug, Clone)]
 pub struct Contact {
     pub on: [usize; 2],
@@ -82,7 +82,7 @@ pub struct Force {
     pub force: Point,
 }
 
-/// All of it: forces of factor 1, and accelerations of all blocks.
+/// The whole model: forces at factor 1, and accelerations of all blocks.
 #[derive(Debug, Clone, Default)]
 pub struct Model {
     pub blocks: Vec<Block>,
@@ -94,11 +94,11 @@ pub struct Model {
     pub acceleration: Point,
 }
 
-/// Which factors are carried.
+/// The factors that are carried.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Carried {
     No,
-    /// From the least to the greatest, either may be infinite.
+    /// From the least to the greatest; either may be infinite.
     Between([f64; 2]),
     /// The program was not decided.
     Unknown,
@@ -116,7 +116,7 @@ fn cross(a: Point, b: Point) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
-/// Area and centroid of an anticlockwise polygon.
+/// Returns area and centroid of an anticlockwise polygon.
 pub fn area_centroid(polygon: &[Point]) -> (f64, Point) {
     let (origin, mut area, mut sum) = (polygon[0], 0.0, [0.0; 2]);
     for pair in polygon[1..].windows(2) {
@@ -133,7 +133,7 @@ fn edges(polygon: &[Point]) -> impl Iterator<Item = [Point; 2]> {
 }
 
 impl Model {
-    /// Middle and size of the scene.
+    /// Returns centre and size of the scene.
     fn frame(&self) -> (Point, f64) {
         let points = || self.blocks.iter().flat_map(|block| &block.polygon);
         let most = |d: usize| points().fold(f64::NEG_INFINITY, |most, p| most.max(p[d]));
@@ -142,7 +142,7 @@ impl Model {
         ([(most(0) + least(0)) / 2.0, (most(1) + least(1)) / 2.0], size)
     }
 
-    /// The overlaps of edges as joints, each with the law that `law` gives for the two blocks.
+    /// Adds the overlaps of edges as joints, each with the law that `law` returns for the two blocks.
     pub fn join(&mut self, law: impl Fn(usize, usize) -> usize) {
         let (_, size) = self.frame();
         let tolerance = 1e-9 * size;
@@ -162,7 +162,7 @@ impl Model {
                         let (from, to) = (dot(t, minus(s, p)).max(0.0), dot(t, minus(r, p)).min(length));
                         if to - from > tolerance {
                             let at = |x: f64| [p[0] + t[0] * x, p[1] + t[1] * x];
-                            // Of an anticlockwise polygon the outside lies to the right of every edge.
+                            // The outside of an anticlockwise polygon is on the right of every edge.
                             self.contacts.push(Contact { on: [a, b], ends: [at(from), at(to)], law: law(a, b) });
                         }
                     }
@@ -171,7 +171,7 @@ impl Model {
         }
     }
 
-    /// Sums of dead and live forces on each block, with their moments about a point.
+    /// Returns the sums of dead and live forces on each block, with their moments about a point.
     fn loads(&self, pole: Point) -> [Vec<[f64; 3]>; 2] {
         let mut loads = [vec![[0.0; 3]; self.blocks.len()], vec![[0.0; 3]; self.blocks.len()]];
         let mut add = |which: usize, block: usize, point: Point, force: Point| {
@@ -192,7 +192,7 @@ impl Model {
         loads
     }
 
-    /// Whether live loads leave more on some block than the rounding of what cancels.
+    /// Returns true if the live load on a block is greater than the rounding error of forces that cancel.
     pub fn is_loaded(&self) -> bool {
         let (pole, size) = self.frame();
         let single: f64 = self.forces.iter().map(|force| force.force[0].hypot(force.force[1])).sum();
@@ -200,20 +200,20 @@ impl Model {
         live > 1e-9 * single
     }
 
-    /// How far the scene is from the origin, in units of its size.
+    /// Returns the distance of the scene from the origin, in units of its size.
     pub fn sizes_from_origin(&self) -> f64 {
         let (pole, size) = self.frame();
         pole[0].hypot(pole[1]) / size
     }
 
-    /// The factor at which live loads count as dead ones do.
+    /// Returns the factor at which live loads have the size of dead loads.
     pub fn typical_factor(&self) -> f64 {
         let (pole, size) = self.frame();
         let [dead, live] = self.loads(pole).map(|loads| greatest(&loads, size));
         if dead > 0.0 && live > 0.0 { dead / live } else { 1.0 }
     }
 
-    /// Which factors are carried.
+    /// Returns the factors that are carried.
     pub fn carried(&self) -> Carried {
         let (pole, size) = self.frame();
         if self.loads(pole).iter().all(|loads| greatest(loads, size) == 0.0) {
@@ -230,7 +230,7 @@ impl Model {
                 Extreme::Unknown => return Carried::Unknown,
             };
         }
-        // A program without bounds need not have a point.
+        // A program without bounds may have no feasible point.
         if ends.iter().any(|end| end.is_infinite()) {
             match rows.extreme(factor, 0.0) {
                 Extreme::Infeasible => return Carried::No,
@@ -241,8 +241,8 @@ impl Model {
         Carried::Between(ends)
     }
 
-    /// The program in units of the scene's size and its greatest dead (else live) force; its variable λ and that
-    /// variable's unit.
+    /// Returns the program in units of the size of the scene and its greatest dead (else live) force, its variable λ,
+    /// and the unit of this variable.
     fn rows(&self) -> (Rows, usize, f64) {
         let (pole, size) = self.frame();
         let [dead, live] = self.loads(pole);
@@ -308,7 +308,7 @@ impl Model {
         rows.cones_from = rows.right.len();
         for (j, contact) in self.contacts.iter().enumerate() {
             let (law, h, area) = of(contact);
-            // Beyond this no digit of a load depends on it.
+            // Above this strength no digit of a load depends on it.
             if law.compressive * area < 1e9 {
                 let whole = (law.compressive + law.apex()) * area;
                 rows.stress_block([3 * j, 3 * j + 2], h, [whole, law.apex() * area], 1.0);
@@ -317,7 +317,7 @@ impl Model {
     }
 }
 
-/// The greatest force, moments divided by the size.
+/// Returns the greatest force; moments are divided by the size.
 fn greatest(loads: &[[f64; 3]], size: f64) -> f64 {
     loads.iter().flat_map(|w| [w[0].hypot(w[1]), w[2].abs() / size]).fold(0.0, f64::max)
 }

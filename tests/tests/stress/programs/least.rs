@@ -1,8 +1,9 @@
 //! The least load at which rigid blocks can collapse, by enumeration of the modes of all joints.
 //!
-//! With all modes given, the field and the motion are two separate linear programs: the least λ in equilibrium, and a
-//! motion with p·q̇ = 1. If only some modes are given, the other joints keep their cones, and two lower bounds of λ remain:
-//! the least λ in equilibrium, and the least −w·q̇, because friction dissipates. Branches above the best load are cut.
+//! If all modes are given, the field and the motion are two separate linear programs: the least λ in equilibrium, and a
+//! motion with p·q̇ = 1. If only some modes are given, the other joints keep their cones, and two lower bounds of λ
+//! remain: the least λ in equilibrium, and the least −w·q̇, because friction dissipates. Branches above the best load
+//! are cut.
 
 use super::rigid::{Rigid, sum};
 use crate::conic::{Extreme, Rows};
@@ -10,15 +11,15 @@ use crate::conic::{Extreme, Rows};
 /// Mode of one end of a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum End {
-    /// No force; it may open.
+    /// There is no force; the end may open.
     Open,
-    /// No motion.
+    /// There is no motion.
     Closed,
-    /// Slip with this sign of ġ_t.
+    /// The end slips with this sign of ġ_t.
     Slides(bool),
 }
 
-/// Modes of both ends of a joint. ġ_t is the same at both.
+/// Modes of both ends of a joint; ġ_t is the same at both ends.
 const MODES: [[End; 2]; 10] = {
     use End::{Closed, Open, Slides};
     [
@@ -45,7 +46,7 @@ pub enum Least {
     Load(f64, usize),
     /// No collapse with a load λ ≥ 0.
     Never,
-    /// Too many programs, or one that was not decided.
+    /// Too many programs, or a program that was not decided.
     Undecided,
 }
 
@@ -58,7 +59,7 @@ struct Search<'a> {
     undecided: bool,
 }
 
-/// The least load, by at most `most` programs.
+/// Returns the least load, using at most `most` programs.
 pub fn least_load(rigid: &Rigid, most: usize) -> Least {
     let mut search = Search { rigid, best: f64::INFINITY, programs: 0, most, undecided: false };
     search.branch(&mut Vec::new());
@@ -99,7 +100,8 @@ impl Search<'_> {
         }
     }
 
-    /// A lower bound of λ with these modes of the first joints: the load itself if all have one. `None` without a field or a motion.
+    /// Returns a lower bound of λ with these modes of the first joints: the load itself if all joints have one. `None`
+    /// without a field or a motion.
     fn bound(&mut self, modes: &[[End; 2]]) -> Option<f64> {
         let ends: Vec<End> = modes.iter().flatten().copied().collect();
         let power = self.least(self.motions(&ends))?;
@@ -107,7 +109,7 @@ impl Search<'_> {
         Some(if ends.len() == self.rigid.touches.len() { field } else { field.max(power) })
     }
 
-    /// The least value of the last unknown; −∞ without a bound, `None` if nothing is feasible.
+    /// Returns the least value of the last unknown; −∞ without a bound, `None` if nothing is feasible.
     fn least(&mut self, (rows, variable): (Rows, usize)) -> Option<f64> {
         self.programs += 1;
         self.undecided |= self.programs > self.most;
@@ -122,7 +124,7 @@ impl Search<'_> {
         }
     }
 
-    /// Fields with λ ≥ 0.
+    /// Returns the program of fields with λ ≥ 0.
     fn field(&self, ends: &[End]) -> (Rows, usize) {
         let factor = 2 * self.rigid.touches.len();
         let mut rows = self.rigid.equilibrium();
@@ -147,7 +149,7 @@ impl Search<'_> {
         (rows, factor)
     }
 
-    /// Motions with p·q̇ = 1.
+    /// Returns the program of motions with p·q̇ = 1.
     fn motions(&self, ends: &[End]) -> (Rows, usize) {
         let mut rows = self.rigid.motions();
         let power = rows.variables() - 1;

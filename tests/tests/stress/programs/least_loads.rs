@@ -1,4 +1,4 @@
-//! `limit_least` against the enumeration of modes.
+//! `limit_least` against an enumeration of modes by linear programs.
 //!
 //! ```sh
 //! CASES=30 FIRST=0 cargo test --release -p voussoir-tests --test stress -- --ignored --nocapture least_loads_of_many
@@ -13,11 +13,11 @@ use voussoir::solve_case;
 use voussoir_tests::family::{Family, FamilyScene, Form, Law, family_scene};
 use voussoir_tests::{first_case, keep};
 
-/// Relative difference of two loads that agree.
+/// Relative difference of equal loads.
 const SAME_LOAD: f64 = 1e-6;
-/// Programs of an enumeration.
+/// Greatest number of programs of an enumeration.
 const PROGRAMS: usize = 20_000;
-/// Contact points of the largest scene.
+/// Greatest number of contact points of a scene.
 const MOST_POINTS: usize = 12;
 
 /// The outcome of a comparison.
@@ -30,7 +30,7 @@ enum Outcome {
     Contradicts,
 }
 
-/// Rigid scene `k`: the families in turn, with `coulomb`, every fourth with dilatancy.
+/// Returns rigid scene `k` of the families, in turn, with `coulomb`, every fourth with dilatancy.
 fn scene(k: u64) -> FamilyScene {
     let families = [Family::Random, Family::Symmetric, Family::Bricks, Family::Finite];
     let law = if k % 4 == 3 { Law::Dilatant } else { Law::Coulomb };
@@ -61,7 +61,7 @@ fn compared(result: &CaseResult, least: Least) -> Outcome {
     }
 }
 
-/// The outcome of a scene with a line for the table; `None` if it is too large.
+/// Returns the outcome of a scene with a line for the table; `None` if it is too large.
 fn outcome(k: u64) -> Option<(Outcome, String)> {
     let scene = scene(k);
     let text = scene.study(Form::Given, "solver = \"limit_least\"");
@@ -84,7 +84,7 @@ fn outcome(k: u64) -> Option<(Outcome, String)> {
     Some((outcome, line))
 }
 
-/// A few least loads.
+/// On a few scenes `limit_least` finds the least load of the enumeration.
 #[test]
 fn least_loads_of_some() {
     let found: Vec<_> = (0..8).filter_map(outcome).collect();
@@ -92,7 +92,7 @@ fn least_loads_of_some() {
     assert!(found.iter().all(|(outcome, _)| *outcome != Outcome::Contradicts), "{found:?}");
 }
 
-/// The table of many scenes.
+/// Many scenes: `limit_least` never contradicts the enumeration. The test prints a table.
 #[test]
 #[ignore = "minutes; CASES and FIRST choose the scenes"]
 fn least_loads_of_many() {

@@ -1,4 +1,4 @@
-//! Rigid blocks that touch at the ends of their joints: equilibrium and motions as rows of a linear program.
+//! Rigid blocks with contact at the ends of their joints: equilibrium and motions as rows of a linear program.
 //!
 //! ```text
 //! Σ ± (r_n n + r_t t) + w + λ p = 0     |r_t| ≤ μ r_n     p·q̇ = 1     ġ_n ≥ d |ġ_t|
@@ -17,18 +17,18 @@ pub struct Touch {
     axes: [Vec2; 2],
 }
 
-/// Rigid blocks with their contact points, two a joint.
+/// Rigid blocks with their contact points, two per joint.
 #[derive(Debug, Clone)]
 pub struct Rigid {
     centres: Vec<Vec2>,
     /// (force, moment / length) of the dead load on each free block \[N\].
     dead: Vec<[f64; 3]>,
-    /// The same of the live load at factor 1.
+    /// (force, moment / length) of the live load at factor 1 on each free block \[N\].
     live: Vec<[f64; 3]>,
     pub touches: Vec<Touch>,
-    /// μ; `None` if nothing slips.
+    /// Friction μ; `None` if joints do not slip.
     pub friction: Option<f64>,
-    /// d.
+    /// Dilatancy d.
     pub dilatancy: f64,
     length: f64,
 }
@@ -45,7 +45,7 @@ fn area_and_centre(vertices: &[Vec2]) -> (f64, Vec2) {
 }
 
 impl Rigid {
-    /// Gravity in the first stage, the live load in the last.
+    /// Creates it from a case with gravity in the first stage and the live load in the last.
     pub fn of_case(case: &Case, friction: Option<f64>, dilatancy: f64) -> Rigid {
         let assembly = &case.assembly;
         let length = assembly.size();
@@ -79,7 +79,7 @@ impl Rigid {
         Rigid { centres, dead, live, touches, friction, dilatancy, length }
     }
 
-    /// Entries of a contact force's component in the equilibrium of both blocks: (row, value).
+    /// Returns the entries of a component of a contact force in the equilibrium of both blocks: (row, value).
     fn entries(&self, touch: &Touch, axis: usize) -> Vec<(usize, f64)> {
         let along = touch.axes[axis];
         let mut all = Vec::new();
@@ -92,7 +92,7 @@ impl Rigid {
         all
     }
 
-    /// Equilibrium: unknowns are (r_n, r_t) of each contact point, then λ.
+    /// Returns equilibrium: unknowns are (r_n, r_t) of each contact point, then λ.
     pub fn equilibrium(&self) -> Rows {
         let factor = 2 * self.touches.len();
         let mut rows = Rows::new(factor + 1);
@@ -107,7 +107,8 @@ impl Rigid {
         rows
     }
 
-    /// Motions: unknowns are (v, ω × length) of each block, then −w·q̇ with p·q̇ = 1, both by the size of the live load.
+    /// Returns the motions: unknowns are (v, ω × length) of each block, then −w·q̇ with p·q̇ = 1, both relative to the
+    /// size of the live load.
     pub fn motions(&self) -> Rows {
         let power = 3 * self.centres.len();
         let size = self.live.iter().flatten().fold(0.0, |most: f64, force| most.max(force.abs()));
@@ -123,19 +124,19 @@ impl Rigid {
         rows
     }
 
-    /// Entries of ġ_n or ġ_t of a contact point over the motions.
+    /// Returns the entries of ġ_n or ġ_t of a contact point over the motions.
     pub fn rate(&self, index: usize, axis: usize) -> Vec<(usize, f64)> {
         self.entries(&self.touches[index], axis)
     }
 
-    /// The greatest λ with an admissible field.
+    /// Returns the greatest λ with an admissible field.
     pub fn associated_limit(&self) -> Extreme {
         let mut rows = self.equilibrium();
         (0..self.touches.len()).for_each(|index| self.cone(&mut rows, index));
         rows.extreme(2 * self.touches.len(), 1.0)
     }
 
-    /// r_n ≥ 0, |r_t| ≤ μ r_n.
+    /// Adds r_n ≥ 0 and |r_t| ≤ μ r_n.
     pub fn cone(&self, rows: &mut Rows, index: usize) {
         let (n, t) = (2 * index, 2 * index + 1);
         rows.row(&[(n, -1.0)], 0.0);
@@ -144,7 +145,7 @@ impl Rigid {
         }
     }
 
-    /// ġ_n ≥ d |ġ_t|; ġ_t = 0 without slip, by two rows.
+    /// Adds ġ_n ≥ d |ġ_t|; without slip ġ_t = 0 by two rows.
     pub fn flow(&self, rows: &mut Rows, index: usize) {
         let [n, t] = [0, 1].map(|axis| self.rate(index, axis));
         for sign in [1.0, -1.0] {
@@ -163,7 +164,7 @@ impl Rigid {
     }
 }
 
-/// Entries of the same column added.
+/// Returns the entries with equal columns added.
 pub fn sum(entries: impl Iterator<Item = (usize, f64)>) -> Vec<(usize, f64)> {
     let mut all = std::collections::BTreeMap::new();
     entries.for_each(|(k, v)| *all.entry(k).or_insert(0.0) += v);

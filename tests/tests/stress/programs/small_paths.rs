@@ -19,9 +19,9 @@ use voussoir::solve_case;
 use voussoir_tests::family::{Family, Form, Law, family_scene};
 use voussoir_tests::{first_case, keep};
 
-/// Relative difference of two loads that agree.
+/// Relative difference of equal loads.
 const SAME_LOAD: f64 = 1e-6;
-/// Loads below it are zero: live loads are of the size of the weights.
+/// Loads below it are zero: live loads have the size of the weights.
 const ZERO_LOAD: f64 = 1e-8;
 /// The path solvers.
 const SOLVERS: [&str; 2] = ["event_path", "newton_path"];
@@ -30,13 +30,13 @@ fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= (SAME_LOAD * a.abs().max(b.abs())).max(ZERO_LOAD)
 }
 
-/// Load and first limit point of a certified answer.
+/// Returns load and first limit point of a certified answer.
 fn loads(result: &CaseResult) -> Option<[f64; 2]> {
     let load = result.load_factor.filter(|_| result.certificate.passed && result.status.is_answer())?;
     Some([load, result.path.first_limit_point.unwrap_or(load)])
 }
 
-/// The contradictions of a certified result with the program.
+/// Returns the contradictions of a certified result with the program.
 fn against_program(result: &CaseResult, limit: Extreme, exact: bool) -> Option<String> {
     match (limit, loads(result)) {
         (Extreme::Value(limit), Some([load, _])) if load > limit && !same(load, limit) => {
@@ -62,7 +62,7 @@ struct Tally {
     unanswered: BTreeMap<String, usize>,
 }
 
-/// Scene `k`, the families in turn.
+/// Checks scene `k` of the families, in turn.
 fn tried(k: u64, tally: &mut Tally) {
     let families = [Family::Random, Family::Symmetric, Family::Bricks, Family::Settlements];
     let family = families[(k % 4) as usize];
@@ -111,14 +111,14 @@ fn family(range: std::ops::Range<u64>) -> Tally {
     tally
 }
 
-/// A few scenes.
+/// On a few scenes no path contradicts the linear program.
 #[test]
 fn small_paths_of_some() {
     let tally = family(0..8);
     assert!(tally.contradictions.is_empty(), "{}", tally.contradictions.join("\n"));
 }
 
-/// The table of many scenes.
+/// Many scenes: no path contradicts the linear program. The test prints a table.
 #[test]
 #[ignore = "minutes; CASES and FIRST choose the scenes"]
 fn small_paths_of_many() {
