@@ -1,10 +1,10 @@
-//! `accuracy = "estimate"` against references that are far more accurate: limit analysis where it asks for the same load, else
+//! `accuracy = "estimate"` against references that are far more accurate: limit analysis if it has the same load, else
 //! graded meshes, or meshes eight times as fine, with steps of a quarter.
 
 use voussoir::core::limit::Status;
 use voussoir_tests::{Arch, answered, compliant, crushing, elastic, friction};
 
-/// Settings of the solver; how errors are estimated.
+/// Settings of the solver, and of the error estimate.
 const FINITE: &str = "kinematics = \"finite\"\n";
 const SMALL: &str = "";
 const ESTIMATE: &str = "[output]\naccuracy = \"estimate\"\n";
@@ -17,13 +17,13 @@ struct Scene {
 }
 
 impl Scene {
-    /// The study on a mesh, with these steps.
+    /// Returns the study on a mesh with these steps.
     fn study(&self, mesh: String, steps: &str) -> String {
         let text = Arch { mesh, ..self.arch.clone() }.study();
         text.replacen("[[stages]]", &format!("{}{steps}[[stages]]", self.solver), 1)
     }
 
-    /// Estimate and true error; nothing where there is no estimate, and why.
+    /// Returns factor, estimate and true error. An error gives the reason why there is no estimate.
     fn errors(&self, reference: impl Fn(&Scene) -> f64) -> Result<[f64; 3], String> {
         let result = answered(&(self.study(mesh(self.elements), "") + ESTIMATE));
         let estimate = result.load_factor_error.ok_or(result.notes.join("; "))?;
@@ -37,7 +37,7 @@ fn arch(voussoirs: usize, rise: f64, thickness: f64, material: &str, joint: &str
     Arch { voussoirs, rise, thickness, material, joint, solver: "newton_path", ..Arch::default() }
 }
 
-/// A load factor on another mesh, with steps of a quarter.
+/// Returns a load factor on another mesh, with steps of a quarter.
 fn followed(scene: &Scene, mesh: String) -> f64 {
     let steps = if scene.solver == FINITE {
         "continuation = { strategy = \"arc_length\", first_step = 0.025, largest_step = 0.0005 }\n"
@@ -49,12 +49,13 @@ fn followed(scene: &Scene, mesh: String) -> f64 {
     result.load_factor.expect("a reference")
 }
 
-/// Eight times the elements.
+/// Returns the load factor with eight times the elements in each direction.
 fn finer(scene: &Scene) -> f64 {
     followed(scene, mesh(scene.elements.map(|n| 8 * n)))
 }
 
-/// The mesh that docs/theory/finite_displacements.md knows to be within 0.2 %: graded towards hinges.
+/// Returns the load factor on a mesh graded towards hinges, which is within 0.2 %
+/// (docs/theory/finite_displacements.md).
 fn graded(scene: &Scene) -> f64 {
     followed(scene, "elements = [8, 12]\ngrading = 10.0".into())
 }
@@ -63,13 +64,13 @@ fn mesh([along, across]: [usize; 2]) -> String {
     format!("elements = [{along}, {across}]")
 }
 
-/// The load of limit analysis.
+/// Returns the load factor of limit analysis.
 fn limit(scene: &Scene) -> f64 {
     let rigid = Arch { material: "law = \"rigid\"".into(), solver: "limit_chain", ..scene.arch.clone() };
     answered(&rigid.study()).load_factor.expect("a collapse")
 }
 
-/// Elastic voussoirs whose joints crush: coarse meshes miss the toes of hinges.
+/// Elastic voussoirs with crushing joints: coarse meshes miss the toes of hinges.
 fn that_crush() -> Vec<Scene> {
     let rings = [(9, 2.99), (10, 3.19), (9, 1.99), (12, 3.59), (7, 3.09)];
     let both = rings.into_iter().flat_map(|ring| [[1, 2], [2, 6]].map(|elements| (ring, elements)));
@@ -95,7 +96,7 @@ fn with_peaks() -> Vec<Scene> {
     .collect()
 }
 
-/// Rigid voussoirs on compliant joints, finite displacements; and bonds that break.
+/// Rigid voussoirs on compliant joints with finite displacements, and bonds that break.
 fn on_compliant_joints() -> Vec<Scene> {
     let dry = compliant(&friction(0.6), 2e10, 8e9);
     let bonded = |strength: f64, energy: f64| {
@@ -122,7 +123,7 @@ fn on_compliant_joints() -> Vec<Scene> {
         .collect()
 }
 
-/// How many scenes have an estimate, and of how many it covers the true error.
+/// Returns the number of scenes with an estimate, and the number of estimates that cover the true error.
 fn covered(scenes: &[Scene], reference: fn(&Scene) -> f64) -> [usize; 2] {
     let mut count = [0, 0];
     for scene in scenes {
@@ -138,7 +139,8 @@ fn covered(scenes: &[Scene], reference: fn(&Scene) -> f64) -> [usize; 2] {
     count
 }
 
-/// A mesh that misses the toe of a hinge is 6 % off, and the next one as well: limit analysis tells.
+/// A mesh that misses the toes of hinges is detected: its load and that of the next mesh are 6 % off, and limit
+/// analysis shows it.
 #[test]
 fn a_mesh_that_misses_the_toes_of_hinges_is_told() {
     let scene = &that_crush()[0];
@@ -146,8 +148,8 @@ fn a_mesh_that_misses_the_toes_of_hinges_is_told() {
     assert!(error > 0.05 * factor && (error..1.1 * error).contains(&estimate), "{factor} {estimate} {error}");
 }
 
-/// An estimate of a peak on a coarse mesh covers its error (reference: 8 × 8 elements and steps of a quarter); of limit
-/// analysis only bounds are left.
+/// An estimate of a peak on a coarse mesh covers its error (reference: 8 × 8 elements and steps of a quarter). For
+/// limit analysis only the bounds remain.
 #[test]
 fn the_error_of_a_peak_is_covered() {
     let scene = Scene {
@@ -162,8 +164,8 @@ fn the_error_of_a_peak_is_covered() {
     assert!(found.discretisation.is_none() && found.path.is_none() && found.total() < 1e-6, "{found:?}");
 }
 
-/// On thirty scenes the estimate covers the true error in nine of ten, also of those alone where it does not know the
-/// reference.
+/// On thirty scenes the estimate covers the true error in nine of ten, also among the scenes alone whose reference it
+/// does not know.
 #[test]
 #[ignore = "minutes: cargo test --release -p voussoir-tests --test verification accuracy -- --ignored --nocapture"]
 fn estimates_cover_true_errors() {

@@ -1,5 +1,5 @@
-//! Arches whose load factors are known by independent calculation (CLAIMS, code D of the project's
-//! benchmark list): Drosopoulos, Stavroulakis & Massalas (2008), Construction and Building Materials 22.
+//! Arches whose load factors are known from an independent calculation (CLAIMS, code D of the project's benchmark
+//! list): Drosopoulos, Stavroulakis & Massalas (2008), Construction and Building Materials 22.
 
 use voussoir::core::certificate::MechanismKind;
 use voussoir::core::limit::Status;
@@ -50,7 +50,7 @@ fn strathmashie_with_crushing() {
     }
 }
 
-/// Rise 1.19 m, bonded, unlimited strength: two straight struts fit in the ring; no finite load.
+/// Rise 1.19 m, bonded, unlimited strength: two straight struts fit in the ring, so there is no finite load.
 #[test]
 fn shallow_arch_is_unbounded_and_proves_it() {
     for (solver, _) in SOLVERS {
@@ -74,7 +74,7 @@ fn load_at_midspan() {
     }
 }
 
-/// The published rings of the peers: 13 equal straight-sided voussoirs, jointed, 1 m wide: 84.57330872 kN.
+/// The published ring of the peers, 13 equal straight-sided voussoirs, jointed, 1 m wide, carries 84.57330872 kN.
 #[test]
 fn the_peers_ring() {
     for (solver, _) in SOLVERS {
@@ -83,9 +83,9 @@ fn the_peers_ring() {
     }
 }
 
-/// Statements 1, 4 and 7 of the paper: with bonded ends the load grows as the rise falls, is finite
-/// down to 1.49 m, unbounded below with unlimited strength and finite throughout with 10 MPa.
-/// Statement 2: with crushing the greatest load of the nineteen is that of rise 0.59 m.
+/// Statements 1, 4 and 7 of the paper hold: with bonded ends the load increases as the rise decreases, is finite down
+/// to 1.49 m, unbounded below with unlimited strength, and finite for all rises with 10 MPa. Statement 2 holds: with
+/// crushing the greatest load of the nineteen is that of rise 0.59 m.
 #[test]
 fn nineteen_rises() {
     let mut last = 0.0;

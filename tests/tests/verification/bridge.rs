@@ -1,4 +1,4 @@
-//! Bridges: numbers of two independent formulations, closed forms of the fill, and what must be monotone
+//! Bridges: numbers of two independent formulations, closed forms of the fill, and monotonic dependence on parameters
 //! (docs/theory/bridges.md).
 
 use serde_json::Value;
@@ -8,7 +8,8 @@ use voussoir::results::{CaseResult, LoadOrigin};
 use voussoir_tests::written::{findings, results};
 use voussoir_tests::{answered, assert_close, changed, collapse_factor, first_case, study};
 
-/// The bridge of Prestwood's dimensions: 60 voussoirs, crushing at 4.5 MPa, a patch of 0.3 m at the quarter of the span.
+/// The bridge with Prestwood's dimensions: 60 voussoirs, crushing at 4.5 MPa, a patch of 0.3 m at the quarter of the
+/// span.
 const PRESTWOOD: &str = r#"
 name = "prestwood"
 [scene]
@@ -73,7 +74,7 @@ until = "collapse"
 loads = [{ kind = "vehicle", vehicle = "patch", at = 0.75 }]
 "#;
 
-/// Two rings, a load on the tenth block of the outer one.
+/// Two rings with a load on the tenth block of the outer one.
 const RINGS: &str = r#"
 name = "rings"
 [scene]
@@ -133,8 +134,8 @@ fn bridge(assembly: &Assembly) -> &Bridge {
     assembly.bridge.as_ref().expect("a bridge")
 }
 
-/// A uniform spread of 0°, 30°, 45° under fill on the whole extrados, and under fill that ends above the intrados
-/// springings; two formulations, two solvers.
+/// A patch on a ring with crushing carries the load of two independent formulations, with two solvers: uniform spread
+/// of 0°, 30° and 45°, under fill on the whole extrados and under fill that ends above the intrados springings.
 #[test]
 fn a_patch_on_a_ring_that_crushes_under_fill() {
     let known =
@@ -158,7 +159,7 @@ fn fill_that_resists() {
     assert_close(collapse_factor(&off), 224.656040, 1e-8);
 }
 
-/// The same blocks as studies of the scene `blocks`.
+/// Rings and spans carry the same load as the same blocks in the scene `blocks`.
 #[test]
 fn rings_and_spans() {
     for (mu, factor) in [(0.0, 16.56281), (0.3, 18.72820), (0.6, 21.06285), (100.0, 47.18771)] {
@@ -169,12 +170,12 @@ fn rings_and_spans() {
     }
 }
 
-/// Resultant and moment about the origin of vertical forces.
+/// Returns the resultant and moment about the origin of vertical forces.
 fn sums<'a>(forces: impl IntoIterator<Item = &'a PointForce>) -> [f64; 2] {
     forces.into_iter().fold([0.0; 2], |[force, moment], f| [force - f.force.y, moment - f.force.y * f.point.x])
 }
 
-/// Columns of fill weigh what the integral between the polygon of the extrados and the road weighs, layer by layer.
+/// Columns of fill have the weight of the integral between the polygon of the extrados and the road, layer by layer.
 #[test]
 fn columns_weigh_what_the_fill_above_weighs() {
     let layered = changed(
@@ -186,7 +187,7 @@ fn columns_weigh_what_the_fill_above_weighs() {
     for text in [PRESTWOOD, layered.as_str()] {
         let case = first_case(text);
         let bridge = bridge(&case.assembly);
-        // Midpoints of a fine division of the polygon itself.
+        // Midpoints of a fine division of the polygon.
         let (mut mass, mut moment) = (0.0, 0.0);
         for chord in &bridge.extrados {
             let [a, b] = chord.ends;
@@ -210,7 +211,7 @@ fn columns_weigh_what_the_fill_above_weighs() {
     }
 }
 
-/// On deformable blocks the same weight and moment stand on many points.
+/// Fill on deformable blocks has the same weight and moment, distributed over many points.
 #[test]
 fn fill_on_deformable_blocks_has_the_same_resultant() {
     let elastic = changed(PRESTWOOD, "law = \"rigid\"", "law = \"elastic\"\nyoung_modulus = 5e9\npoisson_ratio = 0.2");
@@ -222,7 +223,7 @@ fn fill_on_deformable_blocks_has_the_same_resultant() {
     (0..2).for_each(|i| assert_close(elastic[i], rigid[i], 1e-13));
 }
 
-/// A spread conserves force and moment while it stays on the bridge; what lies beyond goes to the ground.
+/// A spread conserves force and moment while it stays on the bridge; the part beyond it acts on the ground.
 #[test]
 fn a_spread_conserves_force_and_moment() {
     for angle in [0.0, 30.0, 60.0] {
@@ -240,7 +241,8 @@ fn a_spread_conserves_force_and_moment() {
     assert!(off.notes.iter().any(|note| note.contains("off the bridge")), "{:?}", off.notes);
 }
 
-/// An even load along the road carries as a patch of that length and weight; what lies beyond the bridge counts nothing.
+/// A uniform load along the road equals a patch of the same length and weight; the part beyond the bridge has no
+/// effect.
 #[test]
 fn a_lane_is_a_long_patch() {
     let patch = changed(RESISTING, "length = 0.3", "length = 1.2");
@@ -253,7 +255,7 @@ fn a_lane_is_a_long_patch() {
     assert_close(collapse_factor(&lane(-50.0, 1000.0)), collapse_factor(&lane(-1.0, 1000.0)), 1e-10);
 }
 
-/// The width of the spread is that of the depth under the centre, and the pressure is even.
+/// The width of the spread follows from the depth under its centre, and the pressure is uniform.
 #[test]
 fn the_spread_is_as_wide_as_the_depth_under_its_centre_says() {
     let case = first_case(PRESTWOOD);
@@ -268,13 +270,13 @@ fn the_spread_is_as_wide_as_the_depth_under_its_centre_says() {
     }
 }
 
-/// Factor of the resisting ring with other numbers.
+/// Returns the factor of the resisting ring with other numbers.
 fn resisting(changes: &[(&str, &str)]) -> f64 {
     collapse_factor(&changes.iter().fold(RESISTING.to_string(), |text, (from, to)| changed(&text, from, to)))
 }
 
-/// With associated flow more resistance cannot harm: in m_p, m_c, c and φ (least pressure zero), and no answer is above
-/// that of unlimited resistance.
+/// With associated flow the load does not decrease with the resistance: with m_p, m_c, c and φ (least pressure zero).
+/// No load is above that of unlimited resistance.
 #[test]
 fn the_load_grows_with_the_resistance() {
     let grows = |name: &str, factors: Vec<f64>| {
@@ -298,7 +300,7 @@ fn the_load_grows_with_the_resistance() {
     grows("φ", ["0.0", "20.0", "30.0", "45.0"].map(angle).to_vec());
 }
 
-/// A least pressure narrows what the fill may do, so the load cannot grow by it.
+/// A least pressure never raises the load, because it narrows the range of the fill's force.
 #[test]
 fn a_least_pressure_never_raises_the_load() {
     let zero = resisting(&[]);
@@ -308,12 +310,12 @@ fn a_least_pressure_never_raises_the_load() {
     }
 }
 
-/// A block that is pushed into fill: with friction the base carries μ times its weight, the fill its passive force.
+/// A block that is pushed into fill moves at Coulomb's wedge: the passive force of the fill is a closed form.
 #[test]
 fn a_block_pushed_into_fill_moves_at_coulombs_wedge() {
     let case = first_case(RESISTING);
     let reaction = &bridge(&case.assembly).reactions[0];
-    // One chord, one kind of fill: σ_v is linear along it.
+    // One chord with one material: σ_v is linear along it.
     let chord = bridge(&case.assembly).extrados[0];
     let depth = |y: f64| 0.75 + 0.25 + 0.3 - y;
     let [low, high] = [chord.ends[0].y, chord.ends[1].y];
@@ -326,7 +328,7 @@ fn a_block_pushed_into_fill_moves_at_coulombs_wedge() {
     assert_eq!(bridge(&case.assembly).reactions[19].direction.x, -1.0);
 }
 
-/// The mirrored bridge carries the mirrored vehicle alike, also backwards.
+/// A mirrored bridge carries the same load of the mirrored vehicle, also backwards.
 #[test]
 fn mirrored_vehicles_carry_alike() {
     let axles =
@@ -352,7 +354,7 @@ fn effective_width_raises_the_force_of_a_wheel() {
     assert_close(force, 1000.0 * 3.8 / (1.0 + 2.0 * reach), 1e-9);
 }
 
-/// Rings with offset joints, or of unequal numbers of voussoirs, touch along whole edges, and weigh as much.
+/// Rings with offset joints, or with different numbers of voussoirs, touch along whole edges and have the same weight.
 #[test]
 fn rings_with_offset_joints_touch_along_whole_edges() {
     for change in ["radial_joints = \"aligned\"", "radial_joints = \"offset\"", "voussoirs = [40, 43]"] {
@@ -368,7 +370,7 @@ fn rings_with_offset_joints_touch_along_whole_edges() {
         let assembly = &case.assembly;
         let mass: f64 = (0..assembly.bodies.len()).map(|body| assembly.inertia(body).mass).sum();
         assert_close(mass, 2200.0 * 2.88 * ring_area(40), 1e-3);
-        // The faces between the rings, found again from the polygons, are as long as those that were built.
+        // The faces between the rings, computed again from the polygons, have the same total length.
         let law = |_: usize, _: usize| (Bond::Bonded, Gap::default());
         let (found, overlaps) = find_joints(&assembly.bodies, assembly.size(), law);
         assert!(overlaps.is_empty());
@@ -380,7 +382,7 @@ fn rings_with_offset_joints_touch_along_whole_edges() {
     }
 }
 
-/// Area of the ring's polygon of n chords \[m²\].
+/// Returns the area of the ring's polygon with n chords \[m²\].
 fn ring_area(n: usize) -> f64 {
     let (span, rise, thickness) = (3.0f64, 0.75f64, 0.215f64);
     let radius = (span * span / 4.0 + rise * rise) / (2.0 * rise);
@@ -388,7 +390,7 @@ fn ring_area(n: usize) -> f64 {
     n as f64 * angle.sin() * ((radius + thickness).powi(2) - radius * radius) / 2.0
 }
 
-/// Weights, fill and loads of the results add up to what stands on the bridge.
+/// Weights, fill and loads of the results sum up to the total load on the bridge.
 #[test]
 fn the_list_of_loads_adds_up() {
     let result = answered(RESISTING);
@@ -439,7 +441,7 @@ fn tampering_with_fill_and_loads_is_found() {
     change(&["load_factor"], 272.63.into());
 }
 
-/// Limit analysis with the laws' own flow takes fill as it is.
+/// Limit analysis with the laws' own flow supports fill.
 #[test]
 fn friction_that_does_not_dilate_takes_fill_too() {
     let own = changed(RESISTING, "law = \"coulomb_associated\"", "law = \"coulomb\"");
@@ -449,8 +451,8 @@ fn friction_that_does_not_dilate_takes_fill_too() {
     assert!(result.load_factor.expect("a factor") <= 272.620144 * (1.0 + 1e-8));
 }
 
-/// Elastic–plastic and rigid–plastic fill on paths end at the load of limit analysis, with elastic blocks and with
-/// compliant joints, whatever the least pressure.
+/// Paths with elastic–plastic and with rigid–plastic fill end at the load of limit analysis, with elastic blocks and
+/// with compliant joints, for any least pressure.
 #[test]
 fn paths_with_fill_end_at_the_limit_load() {
     let elastic = changed(RESISTING, "law = \"rigid\"", "law = \"elastic\"\nyoung_modulus = 5e9\npoisson_ratio = 0.2");
@@ -475,7 +477,7 @@ fn paths_with_fill_end_at_the_limit_load() {
     }
 }
 
-/// A study whose gravity changes has no one strength of its fill: paths say so.
+/// Paths refuse a study whose gravity changes, because the strength of its fill changes too.
 #[test]
 fn paths_refuse_fill_whose_strength_changes() {
     let text = changed(RESISTING, "friction = 0.6", "friction = 0.6\nnormal_stiffness = 1e10\nshear_stiffness = 5e9");
@@ -485,13 +487,13 @@ fn paths_refuse_fill_whose_strength_changes() {
     assert!(result.notes.iter().any(|note| note.contains("gravity changes")), "{:?}", result.notes);
 }
 
-/// Two rings with a damaged joint or voussoir.
+/// Returns two rings with a damaged joint or voussoir.
 fn two_rings(damage: &str) -> String {
     changed(RINGS, "[materials.stone]", &format!("damage = [{damage}]\n[materials.stone]"))
 }
 
-/// A joint of which a part is repointed with its own law is the same joint; with one that cannot slip it is no weaker, and one
-/// that has lost that part is no stronger.
+/// A joint with a part repointed with its own law has the same load; repointed without slip it is not weaker, and with
+/// that part lost it is not stronger.
 #[test]
 fn repointed_and_lost_mortar() {
     let whole = first_case(RINGS);
@@ -509,7 +511,7 @@ fn repointed_and_lost_mortar() {
     }
 }
 
-/// What is lost is lost from both faces, and the deepest entry of a face counts.
+/// Joints that lost mortar are shorter: mortar is lost from both faces, and the deepest entry of a face counts.
 #[test]
 fn joints_that_lost_mortar_are_shorter() {
     let text = two_rings(
@@ -523,7 +525,8 @@ fn joints_that_lost_mortar_are_shorter() {
     assert_close(joint.height(), 0.1075 - 0.05, 1e-12);
 }
 
-/// A voussoir of the inner ring is gone with its weight and its four joints; of the outer ring only where a ring below goes on.
+/// A lost voussoir of the inner ring is removed with its weight and its four joints; a voussoir of the outer ring may
+/// be lost only if a ring below remains.
 #[test]
 fn a_lost_voussoir() {
     let (case, sound) = (first_case(&two_rings("{ kind = \"lost_voussoir\", voussoirs = [12] }")), first_case(RINGS));
@@ -544,7 +547,7 @@ fn a_lost_voussoir() {
     assert!(wrong.to_string().contains("nothing is left under it"), "{wrong}");
 }
 
-/// Bed joints of a pier count from under its cap and lose mortar on a side that must be named.
+/// Bed joints of a pier are numbered from under its cap and lose mortar on a side that must be named.
 #[test]
 fn a_pier_that_lost_mortar() {
     let with = |damage: &str| changed(SPANS, "[materials.stone]", &format!("damage = [{damage}]\n[materials.stone]"));
@@ -570,7 +573,7 @@ fn a_pier_that_lost_mortar() {
     }
 }
 
-/// Partial factors: weights and loads scale the load of a ring that cannot crush, and each strength is divided.
+/// Partial factors: weights and loads scale the load of a ring without crushing, and each strength is divided.
 #[test]
 fn partial_factors_are_those_of_the_design_values() {
     let with = |factors: &str| collapse_factor(&format!("{RESISTING}[factors]\n{factors}"));
@@ -597,7 +600,8 @@ fn partial_factors_are_those_of_the_design_values() {
     assert_eq!(result.partial_factors, Some(serde_json::json!({ "cohesion": 2.0, "loads": 1.5 })));
 }
 
-/// An axle on sleepers: 25, 50 and 25 % at their distance, each on its width and the ballast's spread.
+/// An axle on a track acts on three sleepers: 25, 50 and 25 % at their spacing, each on its width and the spread of the
+/// ballast.
 #[test]
 fn an_axle_on_a_track() {
     let track = "at = 1.6375, track = { sleeper_spacing = 0.6, sleeper_width = 0.26, ballast_depth = 0.2 } }";
@@ -607,15 +611,15 @@ fn an_axle_on_a_track() {
     let [force, moment] = sums(forces);
     assert_close(force, 1000.0, 1e-12);
     assert_close(moment, 1637.5, 1e-12);
-    // By hand: three patches of 0.26 + 2 × 0.2/4 = 0.36 m do not touch each other.
+    // By hand: three patches of 0.26 + 2 × 0.2/4 = 0.36 m that do not touch.
     let near = |x: f64| forces.iter().filter(|f| (f.point.x - x).abs() < 0.18).map(|f| -f.force.y).sum::<f64>();
     for (x, share) in [(1.0375, 250.0), (1.6375, 500.0), (2.2375, 250.0)] {
         assert_close(near(x), share, 1e-12);
     }
 }
 
-/// Boussinesq's stress conserves force and moment, reaches as far as the cut-off, and presses more under the load than the
-/// even spread of the same width.
+/// Boussinesq's stress conserves force and moment, reaches to the cut-off, and has a higher pressure under the load
+/// than the uniform spread of the same width.
 #[test]
 fn boussinesqs_stress_under_an_axle() {
     let text = changed(PRESTWOOD, "law = \"uniform\", angle = 30.0", "law = \"boussinesq\", angle = 45.0");
@@ -631,7 +635,7 @@ fn boussinesqs_stress_under_an_axle() {
     assert!(factors[2] < factors[0] && factors[0] < factors[1], "{factors:?}");
 }
 
-/// A vehicle of a published rule needs no entry; one of the study's own goes before it.
+/// A vehicle of a published rule needs no entry; an entry of the study with its name has priority.
 #[test]
 fn documented_vehicles_need_no_entry() {
     let text = changed(PRESTWOOD, "vehicle = \"patch\"", "vehicle = \"cs454_single\"");
@@ -642,7 +646,8 @@ fn documented_vehicles_need_no_entry() {
     assert!(read.resolved.to_string().contains("cs454_single"), "{}", read.resolved);
 }
 
-/// A ring whose thickness grows to the springings: joints as high as said, and twice half the thickness is as much.
+/// A ring whose thickness increases to the springings has joints of the given heights; with equal thicknesses it is the
+/// uniform ring.
 #[test]
 fn a_ring_that_grows_to_the_springings() {
     let text = changed(PRESTWOOD, "thickness = 0.22", "thickness = { crown = 0.22, springing = 0.33 }");

@@ -1,4 +1,4 @@
-//! Envelopes: the worst place of a vehicle against every place of a fine scan.
+//! Envelopes: the most onerous position of a vehicle against every position of a fine scan.
 
 use serde_json::Value;
 use voussoir::kinds::{RunRequest, read_study};
@@ -42,7 +42,7 @@ to = 4.0
 vehicles = ["bogie", "single"]
 "#;
 
-/// results.json of a run.
+/// Returns results.json of a run.
 fn run(text: &str, jobs: usize) -> Value {
     let study = read_study(text, "test.toml", &[]).unwrap_or_else(|wrong| panic!("{wrong}"));
     let request = RunRequest { wanted: vec![0], jobs, version: "test".into(), ..RunRequest::default() };
@@ -55,7 +55,8 @@ fn run(text: &str, jobs: usize) -> Value {
     serde_json::from_str(&text).expect("JSON")
 }
 
-/// The worst place is lower than every place of a scan in steps of 15 mm, and its factor is that of the place itself.
+/// The most onerous position has a lower factor than every position of a scan in steps of 15 mm, and its factor is that
+/// of the position itself.
 #[test]
 fn the_worst_place_is_the_lowest_of_a_fine_scan() {
     let text = changed(BRIDGE, "[envelope]", "[output]\nwriters = []\n[envelope]");
@@ -84,7 +85,7 @@ fn the_worst_place_is_the_lowest_of_a_fine_scan() {
     assert_eq!(worst["intervals"][0]["status"], "unbounded");
 }
 
-/// One direction alone, and a load of another kind, are envelopes too; results do not depend on the number of jobs.
+/// One direction alone, and another kind of load, are envelopes too; results do not depend on the number of jobs.
 #[test]
 fn one_way_and_other_loads() {
     let text = changed(BRIDGE, "vehicles = [\"bogie\", \"single\"]\n", "directions = \"forward\"\nscan = 9\n");

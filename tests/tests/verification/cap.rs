@@ -38,7 +38,7 @@ fn uniaxial_compression() {
     }
 }
 
-/// `uniaxial_strength` is the inverse of that.
+/// `uniaxial_strength` is the inverse of the closed form of uniaxial compression.
 #[test]
 fn uniaxial_strength_sets_the_cap() {
     for strength in [1.0, 10.0, 29.99250136, 300.0] {
@@ -112,7 +112,7 @@ fn plane_strain_with_a_free_face() {
     let update = paper(10.0 * MPA, 0.2).stress_update().unwrap();
     let stiffness = 5e9 / (1.0 - 0.2 * 0.2);
     near(first_yield(&*update, [1.0, -0.2 / 0.8, 0.0], -stiffness) / MPA, 24.99635444, 5e-10);
-    // The wrapper in the plane, driven with a free face, yields there too.
+    // The plane-strain wrapper, driven with a free face, yields at the same stress.
     let planar = PlanarUpdate::new(update, Plane::Strain).unwrap();
     let mut point = DrivenPoint::new(PointLaw::Plane(planar, 1.0)).unwrap();
     let elastic = 24.99635444e6 / stiffness;
@@ -122,7 +122,7 @@ fn plane_strain_with_a_free_face() {
     assert_eq!(point.response.region, "cap");
 }
 
-/// Size of the stress at which a strain along `direction` first yields, by bisection on the law itself.
+/// Returns the size of the stress at which a strain along `direction` first yields, by bisection on the law.
 fn first_yield(update: &dyn StressUpdate, direction: [f64; 3], stress_per_strain: f64) -> f64 {
     let mut old = vec![0.0; update.state_size()];
     update.initial_state(&mut old);
@@ -137,8 +137,8 @@ fn first_yield(update: &dyn StressUpdate, direction: [f64; 3], stress_per_strain
     -low * stress_per_strain
 }
 
-/// Hydrostatic compaction follows the table: p = p_b(ε_v) with ε_v = −tr ε − p/K, across every corner of
-/// the table and beyond its end, from the initial compaction on.
+/// Hydrostatic compaction follows the table: p = p_b(ε_v) with ε_v = −tr ε − p/K, across every corner of the table and
+/// beyond its end, from the initial compaction on.
 #[test]
 fn hydrostatic_compaction_along_the_table() {
     let table = vec![[0.0, 2.0 * MPA], [0.001, 5.0 * MPA], [0.004, 6.0 * MPA], [0.005, 12.0 * MPA]];

@@ -1,4 +1,4 @@
-//! Cohesive joints along a path against closed forms, an integration along the joint and limit analysis.
+//! Cohesive joints along a path against closed forms, an integration along the joint, and limit analysis.
 
 use std::sync::Arc;
 use voussoir::core::certificate::{PathChecker, TOLERANCES, Tolerance};
@@ -37,7 +37,7 @@ const MODE_ONE: f64 = 20.0;
 const MODE_TWO: f64 = 60.0;
 const FRICTION: f64 = 0.6;
 
-/// `[joints.mortar]` with lengths in units of `metre` and forces in N.
+/// Returns `[joints.mortar]` with lengths in units of `metre` and forces in N.
 fn mortar(metre: f64) -> String {
     let stress = metre * metre;
     format!(
@@ -53,14 +53,14 @@ fn mortar(metre: f64) -> String {
     )
 }
 
-/// Tension over the opening of a joint that opens for the first time \[Pa\].
+/// Returns the tension for the opening of a joint that opens for the first time \[Pa\].
 fn tension(gap: f64) -> f64 {
     let (onset, end) = (STRENGTH / NORMAL, 2.0 * MODE_ONE / STRENGTH);
     if gap <= onset { NORMAL * gap } else { (STRENGTH * (end - gap) / (end - onset)).max(0.0) }
 }
 
-/// Two elastic blocks (ν = 0) of height 0.2 m, width 0.1 m and L/2 each, the first one glued to the ground
-/// by facets that never yield, with one cohesive joint between them, pulled by 1 kPa on the end.
+/// Two elastic blocks (ν = 0) of height 0.2 m, width 0.1 m and length L/2 each with one cohesive joint between them.
+/// The first block is glued to the ground by facets that never yield; the end of the second is pulled by 1 kPa.
 fn bar(length: f64, young_modulus: f64) -> String {
     let half = length / 2.0;
     format!(
@@ -100,14 +100,14 @@ loads = [{{ kind = "pressure", block = "b", edge = 1, value = -1e3 }}]
 
 const GLUE: &str = "[joints.glue]\nlaw = \"mohr_coulomb\"\nfriction = 0.6\ncohesion = 1e9\ntensile_strength = 1e9\n";
 
-/// σ = λ kPa over u = ¾ σ L/E + g (mean displacement of the second block), σ(g) the bilinear law. For
-/// L = 8 m both fall beyond the peak: 2 E G_I / (f_t² L) = 0.625. Every state lies on the curve, the peak is f_t
-/// and what is dissipated in the end is G_I A.
+/// A bar in tension follows its closed form: σ = λ kPa over u = ¾ σ L/E + g (mean displacement of the second block),
+/// σ(g) the bilinear law. For L = 8 m both decrease after the peak: 2 E G_I / (f_t² L) = 0.625. Every state is on the
+/// curve, the peak is f_t, and the total dissipation is G_I A.
 #[test]
 fn a_bar_in_tension_is_its_closed_form() {
     let area = 0.02;
     let modulus = 5e9;
-    // Steps that are short beside the opening at which the bond is lost: several states soften.
+    // Steps are short compared with the opening at which the bond is lost: several states soften.
     let largest_step = Some(5e-6);
     let strategies: [(f64, PathSettings); 8] = [
         (1.0, settings(ArcLength { largest_step, ..ArcLength::default() })),
@@ -153,8 +153,9 @@ fn a_bar_in_tension_is_its_closed_form() {
     }
 }
 
-/// The bar that snaps back, in steps of 16 µm at most: every state lies on the closed form, what is dissipated never falls
-/// and comes to G_I A. Load control says at the peak that the path goes on with a load that does not grow.
+/// Snap-back is followed without loss: in steps of 16 µm at most every state of the bar is on the closed form, and the
+/// dissipation never decreases and ends at G_I A. Load control reports at the peak that the path continues with a load
+/// that does not grow.
 #[test]
 fn snap_back_is_traced_without_loss_or_refused() {
     let (length, modulus, area) = (8.0, 5e9, 0.02);
@@ -193,8 +194,8 @@ fn snap_back_is_traced_without_loss_or_refused() {
     assert!(answer.notes.iter().any(|note| note.contains("does not grow")), "{:?}", answer.notes);
 }
 
-/// A study that names the strategy reaches the peak and the falling branch of arc length; a joint that does not exist is
-/// named in the answer.
+/// A study that controls the opening of a joint has the same peak and falling branch as arc length; the answer names a
+/// joint that does not exist.
 #[test]
 fn a_study_controls_the_opening_of_a_joint() {
     let with = |strategy: &str| {
@@ -214,7 +215,7 @@ fn a_study_controls_the_opening_of_a_joint() {
     assert!(absent.notes.iter().any(|note| note.contains("joint 7")), "{:?}", absent.notes);
 }
 
-/// Steps of each strategy along both bars (printed: the table of docs/theory/softening.md), none more than 45.
+/// Each strategy needs at most 45 steps along both bars. The test prints the table of docs/theory/softening.md.
 #[test]
 fn strategies_need_few_steps() {
     for length in [1.0, 8.0] {
@@ -241,8 +242,8 @@ fn strategies_need_few_steps() {
     }
 }
 
-/// A joint that opens, closes and opens further by movements of its support: softening, back along the secant,
-/// compression, and on along the softening branch.
+/// A joint that opens, closes and opens further by motions of its support follows its closed form: softening, unloading
+/// along the secant, compression, and softening again.
 #[test]
 fn a_bar_is_unloaded_and_reloaded() {
     let (length, modulus) = (1.0, 5e9);
@@ -309,8 +310,8 @@ solver = "newton_path"
     }
 }
 
-/// Two rigid blocks, pressed together by p = 0.2 MPa and sheared in the plane of the joint: with
-/// s = c (g_f − g)/(g_f − g_0), t = s + (1 − s/(k g)) μ p, greatest at g² = g_f μ p / k; then the plateau μ p.
+/// Two rigid blocks, pressed together by p = 0.2 MPa and sheared in the plane of the joint, follow the closed form:
+/// with s = c (g_f − g)/(g_f − g_0), t = s + (1 − s/(k g)) μ p, greatest at g² = g_f μ p / k; then the plateau μ p.
 #[test]
 fn shear_ends_on_the_friction_plateau() {
     let pressure = 0.2e6;
@@ -372,8 +373,8 @@ loads = [{{ kind = "point", block = "a", point = [0.0, 0.0], force = [1e3, 0.0] 
     assert!(errors[0] < 1e-2 && errors[1] < 0.5 * errors[0], "{errors:?}");
 }
 
-/// A rigid block of 0.4 × 0.4 m on the ground, pressed by λ kN at x = 0.5 through an arm: the joint opens
-/// from the far side. `map` moves the scene, lengths are in units of `metre`.
+/// A rigid block of 0.4 × 0.4 m on the ground, pressed by λ kN at x = 0.5 through an arm, so that the joint opens from
+/// the far side. `map` transforms the scene; lengths are in units of `metre`.
 fn hinge(
     elements: usize,
     metre: f64,
@@ -423,8 +424,8 @@ loads = [{{ kind = "point", block = "a", point = [{:?}, {:?}], force = [{:?}, {:
     )
 }
 
-/// Resultant and moment about x = 0 of a joint from 0 to 0.4 m whose gap is g + x slope, by the midpoint
-/// rule on 20,000 strips; no shear, every point opens for the first time.
+/// Returns resultant and moment about x = 0 of a joint from 0 to 0.4 m with the gap g + x slope, by the midpoint rule
+/// on 20,000 strips, without shear; every point opens for the first time.
 fn integrated(gap: f64, slope: f64) -> [f64; 2] {
     let (count, width) = (20_000, 0.5);
     let dx = 0.4 / f64::from(count);
@@ -455,7 +456,7 @@ fn an_eccentric_hinge_is_the_integral_along_its_joint() {
         let peak = answer.factor.expect("a factor");
         // Later the pressed part is shorter than an element.
         for state in states.iter().filter(|state| state.factor > 0.5 * peak) {
-            // Joint points run against x or along it: gap at both ends.
+            // The order of joint points may be opposite to x; use the gap at both ends.
             let (first, last) = (state.gap[0][0], state.gap[state.gap.len() - 1][0]);
             let theta = state.motion.iter().map(|q| q[2]).fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
             let at_zero = if (last - first) * theta > 0.0 { first } else { last };
@@ -469,7 +470,7 @@ fn an_eccentric_hinge_is_the_integral_along_its_joint() {
     assert!(errors[2] < 2e-3 && errors[1] < 0.5 * errors[0] && errors[2] < 0.5 * errors[1], "{errors:?}");
 }
 
-/// Neither units nor a mirror nor a rigid rotation of the scene change the peak.
+/// Units, reflection and rigid rotation of the scene do not change the peak.
 #[test]
 fn units_mirror_and_rotation_do_not_matter() {
     let peak = |text: String| {
@@ -498,7 +499,7 @@ fn units_mirror_and_rotation_do_not_matter() {
     assert_close(peak(hinge(8, 1.0, mirror, mirror)), reference, 1e-8);
 }
 
-/// The energy that the trapezoidal rule misses falls with the step.
+/// The energy error of the trapezoidal rule decreases with the step.
 #[test]
 fn the_energy_error_falls_with_the_step() {
     let error = |largest: f64| {
@@ -512,7 +513,7 @@ fn the_energy_error_falls_with_the_step() {
     assert!(errors[0] < 1e-3 && errors[1] < 0.5 * errors[0], "{errors:?}");
 }
 
-/// Joints of the reference arch with a bond of some strength, in units of the paper's ring.
+/// Returns joints of the reference arch with a bond of some strength, in units of the paper's ring.
 fn bonded(strength: f64, energy: f64) -> String {
     softer_bonded(strength, energy, 1.0)
 }
@@ -528,7 +529,7 @@ fn softer_bonded(strength: f64, energy: f64, softer: f64) -> String {
     compliant(&law, 2e10 / softer, 8e9 / softer)
 }
 
-/// With a bond that tends to nothing the greatest load tends to that of dry Coulomb joints.
+/// As the bond tends to zero, the greatest load tends to that of dry Coulomb joints.
 #[test]
 fn a_weak_bond_is_a_dry_joint() {
     let arch = Arch { joint: bonded(200.0, 0.01), mesh: "elements = [1, 4]".into(), ..Arch::default() };
@@ -539,8 +540,8 @@ fn a_weak_bond_is_a_dry_joint() {
     assert_close(result.load_factor.expect("a factor"), REFERENCE_ARCH, 1e-4);
 }
 
-/// The reference arch with a bond of 0.2 MPa and 300 J/m², `elements` of three points each across a joint: peak and energy
-/// dissipated when the load has gone 2 mm.
+/// Returns the peak, and the energy dissipated at a load displacement of 2 mm, of the reference arch with a bond of 0.2
+/// MPa and 300 J/m² and `elements` elements of three points across each joint.
 fn arch_of(elements: usize) -> [f64; 2] {
     let mesh = format!("elements = [1, {elements}]");
     let text = Arch { joint: bonded(0.2e6, 300.0), mesh, ..Arch::default() }.study();
@@ -556,8 +557,8 @@ fn arch_of(elements: usize) -> [f64; 2] {
     [answer.factor.expect("a factor"), before.dissipated + share * (after.dissipated - before.dissipated)]
 }
 
-/// Peak and dissipated energy of an arch hardly depend on the mesh of its joints: within 2 % between 4 and 8 elements a
-/// joint, and (FINEST=20, minutes) within 1 % over a fourfold refinement from 5 to 20.
+/// Peak and dissipated energy of an arch hardly depend on the mesh of its joints: within 2 % between 4 and 8 elements
+/// per joint, and (FINEST=20, minutes) within 1 % for a fourfold refinement from 5 to 20.
 #[test]
 fn an_arch_keeps_its_peak_under_refinement() {
     let finest: usize = std::env::var("FINEST").ok().and_then(|n| n.parse().ok()).unwrap_or(8);
@@ -573,8 +574,9 @@ fn an_arch_keeps_its_peak_under_refinement() {
     assert!(last[0] > 1.4 * 698.0, "{last:?}");
 }
 
-/// Elastic voussoirs (4 × 4 elements) between cohesive joints: as E grows the peak is that of rigid ones. E = 5 GPa costs between
-/// half and all of what joints as soft as joint and voussoir together would, 1/k = 1/k_n + a/E (a the voussoir's length).
+/// Elastic voussoirs (4 × 4 elements) between cohesive joints have the peak of rigid ones as E increases. E = 5 GPa
+/// costs between half and all of the loss of joints as soft as joint and voussoir together, 1/k = 1/k_n + a/E (a is the
+/// voussoir's length).
 #[test]
 fn elastic_voussoirs_between_cohesive_joints() {
     let peak = |modulus: Option<f64>, softer: f64| {
@@ -592,7 +594,8 @@ fn elastic_voussoirs_between_cohesive_joints() {
     };
     let rigid = peak(None, 1.0);
     let stiff = peak(Some(5e11), 1.0);
-    // Radius (s² / 4 + h²) / (2 h) = 5.2047 m inside, half angle asin(4.71 / 5.2047): length of a ninth at mid-height.
+    // Radius (s² / 4 + h²) / (2 h) = 5.2047 m of the intrados, half angle asin(4.71 / 5.2047): length of a ninth at
+    // mid-thickness.
     let radius = (9.42f64 * 9.42 / 4.0 + 2.99 * 2.99) / (2.0 * 2.99);
     let length = (radius + 0.3) * 2.0 * (4.71 / radius).asin() / 9.0;
     let soft = peak(Some(5e9), 1.0);

@@ -1,5 +1,5 @@
-//! Comparisons of flow rules: what must hold between the variants of every scene, published walls, and
-//! the axes of `compare` and `map`.
+//! Comparisons of flow rules: relations between the variants of every scene, published walls, and the axes of `compare`
+//! and `map`.
 
 use std::sync::OnceLock;
 use voussoir::core::limit::Status;
@@ -24,7 +24,7 @@ fn results(study: &Study) -> StudyResults {
     study.results("test", cases)
 }
 
-/// The ten scenes of docs/theory/flow_rule.md, answered once for all tests.
+/// Returns the ten scenes of docs/theory/flow_rule.md with their results, solved once for all tests.
 fn ten_scenes() -> &'static (Study, StudyResults) {
     static ANSWERED: OnceLock<(Study, StudyResults)> = OnceLock::new();
     ANSWERED.get_or_init(|| {
@@ -42,9 +42,9 @@ fn variant<'a>(cells: &'a [ComparisonCell], name: &str) -> &'a ComparisonCell {
     &cells[comparison().variants.iter().position(|variant| variant == name).expect("a variant")]
 }
 
-/// On every scene: no path load above the associated load; least ≤ sequential ≤ associated; a path
-/// that ended in a mechanism at or above the proved lower bound of the least load, and at or above
-/// the least load found where the bracket is closed.
+/// Variants have the proved order on every scene: no path load is above the associated load; least ≤ sequential ≤
+/// associated; a path that ends in a mechanism is at or above the proved lower bound of the least load, and at or
+/// above the least load found if the bracket is closed.
 #[test]
 fn variants_stand_in_the_order_of_the_theory() {
     let (mut sequences, mut paths) = (0, 0);
@@ -74,8 +74,8 @@ fn variants_stand_in_the_order_of_the_theory() {
     assert!(comparison().rows.len() == 10 && sequences >= 8 && paths >= 8, "{sequences} sequences, {paths} paths");
 }
 
-/// Ferris and Tin-Loi (2001): associated .64285900, .40369410, .33194840; least .63898183,
-/// .35581738, 24/91. The elastic paths of walls 3 and 4 end at the least load.
+/// Ferris and Tin-Loi (2001): associated .64285900, .40369410, .33194840; least .63898183, .35581738, 24/91. The
+/// elastic paths of walls 3 and 4 end at the least load.
 #[test]
 fn published_walls() {
     let walls = [1, 3, 4].map(published_wall).map(|known| (known.associated, known.least));
@@ -85,8 +85,8 @@ fn published_walls() {
     }
 }
 
-/// A single ring hardly feels the flow rule: with four yielding joints the thrust line is determined
-/// by equilibrium and yield alone, whatever the flow.
+/// The load of a single ring does not depend on the flow rule: with four yielding joints equilibrium and yield
+/// determine the thrust line, with any flow.
 #[test]
 fn a_single_ring_does_not_feel_the_flow_rule() {
     let row = comparison().rows.last().expect("rows");
@@ -96,9 +96,9 @@ fn a_single_ring_does_not_feel_the_flow_rule() {
     }
 }
 
-/// Why the four scenes of a single ring, two of them with low friction, have one load: the associated mechanism moves
-/// four joints, so equilibrium and yield there fix three redundants and the factor. Every other variant moves some of
-/// these four and no others, and has the same load.
+/// Four yielding joints determine a single ring, also with low friction: the associated mechanism moves four joints, so
+/// equilibrium and yield there determine three redundants and the factor. Every other variant moves only joints among
+/// these four and has the same load.
 #[test]
 fn four_yielding_joints_determine_a_single_ring() {
     let (_, results) = ten_scenes();
@@ -119,7 +119,7 @@ fn four_yielding_joints_determine_a_single_ring() {
     }
 }
 
-/// The results confirm themselves; a changed ratio is found.
+/// `verify` confirms the results; a changed ratio is found.
 #[test]
 fn verify_repeats_the_comparison() {
     let (study, results) = ten_scenes();
@@ -130,7 +130,7 @@ fn verify_repeats_the_comparison() {
     assert!(wrong.iter().any(|(_, why)| why.contains("comparison")), "{wrong:?}");
 }
 
-/// Blocks pushed sideways on the ground: friction μ < base/height slides at λ = μ for every variant.
+/// Blocks pushed sideways on the ground: with friction μ < base/height they slide at λ = μ in every variant.
 const BLOCK: &str = r#"
 [scene]
 scene = "wall"
@@ -155,8 +155,8 @@ until = "collapse"
 loads = [{ kind = "body", acceleration = [9.81, 0.0] }]
 "#;
 
-/// Variants are outermost, then scenes, then the sweep; a variant is set on top of a scene; the
-/// ratio is to the reference.
+/// Variants are the outermost axis, then scenes, then the sweep. A variant is set on top of a scene; the ratio is to
+/// the reference.
 #[test]
 fn scenes_are_an_axis() {
     let text = format!(
@@ -195,7 +195,7 @@ set = {{ "joints.dry" = {{ law = "coulomb_associated", friction = 0.6 }} }}
     assert_eq!(verify(&study, &results), vec![]);
 }
 
-/// A map's axes are those of the sweep; the first runs along x and is slowest.
+/// The axes of a map are those of the sweep; the first one is along x and changes slowest.
 #[test]
 fn a_map_has_the_axes_of_the_sweep() {
     let text = format!(
@@ -231,7 +231,7 @@ set = {{ "joints.dry.law" = "coulomb_associated" }}
     assert!(svg.contains("friction [-]") && svg.contains("sliding (6)"), "{svg}");
 }
 
-/// Without variants, or with one axis, there is nothing to compare.
+/// A comparison without variants and a map with one axis are refused.
 #[test]
 fn what_cannot_be_compared_is_refused() {
     for (kind, words) in [("compare", "sets variants beside each other"), ("map", "needs two axes")] {

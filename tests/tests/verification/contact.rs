@@ -1,5 +1,5 @@
-//! Contact of elastic bodies against closed forms: Hertz, Cattaneo and Mindlin, a three-hinge frame, a
-//! slider with its history, and the solutions of a frictional system of two degrees of freedom.
+//! Contact of elastic bodies against closed forms: Hertz, Cattaneo and Mindlin, a three-hinge frame, a slider with its
+//! history, and the solutions of a frictional system of two degrees of freedom.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -18,7 +18,7 @@ use voussoir_tests::by_hand::{self, body, dry_friction, forces, ground, load_ste
 use voussoir_tests::seen::Record;
 use voussoir_tests::{assert_close, changed, first_case, small_displacements};
 
-/// Both path solvers' answers; every state of the first is certified.
+/// Returns the answers of both path solvers; every state of the first is certified.
 fn both(problem: &PathProblem) -> [PathAnswer; 2] {
     let mut checker = PathChecker::new(false);
     let event = EventPath {}.trace(problem, &small_displacements(), &mut checker);
@@ -30,7 +30,7 @@ fn both(problem: &PathProblem) -> [PathAnswer; 2] {
     [event, NewtonPath {}.trace(problem, &steps, &mut Unobserved)]
 }
 
-/// Greatest difference of two states' forces, relative to the greatest force.
+/// Returns the greatest difference of two states' forces, relative to the greatest force.
 fn difference(a: &PathState, b: &PathState) -> f64 {
     let pairs = || a.force.iter().flatten().zip(b.force.iter().flatten());
     let size = pairs().fold(0.0, |s: f64, (x, _)| s.max(x.abs()));
@@ -44,12 +44,12 @@ const STEEL: f64 = 210e9;
 const SOFT: f64 = 70e9;
 const POISSON: f64 = 0.3;
 
-/// E* of two bodies \[Pa\].
+/// Returns E* of two bodies \[Pa\].
 fn contact_modulus(one: f64, other: f64) -> f64 {
     1.0 / ((1.0 - POISSON * POISSON) * (1.0 / one + 1.0 / other))
 }
 
-/// Hertz: (p_0, a) of a line load P: a = √(4 P R / (π E*)), p_0 = 2 P / (π a).
+/// Returns Hertz's (p_0, a) for a line load P: a = √(4 P R / (π E*)), p_0 = 2 P / (π a).
 fn hertz(load: f64, modulus: f64) -> [f64; 2] {
     let a = (4.0 * load * RADIUS / (PI * modulus)).sqrt();
     [2.0 * load / (PI * a), a]
@@ -75,15 +75,15 @@ fn study(blocks: &[String], elements: usize, grading: f64, law: &str, moduli: [f
     )
 }
 
-/// Contact points between upper and lower bodies: those on y = 0 with a vertical normal.
+/// Returns the contact points between upper and lower bodies: points on y = 0 with a vertical normal.
 fn face(problem: &PathProblem) -> Vec<usize> {
     let on = |c: &Contact| c.position.y.abs() < 1e-12 && c.normal.y.abs() > 0.5;
     (0..problem.contacts.len()).filter(|k| on(&problem.contacts[*k])).collect()
 }
 
-/// The right half of the roller as a block with the roller's curvature as initial gap x²/(2R) on
-/// another block, both `size` × `size`, under uniform pressure. A uniform lateral pressure keeps the
-/// plane of symmetry (a smooth wall) closed and bends nothing.
+/// The right half of the roller as a block whose curvature is the initial gap x²/(2R), on another block, both `size` ×
+/// `size`, under uniform pressure. A uniform lateral pressure keeps the plane of symmetry (a smooth wall) closed and
+/// causes no bending.
 fn roller(elements: usize, size: f64) -> PathProblem {
     let s = size;
     let blocks = [
@@ -94,7 +94,7 @@ fn roller(elements: usize, size: f64) -> PathProblem {
     ];
     let pressure = LINE_LOAD / 2.0 / s;
     let load = |on: &str, edge: usize| {
-        // The block bends over its support: at the wall's top up to 3 × the pressure in tension.
+        // The block bends over its support: at the top of the wall there is tension of up to 3 × the pressure.
         let value = if edge == 1 { 4.0 * pressure } else { pressure };
         format!("{{ kind = \"pressure\", block = \"{on}\", edge = {edge}, value = {value:?} }}")
     };
@@ -114,8 +114,8 @@ fn roller(elements: usize, size: f64) -> PathProblem {
     problem
 }
 
-/// Line load, greatest pressure and half-width (of the pressure's second moment: ∫ p x² = P a²/4) of the
-/// normal forces.
+/// Returns line load, greatest pressure and half-width of the normal forces (from the second moment of the pressure: ∫
+/// p x² = P a²/4).
 fn measured(problem: &PathProblem, state: &PathState) -> [f64; 3] {
     let (mut load, mut second, mut pressure) = (0.0, 0.0, 0.0f64);
     for k in face(problem) {
@@ -129,7 +129,7 @@ fn measured(problem: &PathProblem, state: &PathState) -> [f64; 3] {
     [load, pressure, 2.0 * (second / load).sqrt()]
 }
 
-/// Roller on block: p_0 and a tend to Hertz's 3585.37 MPa and 6.21 mm, and both solvers agree.
+/// A roller on a block: p_0 and a tend to Hertz's theory, 3585.37 MPa and 6.21 mm, and both solvers agree.
 #[test]
 fn roller_on_block_tends_to_hertz() {
     let [p0, a] = hertz(LINE_LOAD, contact_modulus(STEEL, SOFT));
@@ -154,15 +154,15 @@ fn roller_on_block_tends_to_hertz() {
             wall.map(|(c, g)| [c.position.y, g[0]]).fold([0.0; 2], |m: [f64; 2], g| if g[1] > m[1] { g } else { m });
         assert!(open[1] < 1e-8 * a, "the plane of symmetry opens: {open:?}");
     }
-    // The finite size counts with (a / size)² = 0.25 %; the rest is the mesh's.
+    // The finite size contributes (a / size)² = 0.25 %; the rest is the error of the mesh.
     let [coarse, _, fine] = [0, 1, 2].map(|k: usize| errors[k].map(f64::abs));
     assert!(fine[0] < 0.005 && fine[1] < 0.005, "{errors:?}");
     assert!(4.0 * fine[0] < coarse[0] && 4.0 * fine[1] < coarse[1], "{errors:?}");
     assert!(errors.iter().all(|e| e[0].abs() < 0.01 && e[1].abs() < 0.06), "{errors:?}");
 }
 
-/// Two like bodies pressed together and then sheared, each of two halves bonded so that the mesh is
-/// finest in the middle; the upper one hangs on a plate that moves down and then sideways.
+/// Two equal bodies that are pressed together and then sheared. Each consists of two bonded halves so that the mesh is
+/// finest in the middle. The upper body hangs on a plate that moves down and then sideways.
 fn sheared(elements: usize, size: f64, down: f64, sideways: f64, law: &str) -> PathProblem {
     let s = size;
     let blocks = [
@@ -196,10 +196,10 @@ fn sheared(elements: usize, size: f64, down: f64, sideways: f64, law: &str) -> P
     problem
 }
 
-/// Cattaneo and Mindlin: under P and then Q < μ P of like bodies the middle |x| < c sticks,
-/// c/a = √(1 − Q/(μ P)). The last sticking and the first sliding node enclose it within 2 % of a, and
-/// the pressure is that of Hertz within 1 % (a is 8 % of the bodies' size: its square, 0.7 %, is the
-/// size of the error that finite bodies make).
+/// The stick zone is that of Cattaneo and Mindlin's theory: under P and then Q < μ P of equal bodies the middle |x| < c
+/// sticks, c/a = √(1 − Q/(μ P)). The last sticking and the first sliding node enclose it within 2 % of a, and the
+/// pressure is that of Hertz within 1 % (a is 8 % of the size of the bodies; its square, 0.7 %, is the order of the
+/// error from finite bodies).
 #[test]
 fn the_stick_zone_is_that_of_cattaneo_and_mindlin() {
     let (friction, size) = (0.3, 0.06);
@@ -232,22 +232,22 @@ fn the_stick_zone_is_that_of_cattaneo_and_mindlin() {
             assert!(ratio > 0.2 && ratio < 0.8, "{ratio}");
             assert!(low - 0.02 <= expected && expected <= high + 0.02 && high - low < node, "{low} {expected} {high}");
             assert_close(pressure, p0, 0.01);
-            // Slip is one way: the outer nodes all slide against the shear.
+            // Slip has one direction: the outer nodes all slide against the shear.
             let sense = all.iter().map(shear).sum::<f64>().signum();
             assert!(out.iter().all(|k| shear(k) * sense > 0.0));
         }
     }
 }
 
-/// A rigid body on frictional feet at these x (together μ N and tangential stiffness k) beside a spring
-/// k_s, all at its pole's height, under its weight N at x = 0 and then horizontal forces Q back and forth.
+/// A rigid body on frictional feet at these x (together μ N and tangential stiffness k) beside a spring k_s, all at the
+/// height of its pole, under its weight N at x = 0 and then horizontal forces Q in both directions.
 fn slider(friction: f64, weight: f64, [k, spring]: [f64; 2], feet: &[f64], history: &[f64]) -> PathProblem {
     let point = |x: f64, law, compliance| Contact {
         compliance,
         ..by_hand::contact(0, Vec2::new(x, 0.0), Vec2::new(0.0, 1.0), [0, 1], law)
     };
     let foot = |x| point(x, dry_friction(friction), [1e-3 / k, feet.len() as f64 / k]);
-    // Pulls sideways only: its other stiffness is nothing beside the feet's.
+    // The spring acts sideways only: its other stiffness is negligible compared with the feet.
     let pulling = point(0.0, PointLaw::Bonded, [1e9 / k, 1.0 / spring]);
     let dead = Loading { acceleration: Vec2::new(0.0, -10.0), ..Loading::default() };
     let push = forces(vec![(1, None, Vec2::zeros(), Vec2::new(1.0, 0.0))]);
@@ -262,9 +262,9 @@ fn slider(friction: f64, weight: f64, [k, spring]: [f64; 2], feet: &[f64], histo
     )
 }
 
-/// Jenkin's element beside a spring: with F = μ N the force is Q = k_s u + clamp(k (u − s), ±F), s
-/// the slip. Loaded, reversed and loaded again with tangential stiffness, displacement, slip force and
-/// dissipation are those of the closed form at every state of either solver.
+/// A Jenkin element beside a spring follows its closed form: with F = μ N the force is Q = k_s u + clamp(k (u − s),
+/// ±F), where s is the slip. During loading, reversal and reloading tangent stiffness, displacement, slip force and
+/// dissipation agree with it at every state of both solvers.
 #[test]
 fn a_slider_beside_a_spring_keeps_its_hysteresis() {
     let (friction, weight, stiffness, spring) = (0.5, 40.0, 1000.0, 250.0);
@@ -284,7 +284,7 @@ fn a_slider_beside_a_spring_keeps_its_hysteresis() {
         let (mut slip, mut dissipated, mut seen) = (0.0, 0.0, 0);
         for state in record.0.iter().filter(|state| state.load_step > 0) {
             let force: f64 = history[..state.load_step - 1].iter().sum::<f64>() + state.factor;
-            // The point slides where the force that sticking needs is beyond F.
+            // The point slides if the force required for sticking is above F.
             let stuck = (force + stiffness * slip) / (stiffness + spring);
             let sense = (stiffness * (stuck - slip)).signum();
             let u = if (stiffness * (stuck - slip)).abs() <= limit { stuck } else { (force - sense * limit) / spring };
@@ -305,8 +305,8 @@ fn a_slider_beside_a_spring_keeps_its_hysteresis() {
     }
 }
 
-/// The energy of exact pieces is accounted for to rounding, in however many stages the load grows. Feet that bear from
-/// little to much begin to slide one after the other, so that Q(u) is almost a smooth curve (Iwan's model).
+/// The energy of exact pieces balances within rounding, for any number of stages of the load. Feet with increasing
+/// normal forces begin to slide one after the other, so that Q(u) is almost a smooth curve (Iwan's model).
 #[test]
 fn no_energy_is_lost_between_events() {
     let feet: Vec<f64> = (0..400).map(|k| -1.3 + 2.0 * f64::from(k) / 399.0).collect();
@@ -322,11 +322,11 @@ fn no_energy_is_lost_between_events() {
     }
 }
 
-/// Three hinges make an arch determinate: two leaning elastic blocks that touch the ground and each
-/// other at one point each. With the weight W of a half at x_G, the thrust is H = W (x_G − x_A)/(y_C − y_A).
+/// A three-hinge arch has the thrust of statics: two leaning elastic blocks with contact at one point each with the
+/// ground and with each other. With the weight W of a half at x_G, the thrust is H = W (x_G − x_A)/(y_C − y_A).
 #[test]
 fn a_three_hinge_arch_has_the_thrust_of_statics() {
-    // The left half, springing face at y = 0, crown face at x = 0; mirrored for the right one.
+    // The left half, springing face at y = 0, crown face at x = 0; the right half is its mirror image.
     let left = [[-2.0, 0.0], [-1.4, 0.0], [0.0, 1.1], [0.0, 1.7]];
     let vertices =
         |sign: f64| left.iter().map(|[x, y]| format!("[{:?}, {y:?}]", sign * x)).collect::<Vec<_>>().join(", ");
@@ -338,7 +338,7 @@ fn a_three_hinge_arch_has_the_thrust_of_statics() {
     let law = "law = \"coulomb\"\nfriction = 2.0";
     let stages = "[[stages]]\nname = \"dead\"\ngravity = 10.0\n";
     let text = changed(&study(&blocks, 3, 1.0, law, [5e9, 5e9], stages), "density = 0.001", "density = 2000.0");
-    // Where the hinges are: x of the springing's touching point, y of the crown's.
+    // Positions of the hinges: x of the contact point at the springing, y at the crown.
     for (springing, crown) in [(-2.0, 1.7), (-1.4, 1.7), (-2.0, 1.1), (-1.4, 1.1)] {
         let case = first_case(&text);
         let mut problem = PathProblem::new(&case.assembly, &case.stages).expect("a path problem");

@@ -1,5 +1,5 @@
-//! An arch whose stone softens as it crushes: what the fracture energy makes independent of the mesh, and what
-//! goes wrong without it (docs/theory/crushing.md).
+//! An arch whose stone softens in crushing: independence of the mesh from the fracture energy, and the errors without
+//! it (docs/theory/crushing.md).
 
 use voussoir::core::certificate::PathChecker;
 use voussoir::core::path::{PathProblem, PathSettings, PathSolver, PathState};
@@ -10,18 +10,18 @@ use voussoir_tests::{assert_close, changed, first_case};
 /// A row of the table in docs/theory/crushing.md.
 #[derive(Debug)]
 struct Row {
-    /// Greatest load \[kN\] and the displacement of the load there \[m\].
+    /// Greatest load \[kN\] and the displacement of the load at it \[m\].
     peak: [f64; 2],
-    /// Work that neither blocks nor joints store once the load has gone `AT` \[kJ\].
+    /// Work that neither blocks nor joints store at the load displacement `AT` \[kJ\].
     lost: f64,
-    /// Share of the height that has crushed there next to the joint that has crushed most.
+    /// Crushed share of the height next to the joint with the most crushing, at `AT`.
     crushed: f64,
 }
 
-/// Displacement of the load at which energies are read \[m\], beyond all peaks of the finer meshes.
+/// Displacement of the load at which energies are compared \[m\], beyond all peaks of the finer meshes.
 const AT: f64 = 0.09;
 
-/// `studies/cases/softening_arch.toml` with p_b \[Pa\], elements a side, their order, and G_c \[J/m²\] where it softens.
+/// `studies/cases/softening_arch.toml` with p_b \[Pa\], elements per side, their order, and G_c \[J/m²\] if it softens.
 fn arch(p_b: f64, elements: usize, order: usize, energy: Option<f64>) -> Result<Row, String> {
     let text = include_str!("../../../studies/cases/softening_arch.toml");
     let head = &text[..text.find("[[variants]]").expect("variants")];
@@ -61,8 +61,8 @@ fn arch(p_b: f64, elements: usize, order: usize, energy: Option<f64>) -> Result<
     })
 }
 
-/// The reference arch of rise 0.59 m in plane stress, p_b = 10 MPa, G_c = 50 kJ/m²: elements of 7.5 cm instead of 15 cm change
-/// the peak by less than 10 %.
+/// The reference arch of rise 0.59 m in plane stress, p_b = 10 MPa, G_c = 50 kJ/m², has one peak: with elements of 7.5
+/// cm instead of 15 cm it changes by less than 10 %.
 #[test]
 fn an_arch_that_softens_tends_to_one_peak() {
     let [coarse, fine] = [4, 8].map(|n| arch(10e6, n, 1, Some(50e3)).expect("a row"));
@@ -72,7 +72,8 @@ fn an_arch_that_softens_tends_to_one_peak() {
     assert!(fine.crushed > 0.1 && fine.peak[1] < AT, "{fine:?}");
 }
 
-/// The table of docs/theory/crushing.md (TABLE=1; half an hour): the energy per band, per volume, without softening, order 2.
+/// The table of docs/theory/crushing.md (TABLE=1; half an hour): energy per band, per volume, without softening, order
+/// 2.
 #[test]
 fn table() {
     if std::env::var("TABLE").is_err() {

@@ -1,5 +1,5 @@
-//! Elastic bodies against closed solutions: patch tests, orders of convergence, bending, own weight,
-//! invariances of the condensed flexibility, and a dense Ritz solution of another kind.
+//! Elastic bodies against closed solutions: patch tests, orders of convergence, bending, own weight, invariances of the
+//! condensed flexibility, and a dense Ritz solution.
 
 use nalgebra::{Complex, DMatrix, DVector, Matrix2};
 use voussoir::core::elastic::*;
@@ -41,22 +41,22 @@ fn density(elements: [usize; 2], order: usize) -> MeshDensity {
     MeshDensity { elements, order, grading: [1.0; 2] }
 }
 
-/// G and Kolosov's constant κ.
+/// Returns G and Kolosov's constant κ.
 fn moduli(plane: Plane, material: Isotropic) -> (f64, f64) {
     let nu = material.poisson_ratio;
     let kappa = if plane == Plane::Strain { 3.0 - 4.0 * nu } else { (3.0 - nu) / (1.0 + nu) };
     (material.young_modulus / (2.0 * (1.0 + nu)), kappa)
 }
 
-/// The strain of a stress (xx, yy, xy).
+/// Returns the strain of a stress (xx, yy, xy).
 fn strain(plane: Plane, material: Isotropic, [xx, yy, xy]: [f64; 3]) -> Matrix2<f64> {
     let (g, kappa) = moduli(plane, material);
     let mean = (xx + yy) * (3.0 - kappa) / 4.0;
     Matrix2::new(xx - mean, xy, xy, yy - mean) / (2.0 * g)
 }
 
-/// Points and forces of a traction on the part of an edge between fractions: the rule for functions
-/// of any shape, six points a segment.
+/// Returns points and forces of a traction on a part of an edge between fractions: a rule for any function, six points
+/// per segment.
 fn on_edge(a: Vec2, b: Vec2, breaks: &[f64], traction: impl Fn(Vec2, Vec2) -> Vec2) -> Vec<(Vec2, Vec2)> {
     let (places, shares) = joint_points(breaks, 6);
     let outward = -turned((b - a).normalize());
@@ -68,7 +68,7 @@ fn on_edge(a: Vec2, b: Vec2, breaks: &[f64], traction: impl Fn(Vec2, Vec2) -> Ve
     places.iter().zip(&shares).map(force).collect()
 }
 
-/// The forces of a stress field on a whole boundary.
+/// Returns the forces of a stress field on a whole boundary.
 fn on_boundary(vertices: &[Vec2], mesh: &MeshDensity, stress: impl Fn(Vec2) -> [f64; 3]) -> (Vec<Vec2>, Vec<Vec2>) {
     let traction = |x: Vec2, n: Vec2| {
         let [xx, yy, xy] = stress(x);
@@ -78,7 +78,7 @@ fn on_boundary(vertices: &[Vec2], mesh: &MeshDensity, stress: impl Fn(Vec2) -> [
     edges(vertices).enumerate().flat_map(edge).unzip()
 }
 
-/// What is left of displacements when the best rigid motion is taken off; the greatest component.
+/// Returns the greatest component of displacements after the best rigid motion is subtracted.
 fn beyond_rigid(points: &[Vec2], displacement: &[Vec2]) -> f64 {
     without_rigid(points, displacement).iter().fold(0.0, |max, u| max.max(u.amax()))
 }
@@ -100,8 +100,8 @@ fn paired(values: &DVector<f64>) -> Vec<Vec2> {
     (0..values.len() / 2).map(|i| Vec2::new(values[2 * i], values[2 * i + 1])).collect()
 }
 
-/// Patch test: boundary tractions of a uniform stress give that stress at every node and in every
-/// element, and its strain, to rounding, for every order, both planes, any polygon, graded or not.
+/// Patch test: boundary tractions of a uniform stress give this stress at every node and in every element, and its
+/// strain, within rounding, for every order, both planes, any polygon, graded or not.
 #[test]
 fn patch_test_on_any_polygon() {
     let shapes = [
@@ -130,10 +130,10 @@ fn patch_test_on_any_polygon() {
     }
 }
 
-/// The contact patch test: two blocks in running bond with meshes that do not match, each of any
-/// order and grading. Forces at the joint's points, pressure × share × area, are the consistent
-/// forces of a uniform traction on both sides: both blocks are stressed uniformly, and their
-/// displacements differ by a rigid motion at every contact point, so the gap is zero everywhere.
+/// Contact patch test: two blocks in running bond with meshes that do not match, each of any order and grading. Forces
+/// at the points of the joint, pressure × share × area, are the consistent forces of a uniform traction on both sides.
+/// Both blocks have a uniform stress, and their displacements differ by a rigid motion at every contact point, so the
+/// gap is zero everywhere.
 #[test]
 fn contact_patch_test_across_meshes_that_do_not_match() {
     let lower = polygon(&[[0.0, 0.0], [0.4, 0.0], [0.4, 0.175], [0.0, 0.175]]);
@@ -157,7 +157,7 @@ fn contact_patch_test_across_meshes_that_do_not_match() {
             let mut points = contact.clone();
             let mut forces: Vec<Vec2> =
                 shares.iter().map(|share| traction(Vec2::zeros(), normal) * (share * area)).collect();
-            // The rest of the boundary carries the traction too, with its own breaks.
+            // The rest of the boundary has the same traction, with its own breaks.
             for (i, (a, b)) in edges(shape).enumerate() {
                 let covered = [2, 0][body] == i;
                 let place = |p: Vec2| (p - a).dot(&(b - a)) / (b - a).norm_squared();
@@ -186,8 +186,8 @@ fn contact_patch_test_across_meshes_that_do_not_match() {
     }
 }
 
-/// A solution of Kolosov and Muskhelishov without body force: f = e^z, g' part = sin z.
-/// 2 G (u + i v) = κ f − z f̄' − ḡ; σ_xx + σ_yy = 4 Re f'; σ_yy − σ_xx + 2 i σ_xy = 2 (z̄ f'' + g').
+/// A solution of Kolosov and Muskhelishov without body force: f = e^z, g' part = sin z. 2 G (u + i v) = κ f − z f̄' −
+/// ḡ; σ_xx + σ_yy = 4 Re f'; σ_yy − σ_xx + 2 i σ_xy = 2 (z̄ f'' + g').
 fn analytic(plane: Plane, x: Vec2) -> (Vec2, [f64; 3]) {
     let (g, kappa) = moduli(plane, STONE);
     let z = Complex::new(x.x, x.y);
@@ -198,7 +198,7 @@ fn analytic(plane: Plane, x: Vec2) -> (Vec2, [f64; 3]) {
     (Vec2::new(u.re, u.im), [(sum - rest.re) / 2.0, (sum + rest.re) / 2.0, rest.im / 2.0])
 }
 
-/// Errors of energy and displacement against the analytic solution with n × n elements.
+/// Returns the errors of energy and displacement against the analytic solution with n × n elements.
 fn errors(plane: Plane, order: usize, n: usize) -> [f64; 2] {
     let (shape, mesh) = (distorted(), density([n, n], order));
     let (points, forces) = on_boundary(&shape, &mesh, |x| analytic(plane, x).1);
@@ -216,8 +216,8 @@ fn errors(plane: Plane, order: usize, n: usize) -> [f64; 2] {
     [energy, rms(&without_rigid(&found.nodes, &rest)) / rms(&without_rigid(&found.nodes, &reference))]
 }
 
-/// Observed orders on a distorted block are those of theory: the energy's error falls as h^(2p), the
-/// displacement's as h^(p+1); and the errors are those once found (1 %).
+/// Orders of convergence on a distorted block are those of theory: the error of the energy decreases as h^(2p), that of
+/// the displacement as h^(p+1); the errors equal the stored values within 1 %.
 #[test]
 fn orders_of_convergence() {
     for plane in PLANES {
@@ -236,7 +236,7 @@ fn orders_of_convergence() {
     }
 }
 
-/// Errors of energy and displacement in plane strain by order and elements a side.
+/// Errors of energy and displacement in plane strain by order and elements per side.
 #[expect(clippy::type_complexity, reason = "a table")]
 const TABLE: &[(usize, &[usize], &[[f64; 2]])] = &[
     (1, &[2, 4, 8, 16], &[[4.657e-2, 1.559e-1], [1.364e-2, 4.934e-2], [3.668e-3, 1.270e-2], [9.411e-4, 2.963e-3]]),
@@ -244,8 +244,8 @@ const TABLE: &[(usize, &[usize], &[[f64; 2]])] = &[
     (3, &[2, 4, 8], &[[2.417e-5, 3.119e-4], [3.976e-7, 1.873e-5], [6.316e-9, 9.419e-7]]),
 ];
 
-/// Pure bending is exact with one element of order 1 across the depth, ten times as long as deep,
-/// also where ν → 0.5 in plane strain: nothing locks. u = M x y / E'I, v = −M (x² + ν' y²) / 2E'I.
+/// Pure bending is exact with one element of order 1 across the depth, ten times as long as deep, also for ν → 0.5 in
+/// plane strain: no locking. u = M x y / E'I, v = −M (x² + ν' y²) / 2E'I.
 #[test]
 fn pure_bending_is_exact_for_every_order() {
     for (plane, nu) in [(Plane::Strain, 0.49), (Plane::Strain, 0.4999), (Plane::Stress, 0.3)] {
@@ -269,9 +269,9 @@ fn pure_bending_is_exact_for_every_order() {
     }
 }
 
-/// A cantilever under an end shear, σ_xx = −P (L − x) y / I, σ_xy = P (c² − y²) / 2I (Timoshenko &
-/// Goodier, art. 21): v(0) + v(L) − 2 v(L/2) = P L³ / 8E'I on the axis. Exact for order 3, whose
-/// elements hold the cubic solution: what is left is rounding times the condition of a slender body.
+/// A cantilever under an end shear, σ_xx = −P (L − x) y / I, σ_xy = P (c² − y²) / 2I (Timoshenko & Goodier, art. 21),
+/// has v(0) + v(L) − 2 v(L/2) = P L³ / 8E'I on the axis. This is exact for order 3, whose elements contain the cubic
+/// solution: the remaining error is rounding times the condition number of a slender body.
 #[test]
 fn end_shear_of_a_cantilever() {
     let (length, height, nu) = (10.0, 1.0, 0.49);
@@ -297,8 +297,8 @@ fn end_shear_of_a_cantilever() {
     }
 }
 
-/// Own weight needs no extra term: a column on a uniform pressure is displaced as the closed form
-/// says, u = ν ρ g x (h − y) / E, v = −ρ g (h y − y²/2 − ν x²/2) / E in plane stress.
+/// Own weight needs no extra term: a column on a uniform pressure has the displacement of the closed form, u = ν ρ g x
+/// (h − y) / E, v = −ρ g (h y − y²/2 − ν x²/2) / E in plane stress.
 #[test]
 fn own_weight_of_a_column() {
     let (length, height, gravity) = (0.6, 2.0, 9.81);
@@ -336,8 +336,8 @@ fn some_points(shape: &[Vec2]) -> Vec<Vec2> {
     on_edges.chain([centre, centre + (shape[0] - centre) * 0.3]).collect()
 }
 
-/// C is symmetric and positive semi-definite; its displacements have no mean motion; it turns with
-/// the body, ignores where it stands, and scales with E, the width and not with the size.
+/// C is symmetric and positive semi-definite; its displacements have no mean motion. It rotates with the body, does not
+/// depend on the position, and scales with E and the width but not with the size.
 #[test]
 fn invariances_of_the_flexibility() {
     let shapes = [distorted(), polygon(&[[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]])];
@@ -366,8 +366,8 @@ fn invariances_of_the_flexibility() {
     }
 }
 
-/// Against a Ritz solution of another kind: monomials in the reference coordinates of one distorted
-/// element, a dense bordered system that enforces ∫u = 0 and ∫X×u = 0 by multipliers.
+/// The flexibility equals a dense Ritz solution of another kind: monomials in the reference coordinates of one
+/// distorted element and a bordered system that enforces ∫u = 0 and ∫X×u = 0 by multipliers.
 #[test]
 fn flexibility_equals_a_dense_ritz_solution() {
     let shape = distorted();
@@ -433,8 +433,8 @@ fn flexibility_equals_a_dense_ritz_solution() {
     }
 }
 
-/// The 13 congruent voussoirs of a segmental arch share one factorisation, whatever their E; another
-/// ν or another mesh needs its own.
+/// The 13 congruent voussoirs of a segmental arch share one factorisation, for any E; another ν or another mesh needs
+/// another one.
 #[test]
 fn congruent_voussoirs_share_one_factorisation() {
     let case = first_case(&Arch { voussoirs: 13, ends: "jointed", ..Arch::default() }.study());
@@ -461,7 +461,7 @@ fn congruent_voussoirs_share_one_factorisation() {
     assert_eq!(condenser.factorisations(), 3);
 }
 
-/// What cannot be is refused with its reason, and nothing panics.
+/// Impossible bodies are refused with the reason, without panic.
 #[test]
 fn impossible_bodies_are_refused() {
     let mut condenser = Condenser::new(Plane::Strain, WIDTH);

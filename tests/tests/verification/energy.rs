@@ -8,7 +8,7 @@ use voussoir_tests::{answered, assert_close};
 
 const FINITE: &str = "solver = \"newton_path\"\nkinematics = \"finite\"";
 
-/// The arch of 15 voussoirs on compliant joints that do not slip, its left support moved.
+/// The arch of 15 voussoirs on compliant joints without slip, with its left support moved.
 fn spread_arch(voussoirs: usize, displacement: f64, loaded: bool) -> String {
     let settle = format!(
         "[[stages]]\nname = \"settle\"\nsettlement = [{{ support = \"left\", displacement = [{displacement:?}, 0.0] }}]\n"
@@ -45,7 +45,7 @@ gravity = 9.81
     )
 }
 
-/// Each joint's points by the trapezoidal rule of `count` points instead of the scene's.
+/// Returns the scene with `count` points of the trapezoidal rule on each joint.
 fn with_trapezoidal_rule(mut scene: EnergyScene, count: usize) -> EnergyScene {
     let old = std::mem::take(&mut scene.points);
     for joint in old.chunk_by(|a, b| a.joint == b.joint) {
@@ -66,7 +66,8 @@ fn rotation(scene: &EnergyScene, landing: &Landing, joint: usize) -> f64 {
     all.iter().find(|(k, _)| *k == joint).expect("the joint").1
 }
 
-/// Gradient and Hessian are the derivatives of the energy, with closed, open and slipped points and turned blocks.
+/// Gradient and Hessian of the energy are its difference quotients, with closed, open and slipped points and rotated
+/// blocks.
 #[test]
 fn the_energy_program_derives_its_energy() {
     let mut random = Random::new(1);
@@ -94,7 +95,7 @@ fn the_energy_program_derives_its_energy() {
     }
 }
 
-/// What is read from the scene: the springs of a joint have the stiffness of its area and of its moment of inertia.
+/// The springs of a joint have the stiffness of its area and of its moment of inertia.
 #[test]
 fn springs_of_a_joint_have_its_area_and_moment_of_inertia() {
     let scene = EnergyScene::of_study(&spread_arch(15, 0.0, true));
@@ -108,7 +109,7 @@ fn springs_of_a_joint_have_its_area_and_moment_of_inertia() {
     }
 }
 
-/// Without settlements: the peak of the arch of 15 voussoirs by both routes.
+/// The peak of the arch of 15 voussoirs on compliant joints without settlements is equal by path and by energy program.
 #[test]
 fn peak_of_an_arch_on_compliant_joints_by_two_routes() {
     let text = spread_arch(15, 0.0, true);
@@ -121,8 +122,8 @@ fn peak_of_an_arch_on_compliant_joints_by_two_routes() {
     assert_close(result.load_factor.expect("a factor"), peak.factor, 1e-7);
 }
 
-/// 15 voussoirs, 5 cm out: the symmetric state, joints 7 and 8 turned equally, is an unstable equilibrium; the stable ones
-/// are mirror twins.
+/// With 15 voussoirs and a support 5 cm out, the symmetric state, in which joints 7 and 8 rotate equally, is an
+/// unstable equilibrium of the energy program; the stable states are mirror twins.
 #[test]
 fn a_spread_arch_of_15_voussoirs_leaves_its_symmetric_state() {
     let scene = EnergyScene::of_study(&spread_arch(15, -0.05, false));
@@ -144,8 +145,9 @@ fn a_spread_arch_of_15_voussoirs_leaves_its_symmetric_state() {
     assert!(!symmetric.stable_under_load && symmetric.least_under_load().0 < -5e4);
 }
 
-/// The same by the trapezoidal rule of nine points: 17.14 and 0.70 mrad, and with 16 voussoirs a first peak near 56, then a
-/// fall and a rise to 557.9 (an independent program with that rule; tangential springs there act at closed points only).
+/// With the trapezoidal rule of nine points an independent program gives the same: 17.14 and 0.70 mrad, and with 16
+/// voussoirs a first peak near 56, then a fall and a rise to 557.9 (tangential springs of that program act at closed
+/// points only).
 #[test]
 fn spread_arches_by_the_trapezoidal_rule_of_nine_points() {
     let scene = with_trapezoidal_rule(EnergyScene::of_study(&spread_arch(15, -0.05, true)), 9);

@@ -1,4 +1,4 @@
-//! `event_path` against limit analysis, closed forms and published numbers: small displacements.
+//! `event_path` against limit analysis, closed forms and published numbers, with small displacements.
 
 use std::sync::Arc;
 use voussoir::core::certificate::PathChecker;
@@ -14,15 +14,15 @@ use voussoir_tests::known::REFERENCE_ARCH;
 use voussoir_tests::seen::Record;
 use voussoir_tests::{Arch, Wall, answered, assert_close, changed, elastic, first_case, friction, small_displacements};
 
-/// Friction that dilates by its angle, or not at all.
+/// Friction whose dilatancy angle is its friction angle, or zero.
 const FRICTION_LAWS: [&str; 2] = ["coulomb", "coulomb_associated"];
 
 fn elastic_study(arch: &Arch, mesh: &str) -> String {
     Arch { material: elastic(5e9, 0.3), mesh: mesh.into(), ..arch.clone() }.study()
 }
 
-/// The last factor is that of limit analysis to 1e-9 on any mesh of any order, also where slip does
-/// not dilate, with the same hinges.
+/// The last factor is that of limit analysis to 1e-9 on any mesh of any order, also if slip does not dilate, with the
+/// same hinges.
 #[test]
 fn the_last_factor_is_that_of_limit_analysis_on_any_mesh() {
     let limit = answered(&Arch::default().study());
@@ -48,8 +48,8 @@ fn the_last_factor_is_that_of_limit_analysis_on_any_mesh() {
     }
 }
 
-/// Friction whose dilatancy misses its own angle by 1e-11 is not associated, so that the search for rates is another one. The
-/// path has point by point the same events at the same factors.
+/// Friction whose dilatancy differs by 1e-11 from its friction angle is not associated, so that the search for rates is
+/// another one. The path has, point by point, the same events at the same factors.
 #[test]
 fn flow_that_misses_associated_flow_by_rounding_gives_the_same_path() {
     for mu in [0.6f64, 0.35] {
@@ -84,7 +84,8 @@ fn flow_that_misses_associated_flow_by_rounding_gives_the_same_path() {
     }
 }
 
-/// Also with little friction, jointed ends and other rises; a locked arch ends unbounded.
+/// Other arches end at the load of limit analysis, with low friction, jointed ends and other rises; a locked arch is
+/// unbounded.
 #[test]
 fn other_arches_end_where_limit_analysis_does() {
     for law in FRICTION_LAWS {
@@ -112,7 +113,7 @@ fn other_arches_end_where_limit_analysis_does() {
     }
 }
 
-/// One factorisation for 13 congruent voussoirs; none, and no path, where all blocks are rigid.
+/// 13 congruent voussoirs need one factorisation; if all blocks are rigid, there is no factorisation and no path.
 #[test]
 fn congruent_voussoirs_are_condensed_once() {
     let arch = Arch { voussoirs: 13, ends: "jointed", ..Arch::default() };
@@ -125,7 +126,7 @@ fn congruent_voussoirs_are_condensed_once() {
     assert!(EventPath {}.refuses(&problem, &small_displacements()).unwrap().contains("rigid"));
 }
 
-/// The two-degree-of-freedom example of Klarbring's kind: K = [[1, −1], [−1, 2]] in (t, n).
+/// An example with two degrees of freedom of Klarbring's kind: K = [[1, −1], [−1, 2]] in (t, n).
 fn two_degrees(friction: f64, forces: &[([f64; 2], LoadStepEnd)]) -> PathProblem {
     // C = K⁻¹ = [[2, 1], [1, 1]]; axes x = t, y = n. The plus body is held and deforms.
     let elastic = PathBody {
@@ -147,7 +148,8 @@ fn trace(problem: &PathProblem) -> (PathAnswer, Vec<PathState>) {
     (answer, record.0)
 }
 
-/// f = (λ, −1), μ = 1.25: stick to 1.25, slip back to λ = 1 at u_t = 1, then open without bound.
+/// Friction can reverse the load: for f = (λ, −1), μ = 1.25 the point sticks up to 1.25, slips back to λ = 1 at u_t =
+/// 1, then opens without bound.
 #[test]
 fn friction_can_turn_the_load_back() {
     let problem =
@@ -162,7 +164,7 @@ fn friction_can_turn_the_load_back() {
     assert_close(last.gap[0][0], last.factor - 1.0, 1e-12);
 }
 
-/// f = (1.2, −1) at once: with little friction separation is the only solution.
+/// Separation is found if it is the only solution: f = (1.2, −1) at once with low friction.
 #[test]
 fn separation_where_it_is_the_only_solution() {
     for mu in [0.5, 0.9, 1.1] {
@@ -175,9 +177,9 @@ fn separation_where_it_is_the_only_solution() {
     }
 }
 
-/// f = (1.2, −1) with more friction has several solutions: slip (u_t = 0.2, r = (−1.0, 0.8) for
-/// μ = 1.25; 0.6 for 1.5; 0.8 for 2.0), stick with r = (−1.2, 1), and separation. Each satisfies the
-/// system; growing the load from zero, in proportion or the pressure first, both solvers reach stick.
+/// f = (1.2, −1) with more friction has several solutions: slip (u_t = 0.2, r = (−1.0, 0.8) for μ = 1.25; 0.6 for 1.5;
+/// 0.8 for 2.0), stick with r = (−1.2, 1), and separation. Each satisfies the equations. If the load grows from zero,
+/// in proportion or with the pressure first, both solvers reach stick.
 #[test]
 fn solutions_that_friction_allows_and_the_one_a_path_reaches() {
     for (mu, slip) in [(1.25f64, 0.2f64), (1.5, 0.6), (2.0, 0.8)] {
@@ -200,7 +202,7 @@ fn solutions_that_friction_allows_and_the_one_a_path_reaches() {
         for (solution, opening) in [(slides, 0.0), (sticks, 0.0), ([1.4, 0.0, 0.0], 0.2)] {
             assert!(residuals(solution, opening) < 1e-14, "{mu} {solution:?} {:e}", residuals(solution, opening));
         }
-        // What is no solution is seen: another slip.
+        // Another slip is not a solution.
         assert!(residuals([slip + 0.1, slip - 1.1, 0.9 - slip], 0.0) > 0.01);
         let in_turn = [([0.0, -1.0], LoadStepEnd::Factor(1.0)), ([1.2, 0.0], LoadStepEnd::Factor(1.0))];
         for problem in [problem, two_degrees(mu, &in_turn)] {
@@ -215,9 +217,8 @@ fn solutions_that_friction_allows_and_the_one_a_path_reaches() {
     }
 }
 
-/// Slip is irreversible: a rigid block on a compliant joint pushed to the verge of sliding, back, and
-/// back and forth follows the closed form of a spring with a Coulomb slider, and what it dissipates is
-/// what the loads lose.
+/// Slip is irreversible: a rigid block on a compliant joint, pushed to the limit of sliding, back and forth, follows
+/// the closed form of a spring with a Coulomb slider, and its dissipation is the energy loss of the loads.
 #[test]
 fn a_spring_slider_keeps_its_history() {
     let law = "law = \"coulomb\"\nfriction = 0.5\nnormal_stiffness = 1e9\nshear_stiffness = 1e8";
@@ -226,7 +227,7 @@ fn a_spring_slider_keeps_its_history() {
             "[[stages]]\nname = \"{name}\"\nfactor = {factor:?}\nloads = [{{ kind = \"point\", block = \"b\", point = [0.5, 0.0], force = [1000.0, 0.0] }}]\n"
         )
     };
-    // Two blocks hold a third between them: sliding on the left joint, held elastically by a stuck one.
+    // Two blocks hold a third between them: the left joint can slide, the right one is stuck and elastic.
     let text = format!(
         "name = \"slider\"\n[scene]\nscene = \"blocks\"\nwidth = 1.0\nmaterial = \"stone\"\njoint = \"dry\"\nblocks = [\n{{ name = \"ground\", vertices = [[-1.0, -0.5], [2.0, -0.5], [2.0, 0.0], [-1.0, 0.0]], fixed = true }},\n{{ name = \"b\", vertices = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.2], [0.0, 0.2]] }}\n]\n[materials.stone]\nlaw = \"rigid\"\ndensity = 2000.0\n[joints.dry]\n{law}\n[solver]\nsolver = \"event_path\"\n[[stages]]\nname = \"dead\"\ngravity = 10.0\n{}{}{}",
         stage("out", 1.5),
@@ -237,13 +238,13 @@ fn a_spring_slider_keeps_its_history() {
     let problem = PathProblem::new(&case.assembly, &case.stages).unwrap();
     let mut checker = PathChecker::new(false);
     let answer = EventPath {}.trace(&problem, &small_displacements(), &mut checker);
-    // 4 kN of weight, friction 2 kN: ±1.5 kN never slide as a whole; forces at the joint's points do
-    // not move, because weight and shear are uniform.
+    // 4 kN of weight, friction 2 kN: ±1.5 kN never slide as a whole; the forces at the points of the joint do not
+    // change, because weight and shear are uniform.
     assert_eq!(answer.status, Status::Stands, "{:?}", answer.notes);
     assert!(checker.worst["path_energy"] < 1e-9 && checker.worst["path_strength"] < 1e-9, "{:?}", checker.worst);
     let slip = answer.state.motion[1][0];
     assert!(slip.abs() < 1e-12, "back where it began: {slip:e}");
-    // 2.5 kN is more than friction carries: the block slides away at 2.
+    // 2.5 kN is more than friction carries: the block slides at 2.
     let sliding = changed(&text, "factor = 1.5\nloads", "until = \"collapse\"\nloads");
     let cut = sliding.find("[[stages]]\nname = \"back\"").unwrap();
     let result = answered(&sliding[..cut]);
@@ -251,7 +252,7 @@ fn a_spring_slider_keeps_its_history() {
     assert_close(result.load_factor.unwrap(), 2.0, 1e-9);
 }
 
-/// The GAMNI plate (code_aster SSNV128): slip along the bottom, within the scatter of published codes.
+/// The GAMNI plate (code_aster SSNV128) slips along the bottom within the scatter of published codes.
 #[test]
 fn the_gamni_plate_slips_as_published() {
     let text = r#"name = "gamni"
@@ -312,8 +313,8 @@ loads = [
     }
 }
 
-/// Two like blocks that begin to slide at the same load: either may go, so the mechanism is not the only
-/// one (the signs of the flows decide); one block alone has one way to go.
+/// The mechanism of two equal blocks that begin to slide at the same load is not unique (the signs of the flows
+/// decide); the mechanism of one block alone is unique.
 #[test]
 fn a_mechanism_is_not_unique_where_two_are_possible() {
     for count in [1, 2] {
@@ -339,8 +340,8 @@ fn a_mechanism_is_not_unique_where_two_are_possible() {
     }
 }
 
-/// A block on a bed with tensile strength, pushed until it opens and let go: nothing slips or crushes,
-/// so that nothing is dissipated, and the work is stored and given back.
+/// A block on a joint with tensile strength is pushed until it opens, and released: without sliding and crushing the
+/// dissipation is zero, and the work is stored and returned.
 #[test]
 fn a_tensile_strength_that_opens_gives_its_work_back() {
     let case = first_case(
@@ -395,8 +396,8 @@ loads = [{ kind = "body", acceleration = [-9.81, 0.0] }]
     assert_close(back.stored, dead.stored, 1e-9);
 }
 
-/// A body force that lifts a block off the ground: at its own weight nothing holds it, and it may rise, turn
-/// and shift. The mechanism is not the only one; a push that makes it rock about one corner is.
+/// A body force that lifts a block off the ground has many mechanisms: at the weight of the block it may rise, rotate
+/// and shift. A push that makes it rock about one corner has one mechanism.
 #[test]
 fn a_block_that_is_lifted_has_many_mechanisms_and_one_that_rocks_has_one() {
     let text = |acceleration: [f64; 2]| {
@@ -443,8 +444,8 @@ loads = [{{ kind = "body", acceleration = {acceleration:?} }}]
     }
 }
 
-/// A wall of 62 dry bricks on compliant joints under its weight (1950 contact points, all at the apex of their friction at
-/// the beginning): the exact path does not take up a dense problem of that size, which never ended, but says so.
+/// The exact path refuses a dense problem of friction at once: a wall of 62 dry bricks on compliant joints under its
+/// weight (1950 contact points, all initially at the apex of their friction).
 #[test]
 fn an_exact_path_gives_up_a_dense_problem_of_friction_at_once() {
     let result = answered(&Wall::around_a_window("friction = 0.577", "event_path").under_its_weight());
@@ -457,9 +458,10 @@ fn an_exact_path_gives_up_a_dense_problem_of_friction_at_once() {
     assert!(result.counters["factorisations"] < 200, "{:?}", result.counters);
 }
 
-/// A state of small displacements is stable where its elastic blocks have no way to move without force: also a settled
-/// arch that three hinges have made statically determinate. The exact path says so from its own equations, Newton's
-/// method from the eigenvalues of its flexibility; where points that slide without dilatancy are free neither decides.
+/// A state of small displacements is stable if its elastic blocks cannot move without force, also in a settled arch
+/// that three hinges have made statically determinate. The exact path decides it from its own equations, Newton's
+/// method from the eigenvalues of its flexibility, and both agree. If points that slide without dilatancy are free,
+/// neither decides.
 #[test]
 fn stages_of_exact_paths_say_whether_they_are_stable_as_newtons_do() {
     let settled = |law: &str| {

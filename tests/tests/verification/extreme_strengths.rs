@@ -1,4 +1,4 @@
-//! Strengths of no size or of any size: the answer is that of the law they tend to.
+//! Very small and very large strengths: the answer is that of the limiting law.
 
 use voussoir::core::limit::Status;
 use voussoir_tests::{Arch, answered, answered_within, assert_close, collapse_factor, crushing, friction};
@@ -9,7 +9,7 @@ fn jointed(joint: &str, solver: &'static str) -> String {
     Arch { ends: "jointed", joint: joint.into(), solver, ..Arch::default() }.study()
 }
 
-/// A jointed arch without friction cannot stand under its own weight, whoever is asked.
+/// A jointed arch without friction cannot carry its own weight, with any solver.
 #[test]
 fn joints_without_friction_do_not_carry_the_dead_load() {
     let free = ["law = \"unilateral\"\ntangential = \"free\"", "law = \"coulomb_associated\"\nfriction = 0.0"];
@@ -24,7 +24,7 @@ fn joints_without_friction_do_not_carry_the_dead_load() {
     }
 }
 
-/// Friction that no force reaches is that of stuck joints.
+/// Friction that no force reaches gives the same load as stuck joints.
 #[test]
 fn great_friction_is_none_that_slides() {
     let stuck = answered(&jointed("law = \"unilateral\"\ntangential = \"stuck\"", "limit_chain"));
@@ -41,11 +41,11 @@ fn great_friction_is_none_that_slides() {
     }
 }
 
-/// A deep arch is not told by a strength beyond its forces: both solvers to the same load, ever nearer to the one
-/// without a bound, from which a block of height N / f_c b takes N / (f_c h b) at each hinge.
+/// A very large compressive strength gives the load without crushing in a deep arch: both solvers have the same load,
+/// which tends to the unlimited one; a compressed depth N / f_c b costs N / (f_c h b) at each hinge.
 #[test]
 fn great_compressive_strength_is_none_that_crushes() {
-    // Rounding of such strengths is all that may part the bounds.
+    // The bounds differ only by the rounding of such strengths.
     let within = |joint: &str, solver| answered_within(&jointed(joint, solver), f64::INFINITY);
     let factor = |joint: &str, solver| within(joint, solver).load_factor.expect("a collapse");
     let unlimited = factor("law = \"coulomb_associated\"\nfriction = 0.6", "limit_chain");
@@ -58,8 +58,8 @@ fn great_compressive_strength_is_none_that_crushes() {
     }
 }
 
-/// Flat arches whose live load only the strength of their stone bounds: the conic program finds what the chain does, though it is
-/// a million times the weight.
+/// Flat arches whose live load is bounded only by the strength of their stone: the conic program and the chain have the
+/// same load, although it is a million times the weight.
 #[test]
 fn flat_arches_of_strong_stone_in_the_conic_program() {
     for (rise, strength, voussoirs) in [(0.2, 1e10, 15), (0.29, 1e12, 10), (0.59, 1e9, 41)] {
@@ -70,7 +70,8 @@ fn flat_arches_of_strong_stone_in_the_conic_program() {
     }
 }
 
-/// The neighbours of a hinge are closed but for 1e-9 of the thickness: rows are exchanged one by one.
+/// 20,000 voussoirs have the same load in the conic program and in the chain: the neighbours of a hinge are closed
+/// except for 1e-9 of the thickness.
 #[test]
 #[ignore = "by hand: some ten seconds of processor time"]
 fn twenty_thousand_voussoirs_in_the_conic_program() {

@@ -1,5 +1,5 @@
-//! Finite displacements: closed forms of arches of two bars, spreading supports, the peak of the
-//! reference bridge and what it must not depend on.
+//! Finite displacements: closed forms of arches of two bars, spreading supports, the peak of the reference bridge, and
+//! independence of step, strategy, units and side.
 
 use std::sync::Arc;
 use voussoir::core::certificate::MechanismKind;
@@ -37,8 +37,7 @@ fn followed(text: &str, settings: &PathSettings) -> (PathProblem, PathAnswer, Ve
 const SPAN: f64 = 5.0;
 /// Horizontal distance of the loads from the supports \[m\].
 const LOADED: f64 = 3.5;
-/// Compliance of the pins, along the bar's first direction and across it, at a support and at the
-/// crown \[m/N\].
+/// Compliance of the pins, along the first direction of the bar and across it, at a support and at the crown \[m/N\].
 const PIN: [f64; 2] = [1.0e-7, 0.4e-7];
 const CROWN: f64 = 0.5e-7;
 
@@ -69,9 +68,9 @@ fn two_bars(rise: f64) -> PathProblem {
     )
 }
 
-/// The left bar of a symmetric three-hinged arch, the right one being its mirror image.
+/// The left bar of a symmetric three-hinged arch; the right bar is its mirror image.
 struct Bar {
-    /// From the support to the crown's hinge, to the load, to the centroid \[m\].
+    /// Positions relative to the support: hinge of the crown, load, centroid \[m\].
     crown: Vec2,
     load: Vec2,
     centroid: Vec2,
@@ -79,27 +78,27 @@ struct Bar {
     span: f64,
     /// Weight \[N\].
     weight: f64,
-    /// Angle of the support's normal, compliance along and across it \[m/N\].
+    /// Angle of the normal at the support, and compliance along and across it \[m/N\].
     normal: f64,
     support: [f64; 2],
-    /// Compliance of the crown's hinge along the normal, which is horizontal \[m/N\].
+    /// Compliance of the hinge of the crown along the normal, which is horizontal \[m/N\].
     hinge: f64,
 }
 
 impl Bar {
-    /// Load P on the bar \[N\] at a rotation θ of it, in closed form.
+    /// Returns the load P on the bar \[N\] at its rotation θ, in closed form.
     ///
-    /// A hinge's frame e_1, e_2 has the mean rotation of its two bodies, here θ/2 at the support and 0
-    /// at the crown; its jump is δ = −K F with K = Σ c_i e_i e_iᵀ, F = (H, V) the force on the bar,
-    /// V = P + W, and F acts midway between the two sides. With L, D, G = R(θ)(crown, load, centroid
-    /// − support) and a half the span:
+    /// The frame e_1, e_2 of a hinge has the mean rotation of its two bodies, here θ/2 at the support and 0 at the
+    /// crown. Its jump is δ = −K F with K = Σ c_i e_i e_iᵀ, where F = (H, V) is the force on the bar, V = P + W, and F
+    /// acts midway between the two sides. With L, D, G = R(θ)(crown, load, centroid − support) and a half the span:
     ///
     /// ```text
     /// crown      −a + δ_x + L_x = c H / 2                               so H = α − β V
     /// moments    H (L_y + δ_y/2) = P (D_x + δ_x/2) + W (G_x + δ_x/2)    about the support's point of action
     /// ```
     ///
-    /// The second is quadratic in V with the first put in; the hinges are stiff, so its smaller root.
+    /// With the first equation inserted the second is quadratic in V; the hinges are stiff, so the smaller root is
+    /// used.
     fn closed_load(&self, theta: f64) -> f64 {
         let (sine, cosine) = theta.sin_cos();
         let turn = |v: Vec2| Vec2::new(cosine * v.x - sine * v.y, sine * v.x + cosine * v.y);
@@ -119,7 +118,7 @@ impl Bar {
         2.0 * constant / (-linear + root) - self.weight
     }
 
-    /// The first maximum of the load while the bar turns downwards, by golden section.
+    /// Returns the first maximum of the load while the bar rotates downwards, by golden section.
     fn peak(&self) -> f64 {
         let step = 1e-3;
         let load = |i: i32| self.closed_load(-step * f64::from(i));
@@ -134,16 +133,15 @@ impl Bar {
     }
 }
 
-/// A shallow three-hinged arch snaps through: every state of the whole loop, from the unloaded arch
-/// over the peak and the trough to the arch hanging unloaded below its supports and beyond, lies on
-/// the closed form; so does the peak's load.
+/// A shallow three-hinged arch snaps through on its closed form: every state of the whole loop, from the unloaded arch
+/// over the peak and the trough to the unloaded arch below its supports and beyond, and the load of the peak.
 #[test]
 fn a_three_hinged_arch_follows_its_closed_form_through_the_whole_loop() {
     for rise in [0.4, 1.5] {
         let problem = two_bars(rise);
         let mut record = Record::default();
         let answer = NewtonPath {}.trace(&problem, &settings(Some(2.2 * rise), None), &mut record);
-        // Hanging it carries more than at the peak: an answer would depend on where it is stopped.
+        // Below its supports the arch carries more than at the peak: an answer would depend on the end of the path.
         assert_eq!(answer.status, Status::Stalled, "{:?}", answer.notes);
         assert!(answer.notes.iter().any(|note| note.starts_with("still rising")), "{:?}", answer.notes);
         let [peak] = answer.limit_points[..] else { panic!("one peak: {:?}", answer.limit_points) };
@@ -172,11 +170,10 @@ fn a_three_hinged_arch_follows_its_closed_form_through_the_whole_loop() {
     }
 }
 
-/// An arch of two thick blocks on supports that hold no tension, with friction that is not reached: it hinges
-/// at the intrados of the supports and at the extrados of the crown and snaps through. Near the peak the corners
-/// are pressed in so far that more points touch; where one touches in each joint and sticks, the trough
-/// included, states lie on the closed form of the three-hinged arch. (`unilateral`, stuck, would carry shear at
-/// open points too.)
+/// An arch of two thick blocks on supports without tension, with friction that is not reached, hinges at the intrados
+/// of the supports and at the extrados of the crown and snaps through. Near the peak the corners are pressed in so far
+/// that more points touch. If one point touches in each joint and sticks, also at the trough, states are on the closed
+/// form of the three-hinged arch. (`unilateral`, stuck, would carry shear at open points too.)
 #[test]
 fn a_shallow_arch_of_thick_blocks_hangs_from_its_corners() {
     let text = r#"name = "snap"
@@ -316,7 +313,7 @@ curve = true
             5.81 * u,
             self.mesh,
             self.young_modulus / (u * u),
-            // Weight per volume ρ g in N per unit of length cubed, with g as many units as there are.
+            // Weight per volume ρ g in N per unit of length cubed, with g in units of length per s².
             2200.0 / (u * u * u * u),
             self.stop * u,
             self.strategy,
@@ -336,8 +333,8 @@ curve = true
 /// Rigid-block limit load of the reference bridge \[kN\].
 const RIGID: f64 = REFERENCE_ARCH;
 
-/// `tolerance` is the accuracy of states: a loose one saves iterations and keeps the peak within it; a tight one gives the peak of
-/// the default.
+/// The tolerance of a study is the accuracy of its states: a loose tolerance saves iterations and keeps the peak within
+/// it; a tight one has the same peak as the default.
 #[test]
 fn the_tolerance_of_a_study_is_that_of_its_states() {
     let of = |tolerance: &str| {
@@ -352,8 +349,7 @@ fn the_tolerance_of_a_study_is_that_of_its_states() {
     assert_close(tight.0, default.0, 1e-9);
 }
 
-/// Neither the step size, nor the strategy, nor the unit of length, nor which way round the bridge
-/// is looked at changes the peak.
+/// Step size, strategy, unit of length and reflection do not change the peak.
 #[test]
 fn the_peak_does_not_depend_on_steps_strategy_units_or_side() {
     let peak = Bridge::default().peak();
@@ -368,18 +364,17 @@ fn the_peak_does_not_depend_on_steps_strategy_units_or_side() {
     }
 }
 
-/// Peaks of converged meshes at E = 5, 20, 80, 320 GPa against the rigid limit. Near it (page
+/// Peaks of converged meshes at E = 5, 20, 80, 320 GPa tend to the rigid limit. Near it (page
 /// `docs/theory/finite_displacements.md`)
 ///
 /// ```text
 /// λ(t) = λ_0 − A t − B / (E' t) + O(1/E),  deficit → 2 √(A B / E')
 /// ```
 ///
-/// with A the rate at which the rigid mechanism's own load falls and B = Σ ξ N² / width over the
-/// hinges: the contact zone of a hinge rotated by θ has its resultant at e = ξ N / (width E' θ) from
-/// the corner. A from the four hinges' finite motion, ξ = 2.516 (extrados corners, 85.7°) and 1.8225
-/// (intrados corners, 94.3°) from a wedge pressed on a line, both computed by another program, give
-/// √E × deficit = 81.40 × √5 kN √GPa.
+/// where A is the rate at which the load of the rigid mechanism falls and B = Σ ξ N² / width over the hinges: the
+/// contact zone of a hinge rotated by θ has its resultant at e = ξ N / (width E' θ) from the corner. A from the finite
+/// motion of the four hinges, ξ = 2.516 (extrados corners, 85.7°) and 1.8225 (intrados corners, 94.3°) from a wedge
+/// pressed on a line, both computed by another program, give √E × deficit = 81.40 × √5 kN √GPa.
 #[test]
 fn the_rigid_limit_is_approached_as_the_root_of_the_modulus() {
     let meshes = [
@@ -392,7 +387,7 @@ fn the_rigid_limit_is_approached_as_the_root_of_the_modulus() {
         let peak = Bridge { young_modulus: modulus * 1e9, mesh, ..Bridge::default() }.peak();
         let deficit = RIGID - peak;
         let asymptote = 81.40 * (5.0f64 / modulus).sqrt();
-        // The mesh's own error and the term in 1/E.
+        // The error of the mesh, and the term in 1/E.
         assert_close(deficit, asymptote, 0.08);
         if let Some(before) = before {
             let exponent = (deficit / before).ln() / 4f64.ln();
@@ -402,8 +397,8 @@ fn the_rigid_limit_is_approached_as_the_root_of_the_modulus() {
     }
 }
 
-/// The converged peak of the reference bridge, 620.6 kN, within its error estimate on an affordable
-/// mesh, and the post-peak branch: the load falls all the way.
+/// The converged peak of the reference bridge, 620.6 kN, is within the error estimate of an affordable mesh; after the
+/// peak the load falls along the whole branch.
 #[test]
 fn the_peak_of_the_reference_bridge_and_the_branch_behind_it() {
     let bridge = Bridge { mesh: "elements = [8, 12]\ngrading = 10.0", stop: 0.01, ..Bridge::default() };
@@ -425,8 +420,8 @@ fn the_peak_of_the_reference_bridge_and_the_branch_behind_it() {
     assert_eq!(mechanism.hinges.iter().map(|hinge| hinge.joint).collect::<Vec<_>>(), [1, 5, 10, 14]);
 }
 
-/// The semicircular arch of the benchmark: radii 13 and 16, 19 voussoirs of 2 kN, the one at the crown
-/// in two halves. Vertices of the left blocks from the springing to the crown.
+/// Returns the semicircular arch of the benchmark: radii 13 and 16, 19 voussoirs of 2 kN, the one at the crown in two
+/// halves. Vertices of the left blocks from the springing to the crown.
 fn semicircle() -> Vec<[Vec2; 4]> {
     let at = |radius: f64, k: usize| {
         let angle = std::f64::consts::PI / 19.0 * k as f64;
@@ -446,9 +441,9 @@ fn area_and_centroid(block: &[Vec2; 4]) -> (f64, Vec2) {
     (area.abs(), first / area)
 }
 
-/// Thrust H \[N\] of the rigid three-hinged arch whose right support has moved out by dx, and where
-/// the reaction meets the springing \[m\]. The blocks above joint 3 turn about its intrados end until
-/// the crown's extrados end is at dx/2; moments about that hinge give H, of the whole half the reaction.
+/// Returns the thrust H \[N\] of the rigid three-hinged arch whose right support has moved out by dx, and the position
+/// of the reaction on the springing \[m\]. The blocks above joint 3 rotate about its intrados end until the extrados
+/// end of the crown is at dx/2. Moments about this hinge give H, moments of the whole half the reaction.
 fn spread(dx: f64) -> (f64, f64) {
     let blocks = semicircle();
     let (hinge, crown) = (blocks[3][0], blocks[9][2]);
@@ -471,7 +466,7 @@ fn spread(dx: f64) -> (f64, f64) {
     (thrust, reaction)
 }
 
-/// The benchmark's arch as a study with joints of this stiffness \[Pa/m\].
+/// Returns the arch of the benchmark as a study with joints of this stiffness \[Pa/m\].
 fn spreading(stiffness: f64) -> String {
     let left = semicircle();
     let mirrored = |block: &[Vec2; 4]| [3, 2, 1, 0].map(|i| Vec2::new(-block[i].x, block[i].y));
@@ -532,9 +527,9 @@ kinematics = "finite"
     )
 }
 
-/// The right support moves out until there is no equilibrium: the closed form says H = 5.767992 kN at
-/// dx = 0 and dx = 4.408971 at collapse (the benchmark's numbers); stiff joints tend to both as 1/k,
-/// and the thrust follows the closed form all the way.
+/// The right support moves out until there is no equilibrium: the closed form has H = 5.767992 kN at dx = 0 and dx =
+/// 4.408971 at collapse (the numbers of the benchmark). Stiff joints tend to both as 1/k, and the thrust follows the
+/// closed form along the whole path.
 #[test]
 fn spreading_supports_end_where_three_rigid_hinges_do() {
     assert_close(spread(0.0).0, 5767.992, 1e-7);
@@ -570,8 +565,8 @@ fn spreading_supports_end_where_three_rigid_hinges_do() {
     assert!((deficits[2] - (deficits[1] - deficits[2]) / 9.0).abs() < 1e-6, "{deficits:?}");
 }
 
-/// Blocks that the ground holds turn with their support exactly: both supports turn by 0.1 about the
-/// middle of the left springing as one rigid body.
+/// Blocks that the ground holds rotate exactly with their support: both supports rotate by 0.1 about the middle of the
+/// left springing as one rigid body.
 #[test]
 fn blocks_of_a_turned_support_turn_with_it() {
     let angle: f64 = 0.1;

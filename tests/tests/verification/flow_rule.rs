@@ -1,5 +1,5 @@
-//! Non-associated flow: walls of Ferris & Tin-Loi (2001), Int. J. Mech. Sci. 43, and Gilbert,
-//! Casapulla & Ahmed (2006), Computers & Structures 84, and cases that follow from statics alone.
+//! Non-associated flow: walls of Ferris & Tin-Loi (2001), Int. J. Mech. Sci. 43, and Gilbert, Casapulla & Ahmed (2006),
+//! Computers & Structures 84, and cases that follow from statics alone.
 
 use voussoir::core::limit::Status;
 use voussoir::results::CaseResult;
@@ -9,7 +9,7 @@ use voussoir::verify::verify;
 use voussoir_tests::known::{FIVE, PublishedWall, REFERENCE_ARCH, REFERENCE_ARCH_LOW_FRICTION, SIX, published_wall};
 use voussoir_tests::{Arch, Wall, answered, assert_close, study};
 
-/// A wall with this joint and solver.
+/// Returns a wall with this joint and solver.
 fn wall(wall: Wall, joint: &str, solver: &str) -> String {
     Wall { joint: joint.into(), solver: solver.into(), ..wall }.study()
 }
@@ -23,8 +23,8 @@ fn collapse(text: &str) -> (f64, CaseResult) {
     (result.load_factor.expect("a factor"), result)
 }
 
-/// The least load of wall `number` is `least`; bracket and time are printed. `LEAST_SEARCH` gives
-/// the search more work than the second that the test allows.
+/// Checks that the least load of wall `number` is `least`; prints bracket and time. `LEAST_SEARCH` gives the search
+/// more work than the second that the test allows.
 fn least_of(number: usize) {
     let PublishedWall { wall: bricks, least, associated, .. } = published_wall(number);
     let limit = std::env::var("LEAST_SEARCH").unwrap_or("1.0".into());
@@ -41,7 +41,7 @@ fn least_of(number: usize) {
     println!("wall {number}: [{low:.8}, {found:.8}] in {:.1} s, {:?}", result.seconds, result.counters);
     let end = result.non_associated.bracket.last().expect("a curve");
     assert_eq!((end.lower, end.found), (low, Some(found)));
-    // The search knows that it is hopeless.
+    // The search gives up if it cannot prove a bound.
     assert!(low > 0.0 || result.notes.iter().any(|note| note.contains("given up")), "{:?}", result.notes);
     assert_eq!(result.flow_read_as, None);
     assert!(result.certificate.residuals["complementarity"] < 1e-12, "{:?}", result.certificate);
@@ -65,8 +65,8 @@ fn least_of_wall_4() {
     least_of(4);
 }
 
-/// Gilbert, Casapulla & Ahmed (2006) print .640, .356, .264. On wall 1 the sequence settles where the path of elastic
-/// blocks ends (.6399686, `docs/theory/flow_rule.md`), above the least load.
+/// Gilbert, Casapulla & Ahmed (2006) print .640, .356, .264. On wall 1 the sequence ends at the load of the path of
+/// elastic blocks (.6399686, `docs/theory/flow_rule.md`), above the least load.
 #[test]
 fn sequential_programs_give_the_published_factors() {
     for PublishedWall { number, wall: bricks, least, published: printed, .. } in [1, 3, 4].map(published_wall) {
@@ -79,8 +79,8 @@ fn sequential_programs_give_the_published_factors() {
     }
 }
 
-/// Bricks of a wall of Ferris & Tin-Loi as `blocks`, every `stride`-th first and lists of vertices turned: other numbers of
-/// joints and other ends.
+/// Returns the bricks of a wall of Ferris & Tin-Loi as `blocks`, every `stride`-th first and with rotated lists of
+/// vertices: joints have other numbers and other ends.
 fn as_blocks(rows: &[&[f64]], stride: usize) -> String {
     let mut bricks = Vec::new();
     for (course, row) in rows.iter().enumerate() {
@@ -101,8 +101,8 @@ fn as_blocks(rows: &[&[f64]], stride: usize) -> String {
     study.replace(&format!("rows = {rows:?}"), &format!("blocks = [{}]", shuffled.join(", ")))
 }
 
-/// The same load whatever the order of blocks, as `wall` and as `blocks`: of the fields that carry a factor the sequence takes
-/// the one of least fictitious cohesion. The second wall (ten courses), at which vertices taken as they come do not settle, too.
+/// A wall has the same sequential load for any order of blocks, as `wall` and as `blocks`: of the fields that carry a
+/// factor the sequence uses the one of least fictitious cohesion. This holds also for a second wall with ten courses.
 #[test]
 fn a_wall_has_one_sequential_load_however_it_is_numbered() {
     let rows: Vec<&[f64]> = [SIX, FIVE].into_iter().cycle().take(10).collect();
@@ -126,7 +126,7 @@ fn twenty_by_twenty_in_sequence() {
     assert!(result.counters["linear_programs"] >= 1);
 }
 
-/// Dilatancy equal to the angle of friction is associated flow; between, the least load lies between.
+/// Dilatancy equal to the friction angle is associated flow; for smaller dilatancy the least load is not above it.
 #[test]
 fn dilatancy_equal_to_friction_is_associated() {
     let rows: Vec<&[f64]> = vec![&[1.0; 3], &[0.5, 1.0, 1.0, 0.5], &[1.0; 3]];
@@ -140,7 +140,7 @@ fn dilatancy_equal_to_friction_is_associated() {
     assert!(factors.iter().all(|factor| *factor <= associated * (1.0 + 1e-12)), "{factors:?} {associated}");
 }
 
-/// Without friction the law is `unilateral` with a free tangent.
+/// Without friction the law is the same as `unilateral` with a free tangent.
 #[test]
 fn no_friction_is_a_free_tangent() {
     let rows: Vec<&[f64]> = vec![&[1.0; 3], &[0.5, 1.0, 1.0, 0.5]];
@@ -161,8 +161,8 @@ fn no_friction_is_a_free_tangent() {
     assert_eq!(arch("law = \"coulomb\"\nfriction = 0.0"), free);
 }
 
-/// An arch with blocks that slide out between inclined joints: where rounding finds the known state again
-/// the proof ends a little further below it, and closes.
+/// The bracket of an arch with blocks that slide out between inclined joints closes: if rounding finds the known state
+/// again, the proof continues a little further below it.
 #[test]
 fn a_flat_arch_closes() {
     let study = study(include_str!("../../../studies/cases/flow_rule_ten_scenes.toml"));
@@ -175,8 +175,8 @@ fn a_flat_arch_closes() {
     }
 }
 
-/// Two rings without bond are many times redundant: the least load is well below the associated one, and
-/// nothing lies below it.
+/// Two rings without bond are highly redundant: the least load is well below the associated one, and no load is below
+/// it.
 #[test]
 fn two_rings_feel_the_flow_rule() {
     let study = study(include_str!("../../../studies/cases/flow_rule_rings.toml"));
@@ -191,10 +191,10 @@ fn two_rings_feel_the_flow_rule() {
     assert!(ratios.is_sorted_by(|a, b| a > b) && ratios[3] < 0.9, "{ratios:?}");
 }
 
-/// A brick above an opening that only friction in its upright joints can hold: an admissible field
-/// exists, so the associated load is positive; but with slip that does not dilate dead load alone is
-/// at a limit state, and no state with p·q̇ = 1 lies below. The elastic path, which starts without
-/// compression in the joints, finds no equilibrium.
+/// A brick above an opening that only friction in its vertical joints can hold is reported: an admissible field exists,
+/// so the associated load, known from a linear program, is positive. But with slip without dilatancy dead load alone is
+/// at a limit state, and no state with p·q̇ = 1 is below it. The elastic path, which starts without compression in the
+/// joints, finds no equilibrium.
 #[test]
 fn a_brick_held_by_wedging_alone_is_reported() {
     let rows: Vec<&[f64]> = vec![&[1.0, -1.0, 1.0], &[1.0; 3], &[0.5, 1.0, 1.0, 0.5], &[1.0; 3]];
@@ -206,8 +206,8 @@ fn a_brick_held_by_wedging_alone_is_reported() {
     assert!(result.notes.iter().any(|note| note.contains("wedging alone")), "{:?}", result.notes);
 }
 
-/// A wall that slides as a whole has many fields and one factor, that of friction: the sequence ends
-/// there also where the scene is too large for the simplex method.
+/// A wall that slides as a whole has many fields and one factor, that of friction: the sequence ends at this factor
+/// also if the scene is too large for the simplex method.
 #[test]
 fn a_wall_that_slides_as_a_whole_ends_the_sequence() {
     let joint = "law = \"coulomb\"\nfriction = 0.3";
@@ -215,8 +215,8 @@ fn a_wall_that_slides_as_a_whole_ends_the_sequence() {
     assert_close(collapse(&text).0, 0.3, 1e-6);
 }
 
-/// A segmental ring: four yielding joints determine the three redundants and the factor, whatever
-/// the flow, so the least load is the associated one, and the search proves it.
+/// In a segmental ring four yielding joints determine the three redundants and the factor for any flow, so the least
+/// load is equal to the associated one, and the search proves it.
 #[test]
 fn a_single_ring_hardly_feels_the_flow_rule() {
     for (friction, expected) in [(0.6, REFERENCE_ARCH), (0.3, REFERENCE_ARCH_LOW_FRICTION)] {
@@ -230,7 +230,7 @@ fn a_single_ring_hardly_feels_the_flow_rule() {
     }
 }
 
-/// What `run` writes `verify` confirms, and a changed mechanism, field or associated bound it finds.
+/// `verify` confirms the results of `run`, and finds a changed mechanism, field or associated bound.
 #[test]
 fn results_are_verified_and_changes_found() {
     let rows: Vec<&[f64]> = vec![&[1.0; 3], &[0.5, 1.0, 1.0, 0.5], &[1.0; 3]];

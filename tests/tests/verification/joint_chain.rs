@@ -1,4 +1,5 @@
-//! `event_path` by the chain of joints against itself on the whole system: the same scene with something in it that does nothing, but with which the solver knows no short way.
+//! `event_path` by the chain of joints against itself on the whole system: the same scene with an additional part
+//! without effect, for which the solver cannot use the chain.
 
 use voussoir::core::limit::Status;
 use voussoir::core::model::geometry::Vec2;
@@ -7,7 +8,7 @@ use voussoir::solvers::path::event::EventPath;
 use voussoir_tests::seen::Seen;
 use voussoir_tests::{Arch, Wall, answered, assert_close, compliant, elastic, first_case, small_displacements};
 
-/// Lets the ground touch itself.
+/// Adds a joint between the ground and itself.
 fn with_a_joint_of_the_ground(mut problem: PathProblem) -> PathProblem {
     let body = problem.bodies.iter().position(|b| b.held).unwrap();
     let ground = Attachment { body, slot: None };
@@ -37,8 +38,8 @@ fn largest(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(0.0, |a, b| a.max(b.abs()))
 }
 
-/// Asserts that both give the same path, and that the chain solved most of its rate problems.
-/// Returns its status and last factor.
+/// Asserts that both give the same path, and that the chain solved most of its rate problems. Returns status and last
+/// factor.
 fn same_path(study: &str) -> (Status, Option<f64>) {
     let case = first_case(study);
     let problem = || PathProblem::new(&case.assembly, &case.stages).unwrap();
@@ -47,7 +48,7 @@ fn same_path(study: &str) -> (Status, Option<f64>) {
     let count = |answer: &PathAnswer, name: &str| answer.counters[name];
     assert_eq!(count(&whole, "rate_problems_by_redundants"), 0);
     let (by_redundants, all) = (count(&few, "rate_problems_by_redundants"), count(&few, "rate_problems"));
-    // Where flow is not associated and few points choose, other rates are looked for on the whole system.
+    // With non-associated flow and few choices, other rates are searched on the whole system.
     let least = if study.contains("law = \"coulomb\"\n") { 0 } else { all / 2 };
     assert!(by_redundants > least, "{by_redundants} of {all} rate problems by the chain\n{study}");
     for (name, value) in &seen.checker.worst {
@@ -58,7 +59,7 @@ fn same_path(study: &str) -> (Status, Option<f64>) {
         (Some(a), Some(b)) => assert!((a - b).abs() <= 1e-11 * b.abs(), "{a:.15} {b:.15}\n{study}"),
         (a, b) => assert_eq!(a, b),
     }
-    // What happens at one moment may be noted in another order.
+    // Events at one factor may be in another order.
     let events = |answer: &PathAnswer| {
         let mut all: Vec<(usize, usize, String, f64)> =
             answer.events.iter().map(|e| (e.load_step, e.contact, format!("{:?}", e.what), e.factor)).collect();
@@ -107,7 +108,7 @@ fn arches_of_all_laws() {
             let arch = Arch { joint, voussoirs, rise, span_fraction, ends: "jointed", ..Arch::default() };
             let (status, factor) = same_path(&arch.study());
             if law.contains("associated") {
-                // By linear programming, which knows neither stiffness nor history.
+                // By linear programming, which uses neither stiffness nor history.
                 let rigid = answered(&Arch { joint: law.into(), solver: "limit_chain", ..arch }.study());
                 assert!(rigid.certificate.passed && rigid.status == status, "{:?} {status:?}", rigid.status);
                 if let Some(limit) = rigid.load_factor {
@@ -121,7 +122,7 @@ fn arches_of_all_laws() {
     assert_eq!(collapses, 2);
 }
 
-/// A load that comes, goes and comes back: slip stays.
+/// The chain of joints and the whole system have the same path for a load that comes, goes and returns: slip remains.
 #[test]
 fn unloading_and_reloading() {
     for law in &LAWS[..4] {
@@ -137,7 +138,8 @@ fn unloading_and_reloading() {
     }
 }
 
-/// Several cycles of joints: a wall of a few bricks in running bond.
+/// The chain of joints and the whole system have the same path for a wall of a few bricks in running bond, which has
+/// several cycles of joints.
 #[test]
 fn walls_of_a_few_bricks() {
     for law in &LAWS[..4] {
@@ -146,8 +148,8 @@ fn walls_of_a_few_bricks() {
     }
 }
 
-/// Elastic voussoirs: each joint feels its neighbours. Loads off the middle: which half of a symmetric arch is first is
-/// rounding, on the whole system too.
+/// The chain of joints and the whole system have the same path for elastic voussoirs, whose joints influence each
+/// other. Loads are off the middle, because rounding decides which half of a symmetric arch yields first.
 #[test]
 fn chains_of_elastic_voussoirs() {
     let mut collapses = 0;
@@ -166,7 +168,8 @@ fn chains_of_elastic_voussoirs() {
     assert!(collapses > 0);
 }
 
-/// Voussoirs far shorter than high, many of which open together.
+/// The chain of joints and the whole system have the same path for voussoirs far shorter than high, many of which open
+/// together.
 #[test]
 fn slender_voussoirs() {
     let mesh = "elements = [1, 4]\norder = 2".into();

@@ -14,7 +14,7 @@ const ENERGIES: [f64; 3] = [20.0, 50.0, 5000.0];
 const STRENGTH: f64 = 10.5e6;
 const PEAK: f64 = 9e-5;
 
-/// `[joints.mortar]`; the bond of van der Pluijm's shear tests.
+/// Returns `[joints.mortar]` with the bond of van der Pluijm's shear tests.
 fn mortar() -> String {
     format!(
         "[joints.mortar]\nlaw = \"lourenco_rots\"\nfriction = {:?}\nresidual_friction = {:?}\ntensile_strength = {TENSION:?}\n\
@@ -25,7 +25,8 @@ fn mortar() -> String {
     )
 }
 
-/// A rigid block of 0.4 m × 0.2 m, 0.5 m wide and nearly weightless, on the ground, with these stages.
+/// Returns the result of a rigid block of 0.4 m × 0.2 m, 0.5 m wide and nearly weightless, on the ground, with these
+/// stages.
 fn block(stages: &str, stop: &str) -> CaseResult {
     let result = answered(&format!(
         r#"name = "block"
@@ -58,8 +59,8 @@ curve = true
     result
 }
 
-/// Checks every state that is displaced by more than `from`: its displacement by the closed form, from its displacement and
-/// stress; `None` if it is not compared. Returns the number of compared states.
+/// Compares every state with a displacement above `from`: `displacement` is the closed form of its displacement from
+/// displacement and stress, `None` for states that are not compared. Returns the number of compared states.
 fn falls_as(result: &CaseResult, peak: f64, from: f64, displacement: impl Fn(f64, f64) -> Option<f64>) -> usize {
     assert_close(result.load_factor.expect("a peak"), peak * AREA / 1e3, 1e-9);
     let curve = result.path.curve.as_ref().expect("a curve").iter().filter(|[u, _]| *u > from * (1.0 + 1e-6));
@@ -70,20 +71,20 @@ fn falls_as(result: &CaseResult, peak: f64, from: f64, displacement: impl Fn(f64
 
 const AREA: f64 = 0.2;
 
-/// Pulled off: σ / k_n + (G_I / f_t) ln(f_t / σ).
+/// A block is pulled off along the closed form σ / k_n + (G_I / f_t) ln(f_t / σ).
 #[test]
 fn a_block_is_pulled_off_by_its_fracture_energy() {
     let stages = "[[stages]]\nname = \"pull\"\nuntil = \"collapse\"\nloads = [{ kind = \"pressure\", block = \"a\", edge = 2, value = -5e3 }]";
     let result = block(stages, "{ factor = 0.01 }");
-    // λ counts 5 kPa on the area: 1 kN.
+    // λ = 1 is 5 kPa on the area, 1 kN.
     let met = falls_as(&result, TENSION, TENSION / STIFFNESS[0], |_, stress| {
         Some(stress / STIFFNESS[0] + ENERGIES[0] / TENSION * (TENSION / stress).ln())
     });
     assert!(met >= 5, "{met} states");
 }
 
-/// Sheared under p: τ = c b + p (μ_r + (μ_0 − μ_r) b) with b = e^(−v_p c / G_II), down to μ_r p. The cap is reached at
-/// none of these pressures before the peak (p = 0.1 MPa).
+/// A block sheared under p follows τ = c b + p (μ_r + (μ_0 − μ_r) b) with b = e^(−v_p c / G_II), down to μ_r p. At this
+/// pressure (p = 0.1 MPa) the cap is not reached before the peak.
 #[test]
 fn a_block_is_sheared_off_down_to_its_residual_friction() {
     let pressure = 0.1e6;
@@ -96,14 +97,15 @@ fn a_block_is_sheared_off_down_to_its_residual_friction() {
     let falls = COHESION + pressure * (FRICTION[0] - FRICTION[1]);
     let peak = COHESION + pressure * FRICTION[0];
     let met = falls_as(&result, peak, peak / STIFFNESS[1], |_, stress| {
-        // A bond of less than a thousandth is lost in the rounding of what friction carries.
+        // A bond of less than a thousandth is lost in the rounding of the friction.
         let bond = (stress - FRICTION[1] * pressure) / falls;
         (bond > 1e-3).then(|| stress / STIFFNESS[1] - ENERGIES[1] / COHESION * bond.ln())
     });
     assert!(met >= 5, "{met} states");
 }
 
-/// Pressed: the peak f_m, then f_m (1 − y²/2) down to half of it at κ_m = κ_p + G_fc / (0.818027 f_m).
+/// A block in compression follows the peak f_m, then f_m (1 − y²/2) down to half of it at κ_m = κ_p + G_fc / (0.818027
+/// f_m).
 #[test]
 fn a_block_crushes_over_its_parabola() {
     let stages = "[[stages]]\nname = \"press\"\nuntil = \"collapse\"\nloads = [{ kind = \"pressure\", block = \"a\", edge = 2, value = 5e3 }]";
@@ -111,7 +113,8 @@ fn a_block_crushes_over_its_parabola() {
     let width = ENERGIES[2] / ((5.0 / 6.0 - 1.0 / 7.0 + 25.0 / 196.0) * STRENGTH);
     let met = falls_as(&result, STRENGTH, STRENGTH / STIFFNESS[0] + PEAK, |u, stress| {
         let y = (u - stress / STIFFNESS[0] - PEAK) / width;
-        // At its top the parabola is flat: there the stress is compared, which the displacement gives to rounding.
+        // At its top the parabola is flat: there the stress is compared, which follows from the displacement within
+        // rounding.
         if stress > STRENGTH * (1.0 - 1e-6) {
             assert!((stress / STRENGTH - (1.0 - 0.5 * y * y)).abs() <= 1e-9, "{stress} at {u}");
             return Some(u);
@@ -120,13 +123,13 @@ fn a_block_crushes_over_its_parabola() {
         (stress > 0.5 * STRENGTH).then_some(parabola)
     });
     assert!(met >= 5, "{met} states");
-    // It may also tilt while it softens.
+    // The block may also tilt while it softens.
     let bifurcates = |note: &String| note.contains("is negative in 1 other direction");
     assert!(result.notes.iter().any(bifurcates), "{:?}", result.notes);
 }
 
-/// The reference ring with mortar of 2 kPa and 1 N/m carries the dry ring's load and hardly more; crushing at 10.5 MPa takes
-/// a little of it.
+/// The reference ring with mortar of 2 kPa and 1 N/m carries the load of the dry ring and hardly more; crushing at 10.5
+/// MPa reduces it a little.
 #[test]
 fn an_arch_whose_bond_fades_carries_what_the_dry_one_carries() {
     let joint =
@@ -137,7 +140,8 @@ fn an_arch_whose_bond_fades_carries_what_the_dry_one_carries() {
     let arch = Arch { joint, mesh: "elements = [1, 4]".into(), solver: "newton_path", ..Arch::default() };
     let strong = answered(&arch.study());
     let weak = answered(&Arch { joint: arch.joint.replace("5e7", "5e3").replace("1e9", "1.05e7"), ..arch }.study());
-    // The bond fades exponentially: behind its peak the load tends to that of dry joints without end, and the path is open there.
+    // The bond fades exponentially: after the peak the load tends to that of dry joints without reaching it, and the
+    // path is open.
     for result in [&strong, &weak] {
         assert!(matches!(result.status, Status::Open | Status::Collapse), "{:?}", result.notes);
         assert!(!result.path.limit_points.is_empty(), "{:?}", result.notes);

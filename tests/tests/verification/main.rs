@@ -1,4 +1,4 @@
-//! Somebody else's answers: closed forms, published numbers, independent programs.
+//! Answers from other sources: closed forms, published numbers, independent programs.
 
 mod accuracy;
 mod arch;

@@ -1,12 +1,12 @@
-//! Joint laws with a sense and with wear, and blocks that tear or fail in shear, in whole scenes by every solver that takes
-//! them, against closed forms.
+//! Joint laws with directional friction and with wear, and blocks that tear or fail in shear, in whole scenes with
+//! every solver that supports them, against closed forms.
 
 use voussoir::core::limit::Status;
 use voussoir::results::CaseResult;
 use voussoir::study::load;
 use voussoir_tests::{answered, assert_close};
 
-/// A block of 1 m × 0.5 m and 10 kN on the ground, pushed along its foot with λ kN; the joint's t points to the left.
+/// A block of 1 m × 0.5 m and 10 kN on the ground, pushed along its foot by λ kN; t of the joint points to the left.
 fn pushed(joint: &str, push: f64, solver: &str, more: &str) -> String {
     format!(
         r#"name = "pushed"
@@ -46,7 +46,8 @@ fn certified(result: &CaseResult) {
     assert!(result.certificate.passed, "{}: {:?} {:?}", result.solver, result.certificate.failures, result.notes);
 }
 
-/// Pushed to the right it slips along −t, at μ₋ W; to the left at μ₊ W. Limit analysis, event and Newton path agree.
+/// A block pushed to the right slips along −t at μ₋ W, pushed to the left at μ₊ W. Limit analysis, event path and
+/// Newton path agree.
 #[test]
 fn a_block_slides_at_the_friction_of_its_sense() {
     let joint = "law = \"coulomb_directional\"\nfriction_forward = 0.7\nfriction_backward = 0.4";
@@ -61,8 +62,8 @@ fn a_block_slides_at_the_friction_of_its_sense() {
     }
 }
 
-/// With slip z = u − λ W_1/(k_t A), u the displacement of the block and W_1 = 1 kN: λ = W (μ + tan ψ_0 e^(−z/z_0)) all along the
-/// path, from a peak of W (μ + tan ψ_0) towards W μ.
+/// A rough block wears smooth: with slip z = u − λ W_1/(k_t A), where u is the displacement of the block and W_1 = 1
+/// kN, λ = W (μ + tan ψ_0 e^(−z/z_0)) along the whole path, from a peak of W (μ + tan ψ_0) towards W μ.
 #[test]
 fn a_rough_block_wears_smooth() {
     let joint = "law = \"coulomb_wearing\"\nfriction = 0.5\ndilatancy_angle = 15.0\nwear_slip = 2e-3";
@@ -73,7 +74,8 @@ fn a_rough_block_wears_smooth() {
     assert_close(result.path.first_limit_point.expect("a peak"), 10.0 * (0.5 + slope), 1e-4);
     let curve = result.path.curve.expect("a curve");
     let (mut compared, mut furthest) = (0, 0.0_f64);
-    // The push turns the block a little on its joint, which moves the load point by less than 1e-6 m beside its foot.
+    // The push rotates the block a little on its joint, which moves the load point by less than 1e-6 m relative to its
+    // foot.
     for [displacement, factor] in curve {
         let slip = displacement - factor * 1e3 / (4e10 * 0.1);
         if slip > 2e-5 {
@@ -85,7 +87,8 @@ fn a_rough_block_wears_smooth() {
     assert!(compared >= 5 && furthest > 2e-3, "{compared} points up to {furthest:e} m");
 }
 
-/// Pressed evenly to 1 MPa by its weight and pushed in the plane of the joint, a block slides at tan(25° + 10 log10 100) = 1 of it.
+/// A block with a uniform pressure of 1 MPa from its weight, pushed in the plane of the joint, slides at tan(25° + 10
+/// log10 100) = 1 times its weight.
 #[test]
 fn a_rock_joint_slides_at_its_peak_strength() {
     let joint = "law = \"barton_bandis\"\nroughness = 10.0\nwall_strength = 1e8\nresidual_angle = 25.0\ngreatest_closure = 2e-4";
@@ -105,7 +108,7 @@ fn a_rock_joint_slides_at_its_peak_strength() {
     assert_close(result.load_factor.expect("a factor"), 10.0, 1e-9);
 }
 
-/// What has no facets is refused by name where facets are needed, with who can take it.
+/// A law without facets is refused by name if facets are needed; the message names the solvers that support it.
 #[test]
 fn wear_is_refused_by_limit_analysis_by_name() {
     let joint = "law = \"coulomb_wearing\"\nfriction = 0.5\ndilatancy_angle = 15.0\nwear_slip = 2e-3";
@@ -152,8 +155,8 @@ loads = [{{ kind = "pressure", block = "a", edge = 2, value = {pressure:?} }}]
     )
 }
 
-/// Pulled, a block carries f_t; squeezed, one of `mohr_coulomb_solid` 2 c cos φ / (1 − sin φ), with ψ = 0 and ν = 0 also where its
-/// foot is glued: σ_z = 0 lets it flow across.
+/// Blocks carry the exact strengths: in tension f_t, in compression of `mohr_coulomb_solid` 2 c cos φ / (1 − sin φ),
+/// with ψ = 0 and ν = 0 also if the foot is glued, because σ_z = 0 allows flow out of plane.
 #[test]
 fn blocks_carry_their_strengths() {
     let rankine = "law = \"rankine\"\ntensile_strength = 1e6";

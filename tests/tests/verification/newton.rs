@@ -1,4 +1,4 @@
-//! Newton path against limit analysis, closed forms and hand-made systems.
+//! Newton path against limit analysis, closed forms and systems made by hand.
 
 use voussoir::core::limit::Status;
 use voussoir::core::path::{PathAnswer, PathProblem, PathSolver, Unobserved};
@@ -21,7 +21,7 @@ fn on_springs(law: String) -> String {
     compliant(&law, 1e10, 4e9)
 }
 
-/// The arch scenes of limit analysis, joints compliant: the path ends at the rigid-block limit load.
+/// The arches of limit analysis with compliant joints end at the rigid-block limit load.
 #[test]
 fn compliant_joints_end_at_the_limit_load() {
     let cases = [
@@ -55,11 +55,9 @@ fn elastic_voussoirs_end_at_the_limit_load() {
     assert_close(answer.factor.expect("a factor"), REFERENCE_ARCH, 1e-8);
 }
 
-/// Random arches and walls, associated friction or none, stiffness ratios up to 1e4: the path's last
-/// factor is that of limit analysis, or both are unbounded, or the dead load alone fails. SCENES sets how
-/// many are tried (6 by default; of 36 the 24th, μ = 0.0507, whose dead load sets all joints sliding at
-/// once, gave a false `no_equilibrium` before claims were checked); where a claim is not certified the
-/// path is stalled, never wrong.
+/// On random arches and walls, with associated friction or none and stiffness ratios up to 1e4, the last factor of the
+/// path is that of limit analysis, or both are unbounded, or the dead load alone fails. A path whose claim is not
+/// certified is stalled, never wrong. SCENES sets the number of scenes (6 by default).
 #[test]
 fn random_scenes_agree_with_limit_analysis() {
     let mut seed = 12345u64;

@@ -1,10 +1,10 @@
-//! Scenes that were once answered wrongly, or not at all, by what is known of them.
+//! Difficult scenes with known answers.
 
 use voussoir::core::limit::Status;
 use voussoir::verify::case::verify_case;
 use voussoir_tests::{Wall, answered, assert_close, changed, first_case, passes};
 
-/// The reference arch, elastic, with dry joints of friction .6; its rise, ends, mesh, stages and solver.
+/// Returns the reference arch, elastic, with dry joints of friction 0.6, with its rise, ends, mesh, stages and solver.
 fn bridge(rise: f64, ends: &str, mesh: &str, stages: &str, solver: &str) -> String {
     format!(
         r#"name = "bridge"
@@ -46,8 +46,8 @@ fn left(x: f64) -> String {
     format!("[[stages]]\nname = \"settle\"\nsettlement = [{{ support = \"left\", displacement = [{x:?}, 0.0] }}]\n")
 }
 
-/// A block of 19.62 kN on a ground that goes down, or along by its friction: it goes with the ground, shortened by its own
-/// weight, which half of each of its corners carries.
+/// An elastic block of 19.62 kN follows its ground, which moves down, or sideways by friction. By statics each of its
+/// corners carries half of its weight, which shortens the block.
 #[test]
 fn an_elastic_block_goes_with_its_ground() {
     let scene = r#"name = "ground"
@@ -98,8 +98,9 @@ solver = "event_path"
     }
 }
 
-/// 62 dry bricks around a window, on compliant joints: one hangs in its upright joints, so that no path begins, and a field carries
-/// it all. `auto` says that it stands and how flow was read; by name the path solver stays stalled. Its ground goes down as it is.
+/// 62 dry bricks around a window on compliant joints stand: one brick is held by its vertical joints only, so that no
+/// path begins, but a field carries the weight. `auto` reports that the wall stands and the flow rule; named in the
+/// study, the path solver stalls. The ground may move down without change.
 #[test]
 fn dry_bricks_around_a_window_stand() {
     let wall = |solver: &str| Wall::around_a_window("friction_angle = \"30 deg\"", solver).under_its_weight();
@@ -118,7 +119,7 @@ fn dry_bricks_around_a_window_stand() {
     assert_eq!(by_path.status, Status::Stalled);
 }
 
-/// The weight of bodies that are held, and go down with their support, does work too: exact paths balance to rounding.
+/// The weight of held bodies that move down with their support does work: exact paths balance within rounding.
 #[test]
 fn the_weight_of_held_bodies_counts_in_the_work() {
     let scene = r#"name = "energy"
@@ -164,7 +165,8 @@ solver = "event_path"
     }
 }
 
-/// Jointed arches too high for their thickness have no equilibrium, with finite displacements as by limit analysis.
+/// Jointed arches that are too high for their thickness have no equilibrium, with finite displacements as by limit
+/// analysis.
 #[test]
 fn arches_too_high_for_their_thickness_have_no_equilibrium() {
     for rise in [5.69, 5.39, 5.09] {
@@ -177,7 +179,8 @@ fn arches_too_high_for_their_thickness_have_no_equilibrium() {
     }
 }
 
-/// A load at midspan of a symmetric arch ends in a symmetric mechanism: five hinges, the crown's shared by two joints.
+/// A load at midspan of a symmetric arch has a symmetric mechanism: five hinges, the one at the crown shared by two
+/// joints.
 #[test]
 fn a_symmetric_scene_has_a_symmetric_mechanism() {
     let text = bridge(3.89, "bonded", "elements = [4, 6], order = 2", &live(0.5), "solver = \"event_path\"");
@@ -194,7 +197,8 @@ fn a_symmetric_scene_has_a_symmetric_mechanism() {
     }
 }
 
-/// Five centimetres out, voussoirs of stone on dry joints: 593.5 kN, once 1.19; unsettled it carries 624. The first peak is 92.513.
+/// A bridge of elastic voussoirs on dry joints, spread by five centimetres, carries 593.5 kN; without the settlement it
+/// carries 624. The first peak is 92.513.
 #[test]
 fn a_spread_elastic_bridge_carries_nearly_what_the_unsettled_one_does() {
     let mesh = "elements = [4, 10], order = 2, grading = 8.0";
@@ -205,7 +209,8 @@ fn a_spread_elastic_bridge_carries_nearly_what_the_unsettled_one_does() {
     assert_close(result.load_factor.expect("a collapse"), 593.516, 1e-4);
 }
 
-/// Compliant joints with Coulomb friction: 5 mm out 608.5, with an energy that once missed 6 %; 5 cm out near 600, once 4.15.
+/// A bridge of compliant joints with Coulomb friction carries 608.5 when spread by 5 mm, and near 600 when spread by 5
+/// cm.
 #[test]
 fn a_spread_bridge_of_compliant_joints_carries_near_six_hundred() {
     for (x, load) in [(-0.005, 608.5013), (-0.05, 586.8142)] {
@@ -222,9 +227,8 @@ fn a_spread_bridge_of_compliant_joints_carries_near_six_hundred() {
     }
 }
 
-/// A hundred times as stiff and a tenth as high: beyond the peak and its trough a point closes where the load rises, and
-/// sticks; the path turns back there, which arc lengths once did not. Displacement control and dissipation say the same load
-/// to 1e-11.
+/// A stiff shallow bridge is followed over a sharp fold: beyond the peak and its trough a point closes while the load
+/// rises, and sticks, and the path turns back there. Displacement control and dissipation give the same load to 1e-11.
 #[test]
 fn a_stiff_shallow_bridge_is_followed_over_a_sharp_fold() {
     let mesh = "elements = [4, 8], order = 2, grading = 8.0";

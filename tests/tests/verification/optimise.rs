@@ -1,9 +1,9 @@
-//! Optima: against loads at neighbouring values, and values of an independent program.
+//! Optima against loads at neighbouring values, and against values of an independent program.
 
 use serde_json::{Value, json};
 use voussoir_tests::{Arch, assert_close, changed, collapse_factor, crushing};
 
-/// A study that optimises the inclination of the supports of the reference arch.
+/// Returns a study that optimises the inclination of the supports of the reference arch.
 fn springing(arch: &Arch, table: &str) -> String {
     let head = "name = \"arch\"\nkind = \"optimise\"\n[optimise]\nparameter = \"scene.springing\"\n";
     changed(&arch.study(), "name = \"arch\"\n", &format!("{head}{table}"))
@@ -19,8 +19,8 @@ fn at(arch: &Arch, degrees: f64) -> f64 {
     collapse_factor(&changed(&arch.study(), "ends = ", &format!("springing = {degrees:?}\nends = ")))
 }
 
-/// With 10 MPa and a rise of 1.49 m an independent linear program on whole half degrees has its best, 1899.3 kN, at
-/// 82.5°; the optimum is not less, and lower by its neighbours.
+/// With 10 MPa and a rise of 1.49 m the best of an independent linear program on whole half degrees is 1899.3 kN at
+/// 82.5°; the optimum is not less, and its neighbours are lower.
 #[test]
 fn the_best_inclination_is_that_of_an_independent_program() {
     let arch = Arch { ends: "jointed", rise: 1.49, joint: crushing(0.6, 10e6), ..Arch::default() };
@@ -37,8 +37,8 @@ fn the_best_inclination_is_that_of_an_independent_program() {
     assert!(tried < 80, "{tried}");
 }
 
-/// Where some inclination carries any load there is no best, and the best finite one stands beside; the least over
-/// the same range is finite.
+/// If some inclination carries any load, there is no optimum, and the best finite value is given too; the least load
+/// over the same range is finite.
 #[test]
 fn an_unbounded_result_is_no_optimum() {
     let arch = Arch { ends: "jointed", rise: 0.89, ..Arch::default() };

@@ -21,9 +21,9 @@ fn timber(axis_angle: f64) -> OrthotropicElastic {
     }
 }
 
-/// **Goal.** A bar in plane stress, pulled at an angle to its axes, whatever its place: strain along it by the apparent
-/// modulus 1/E_θ = cos⁴θ/E_1 + (1/G_12 − 2 ν_12/E_1) sin²θ cos²θ + sin⁴θ/E_2, and its shear γ = η_xy,x σ / E_x.
-/// **Reference.** Jones (1999), Mechanics of Composite Materials, eqs. 2.97 (E_x, ν_xy and η_xy,x).
+/// A bar in plane stress, pulled at an angle to its axes, at any position, follows the closed form: strain along it by
+/// the apparent modulus 1/E_θ = cos⁴θ/E_1 + (1/G_12 − 2 ν_12/E_1) sin²θ cos²θ + sin⁴θ/E_2, and its shear γ = η_xy,x σ /
+/// E_x. Source: Jones (1999), Mechanics of Composite Materials, eqs. 2.97 (E_x, ν_xy and η_xy,x).
 #[test]
 fn a_bar_pulled_at_an_angle_to_its_axes() {
     let (width, stress, place) = (0.7, 1e6, 0.3f64);
@@ -45,7 +45,7 @@ fn a_bar_pulled_at_an_angle_to_its_axes() {
         let elasticity = law.elasticity().unwrap();
         let mut condenser = Condenser::new(Plane::Stress, width);
         let found = condenser.recover(&bar, &elasticity, &mesh, &points, &forces, Vec2::zeros()).unwrap();
-        // The axis 1 lies at θ from the bar, the bar at −θ from the axis.
+        // Axis 1 is at θ from the bar, the bar at −θ from the axis.
         let (s, c) = degrees.to_radians().sin_cos();
         let (e_1, e_2) = (law.young_modulus_1, law.young_modulus_2);
         let (g, nu) = (law.shear_modulus_12, law.poisson_ratio_12);
@@ -57,7 +57,7 @@ fn a_bar_pulled_at_an_angle_to_its_axes() {
         let shear = by(s * c.powi(3), s.powi(3) * c);
         let gradient = turn * Matrix2::new(along, shear / 2.0, shear / 2.0, across) * turn.transpose() * stress;
         let (x_0, u_0) = (found.nodes[0], found.displacement[0]);
-        // The mean rotation of the bar is free: the antisymmetric part is taken from the far corner.
+        // The mean rotation of the bar is free: its antisymmetric part follows from the far corner.
         let far = found.nodes.iter().position(|x| (x - bar[2]).norm() < 1e-9).unwrap();
         let (dx, du) = (found.nodes[far] - x_0, found.displacement[far] - u_0);
         let rest = du - gradient * dx;
@@ -106,7 +106,7 @@ fn stress_across_in_plane_strain() {
     }
 }
 
-/// With equal moduli along all axes and G = E / (2(1 + ν)) it is the law `elastic`, at any angle.
+/// With equal moduli along all axes and G = E / (2(1 + ν)) the law is the same as `elastic`, at any angle.
 #[test]
 fn the_isotropic_special_case_is_elastic() {
     let factor = |material: String| {

@@ -1,5 +1,5 @@
-//! The certificate of a path starts from the assembly: a solver that is given a wrong problem answers that one, and
-//! is refused.
+//! The certificate of a path starts from the assembly: a solver that gets a wrong problem solves this problem and is
+//! refused.
 
 use voussoir::core::certificate::{PathChecker, path_structure, tolerance};
 use voussoir::core::law::Facet;
@@ -9,7 +9,7 @@ use voussoir::solvers::path::newton::NewtonPath;
 use voussoir::study::Case;
 use voussoir_tests::{first_case, small_displacements};
 
-/// An elastic block that hangs together with the ground by cohesion, pushed aside until it slides.
+/// An elastic block that is glued to the ground by cohesion, pushed sideways until it slides.
 fn pushed() -> Case {
     first_case(
         r#"name = "pushed"
@@ -49,7 +49,7 @@ loads = [{ kind = "point", block = "block", point = [0.0, 0.1], force = [1000.0,
     )
 }
 
-/// Residuals above their gates where a solver was given the problem as `forge` leaves it.
+/// Returns the residuals above their gates if a solver gets the problem changed by `forge`.
 fn refused(solver: &dyn PathSolver, forge: impl Fn(&mut PathProblem)) -> Vec<&'static str> {
     let case = pushed();
     let mut problem = PathProblem::new(&case.assembly, &case.stages).expect("a path problem");
@@ -65,7 +65,7 @@ fn solvers() -> [Box<dyn PathSolver>; 2] {
     [Box::new(EventPath {}), Box::new(NewtonPath {})]
 }
 
-/// The problem as it is passes.
+/// The unchanged problem passes.
 #[test]
 fn what_the_assembly_says_is_confirmed() {
     for solver in solvers() {
@@ -73,7 +73,7 @@ fn what_the_assembly_says_is_confirmed() {
     }
 }
 
-/// A contact point of which the area is twice too great carries twice its cohesion.
+/// A contact point with twice its area carries twice its cohesion and is refused.
 #[test]
 fn a_forged_contact_area_is_refused() {
     for solver in solvers() {
@@ -82,7 +82,7 @@ fn a_forged_contact_area_is_refused() {
     }
 }
 
-/// A load that is a hundredth too small.
+/// A load that is a hundredth too small is refused.
 #[test]
 fn a_forged_load_is_refused() {
     for solver in solvers() {
@@ -91,7 +91,7 @@ fn a_forged_load_is_refused() {
     }
 }
 
-/// A weight, which is a resultant, a hundredth too great.
+/// A weight, which is a resultant, a hundredth too great is refused.
 #[test]
 fn a_forged_resultant_is_refused() {
     for solver in solvers() {
@@ -100,7 +100,7 @@ fn a_forged_resultant_is_refused() {
     }
 }
 
-/// Initial gaps, flexibilities and laws are read from the assembly too.
+/// Forged initial gaps, flexibilities and laws are refused, because they come from the assembly too.
 #[test]
 fn forged_gaps_flexibilities_and_laws_are_refused() {
     for solver in solvers() {
@@ -120,7 +120,7 @@ fn forged_gaps_flexibilities_and_laws_are_refused() {
     }
 }
 
-/// Two readings of one assembly agree: that of the certificate, and that of the problem for solvers.
+/// The structure of the certificate and the problem for solvers agree for one assembly.
 #[test]
 fn both_readings_of_an_assembly_agree() {
     let case = pushed();

@@ -1,4 +1,4 @@
-//! What is read off a path: joints that became hinges, curves, recovered stresses and their files.
+//! Quantities derived from a path: joints that became hinges, curves, recovered stresses and their files.
 
 use voussoir::core::model::geometry::Vec2;
 use voussoir::postprocess::displaced_mesh::{DisplacedBlock, displaced_blocks};
@@ -46,8 +46,8 @@ fn blocks(case: &Case) -> (CaseResult, Vec<DisplacedBlock>) {
     (result, blocks)
 }
 
-/// At collapse of the reference arch the joints that the events turned into hinges, with those that
-/// only the mechanism turns, are the four hinges of limit analysis; the curve ends at its load.
+/// At collapse of the reference arch the joints that the events turned into hinges, together with joints that only the
+/// mechanism rotates, are the four hinges of limit analysis; the curve ends at its load.
 #[test]
 fn the_hinges_of_the_path_are_those_of_the_mechanism() {
     let case = arch(LIVE, r#"{ solver = "event_path" }"#);
@@ -109,8 +109,8 @@ kinematics = "{kinematics}"
     ))
 }
 
-/// A column under its weight, ν = 0: σ_yy = −ρ g (H − y) at every node, u_y = −ρ g (H y − y²/2) / E
-/// on the element's nodes, nothing sideways; with finite displacements too (strains of 1e-4).
+/// A column under its weight with ν = 0 has σ_yy = −ρ g (H − y) at every node, u_y = −ρ g (H y − y²/2) / E at the nodes
+/// of the elements and no lateral displacement, also with finite displacements (strains of 1e-4).
 #[test]
 fn a_column_carries_its_weight() {
     for (kinematics, far) in [("small", 1e-9), ("finite", 1e-9)] {
@@ -134,8 +134,8 @@ fn a_column_carries_its_weight() {
     }
 }
 
-/// Stress on the springings of the arch under its weight, integrated by Simpson's rule over the nodes of
-/// each element edge: the vertical reactions carry the weight and the thrusts cancel, within 1 %.
+/// The stress on the springings of the arch under its weight, integrated by Simpson's rule over the nodes of each
+/// element edge, carries the weight, and the thrusts cancel, within 1 %.
 #[test]
 fn stresses_at_the_springings_carry_the_arch() {
     let case = arch("", r#"{ solver = "event_path" }"#);
@@ -182,7 +182,8 @@ fn stresses_at_the_springings_carry_the_arch() {
     assert!(blocks.iter().all(|b| b.imbalance < 1e-9));
 }
 
-/// Tags close in order, every array has as many numbers as points or cells ask for, all are finite.
+/// Files for ParaView are well formed: tags close in order, every array has one number per point or cell, all are
+/// finite.
 #[test]
 fn files_for_paraview_are_well_formed() {
     let case = arch(LIVE, r#"{ solver = "event_path" }"#);
@@ -225,7 +226,7 @@ fn files_for_paraview_are_well_formed() {
     assert_eq!(none.err().as_deref(), Some("limit analysis leaves no deformed state"));
 }
 
-/// Who follows a study sees its path: every state, stage after stage; what is answered is the same.
+/// An observer of a study receives every state of its path, stage after stage; the answer is the same as without it.
 #[test]
 fn a_path_is_followed_while_it_is_traced() {
     #[derive(Default)]

@@ -1,17 +1,16 @@
-//! Peaks and stability of paths with finite displacements: arches whose support has moved against minima of their
-//! potential energy, and scenes of blocks whose peak must depend neither on the strategy nor on the side from which they
-//! are looked at.
+//! Peaks and stability of paths with finite displacements: arches with a moved support against minima of their
+//! potential energy, and scenes of blocks whose peak must depend neither on the strategy nor on a reflection.
 //!
-//! The energies of the arches were minimised by another program, which shares nothing with Voussoir (unknowns are the
-//! motions of rigid voussoirs on elastic joints that only press, large rotations, the load point held); it runs among
-//! these tests as well.
+//! Another program, which shares nothing with Voussoir, minimised the energies of the arches. Its unknowns are the
+//! motions of rigid voussoirs on elastic joints without tension, with large rotations and the load point held. An
+//! equivalent program also runs among these tests.
 
 use voussoir::core::limit::Status;
 use voussoir::results::CaseResult;
 use voussoir_tests::{answered, assert_close};
 
-/// The reference bridge with rigid voussoirs on joints that never slide, its left support moved by `settlement` \[m\], then
-/// loaded at its quarter point; with `continuation`.
+/// Returns the reference bridge with rigid voussoirs on joints that never slide, with its left support moved by
+/// `settlement` \[m\] and then loaded at its quarter point, with `continuation`.
 fn settled(voussoirs: usize, settlement: f64, continuation: &str) -> String {
     format!(
         r#"name = "settled"
@@ -54,7 +53,7 @@ curve = true
     )
 }
 
-/// The proven peaks of a result that collapses, all of them in the live load.
+/// Returns the proven peaks of a result with a collapse; all of them are in the live load.
 fn peaks(result: &CaseResult) -> Vec<f64> {
     assert_eq!(result.status, Status::Collapse, "{:?}", result.notes);
     assert!(result.certificate.passed, "{:?}", result.certificate);
@@ -67,9 +66,9 @@ fn assert_all_close(found: &[f64], known: &[f64], tolerance: f64) {
     found.iter().zip(known).for_each(|(found, known)| assert_close(*found, *known, tolerance));
 }
 
-/// With its left support 5 cm out the bridge has leant over: the symmetric state is unstable from 2.64 cm on, joints 7
-/// and 8 turn by 14.107 and 4.266 mrad. Its load snaps twice before the greatest, which arc length and displacement
-/// control find alike.
+/// With its left support 5 cm out the bridge leans to one side, as another program finds: the symmetric state is
+/// unstable from 2.64 cm on, and joints 7 and 8 rotate by 14.107 and 4.266 mrad. Its load snaps twice before the
+/// greatest value, with arc length and with displacement control.
 #[test]
 fn an_arch_on_a_spread_support_leans_over_and_carries_its_greatest_load_after_two_snaps() {
     for continuation in ["", "continuation = { strategy = \"displacement_control\" }"] {
@@ -85,7 +84,8 @@ fn an_arch_on_a_spread_support_leans_over_and_carries_its_greatest_load_after_tw
     }
 }
 
-/// The same bridge of sixteen voussoirs keeps its symmetry and snaps three times.
+/// A bridge of sixteen voussoirs on a spread support keeps its symmetry and snaps three times, as another program
+/// finds.
 #[test]
 fn an_arch_of_sixteen_voussoirs_on_a_spread_support_snaps_three_times() {
     let result = answered(&settled(16, -0.05, ""));
@@ -95,30 +95,28 @@ fn an_arch_of_sixteen_voussoirs_on_a_spread_support_snaps_three_times() {
     assert_close(first.factor - first.fall, 47.0578, 2e-2);
 }
 
-/// A scene of blocks with finite displacements, by a strategy.
+/// Returns the load of a scene of blocks with finite displacements, by a strategy.
 fn blocks(scene: &str, strategy: &str, stop: &str) -> f64 {
     let solver = "solver = \"newton_path\"\nkinematics = \"finite\"";
     let result = answered(&format!(
         "{scene}\n[solver]\n{solver}\n{stop}\ncontinuation = {{ strategy = \"{strategy}\", first_step = 0.05 }}\n"
     ));
-    // A stage that asks for a factor ends at its first limit point.
+    // A stage with a given factor ends at its first limit point.
     let ended = matches!(result.status, Status::Collapse | Status::LimitPoint);
     assert!(ended && result.certificate.passed, "{:?}: {:?}", result.status, result.notes);
     result.load_factor.expect("a load")
 }
 
-/// Peaks that earlier were those of other branches, or of steps that had turned back, or (scene 137, where points slide
-/// from nothing and soon come to rest) of a first step that was too long; where points slide a peak has an error that
-/// falls with the step. Displacement control does not follow 158, which snaps back after its peak, to where paths end
-/// (it does 137, by arc lengths at last); 167, which slides on under a constant load, where rounding decides when it rocks
-/// instead, is not followed far.
+/// Peaks do not depend on the strategy or on a reflection. If points slide, the error of a peak decreases with the
+/// step. Scene 158 snaps back after its peak, and displacement control does not follow it to the end. Scene 167 slides
+/// on under a constant load until rounding decides when it rocks, so it is followed over a short range.
 #[test]
 fn peaks_do_not_depend_on_the_strategy_or_the_side() {
     let all = ["arc_length", "displacement_control", "dissipation"];
     let turning = ["arc_length", "dissipation"];
     let near = "stop = { displacement = 1e-3 }";
     for (scene, peak, tolerance, strategies, stop) in [
-        // 0.0687179 by steps: under the symmetric dead load they let one springing stick and the other slide.
+        // Under the symmetric dead load of scene 137 steps may let one springing stick and the other slide: 0.0687179.
         (include_str!("peaks/137.toml"), 0.0686854221, 1e-8, &all[..], ""),
         (include_str!("peaks/162.toml"), 0.6433313, 1e-8, &all, ""),
         (include_str!("peaks/158.toml"), 319.163, 5e-6, &turning, ""),
@@ -132,8 +130,8 @@ fn peaks_do_not_depend_on_the_strategy_or_the_side() {
     }
 }
 
-/// A small wall on which the load dips at .42419 and rises again to μ, where limit analysis has it: both are in the
-/// results of the exact path and of Newton's method, the dip with its fall, and those of the mirror image are mirrored.
+/// The load of a small wall dips at .42419 and rises again to μ, the load of limit analysis. The results of the exact
+/// path and of Newton's method contain both, the dip with its fall; those of the mirror image are mirrored.
 #[test]
 fn a_load_that_dips_and_rises_again_has_its_first_limit_point_beside_the_greatest() {
     for solver in ["event_path", "newton_path"] {
@@ -153,10 +151,10 @@ fn a_load_that_dips_and_rises_again_has_its_first_limit_point_beside_the_greates
     }
 }
 
-/// The same wall with finite displacements, by all strategies: at the dip the path falls, points at rest and others
-/// sliding on, until a joint opens; it neither creeps on against friction nor unloads elastically, and comes to
-/// the greatest load, which moved blocks leave 1.4e-5 below that of small displacements. The tolerance of the law of
-/// friction leaves the dip itself an error of 1e-6.
+/// The load of the same wall dips and rises again with finite displacements too, with all strategies. At the dip the
+/// path falls, with some points at rest and others sliding, until a joint opens. It reaches the greatest load, which
+/// moved blocks leave 1.4e-5 below that of small displacements. The tolerance of the friction law gives the dip itself
+/// an error of 1e-6.
 #[test]
 fn a_load_that_dips_and_rises_again_does_so_with_finite_displacements() {
     for (strategy, first_step) in

@@ -1,5 +1,5 @@
-//! Blocks whose material yields, in `newton_path`: closed forms, the one-point driver, elastic blocks as the
-//! limit of strong ones, energies, and what must not matter.
+//! Blocks whose material yields, in `newton_path`: closed forms, the one-point driver, elastic blocks as the limit of
+//! strong ones, energies, and changes that must not matter.
 
 use std::sync::Arc;
 use voussoir::core::limit::Status;
@@ -13,7 +13,7 @@ use voussoir::solvers::point::{Control, DrivenPoint, PointLaw};
 use voussoir_tests::seen::Seen;
 use voussoir_tests::{Arch, answered, assert_close, changed, elastic, first_case, small_displacements};
 
-/// The paper's stone with p_b = 10 MPa, E = 5 GPa, ν = 0.2; `hardening` in TOML.
+/// Returns the stone of the paper with p_b = 10 MPa, E = 5 GPa, ν = 0.2; `hardening` is TOML.
 fn stone(hardening: &str) -> String {
     format!(
         "law = \"drucker_prager_cap\"\nyoung_modulus = 5e9\npoisson_ratio = 0.2\ndensity = 2200.0\n\
@@ -25,8 +25,8 @@ fn stone(hardening: &str) -> String {
 /// Push on the plate at factor 1 [N].
 const LOAD: f64 = 1e6;
 
-/// Blocks on the ground under a rigid plate: `blocks` are (name, material, from height, to height), all as wide as
-/// `width` [m], turned by `angle` about the origin and scaled by `scale`; the plate is pushed down.
+/// Blocks on the ground under a rigid plate that is pushed down. `blocks` are (name, material, from height, to height),
+/// all with the width `width` [m], rotated by `angle` about the origin and scaled by `scale`.
 struct Press {
     blocks: Vec<(&'static str, &'static str, f64, f64)>,
     materials: Vec<(&'static str, String)>,
@@ -97,7 +97,7 @@ impl Press {
             materials += &format!("[materials.{name}]\n{text}\n");
         }
         let (sine, cosine) = self.angle.sin_cos();
-        // Times the scale², so that stresses are alike.
+        // Times the scale², so that stresses are equal.
         let force = LOAD * self.scale * self.scale;
         let push = format!(
             "{{ kind = \"point\", block = \"plate\", point = {}, force = [{:?}, {:?}] }}",
@@ -138,7 +138,7 @@ fn traced(text: &str, settings: &PathSettings) -> (PathProblem, PathAnswer, Seen
     (problem, answer, seen)
 }
 
-/// Downward displacement of the plate [m], in the press's own axes.
+/// Returns the downward displacement of the plate [m], in the axes of the press.
 fn sunk(problem: &PathProblem, state: &PathState, press: &Press) -> f64 {
     let block = press.blocks.len() + 1;
     let [x, y, _] = state.motion[problem.body_of[block]];
@@ -147,8 +147,8 @@ fn sunk(problem: &PathProblem, state: &PathState, press: &Press) -> f64 {
 }
 
 /// A block between smooth plates begins to yield in plane strain at 24.99635444 MPa for ν = 0.2, in plane stress at
-/// 29.99250136 MPa (BENCHMARKS: derived from the cap's equations), for every order of element. In plane strain it does not
-/// flow there: σ_zz turns to tension, and the pressure at which the cap yields is met at more and more axial stress.
+/// 29.99250136 MPa (BENCHMARKS: closed form derived from the equations of the cap), for every order of element. In
+/// plane strain it does not flow there: σ_zz becomes tensile, and the cap yields at increasing axial stress.
 #[test]
 fn a_pressed_block_begins_to_yield_at_the_closed_form() {
     for (order, (plane, strength)) in
@@ -166,8 +166,8 @@ fn a_pressed_block_begins_to_yield_at_the_closed_form() {
     }
 }
 
-/// Stress by strain of the path equals that of one driven point: hardening under a free and a held side face,
-/// unloading and reloading, plane strain.
+/// Stress and strain of the path equal those of one driven point: hardening with a free and a held side face, unloading
+/// and reloading, plane strain.
 #[test]
 fn a_pressed_block_follows_one_point() {
     let hardening = "[[0.0, 10e6], [0.002, 12e6], [0.02, 20e6]]";
@@ -192,7 +192,7 @@ fn a_pressed_block_follows_one_point() {
             let strain = -sunk(&problem, state, &press) / 0.1;
             point.step(&[across, Control::Strain(strain), held, held, held, held]).expect("a step");
             let (found, wanted) = (-applied * LOAD / press.width, point.response.stress[1]);
-            // Where three blocks meet, a bedding of 1e-5 of the block's compliance lies in the joint.
+            // If three blocks meet, the joint has an additional compliance of 1e-5 of that of the block.
             let bedding = if sides { 1e-4 * wanted.abs() } else { 0.0 };
             assert!((found - wanted).abs() < 1e-8 * 3e7 + bedding, "{found} instead of {wanted}");
             yields += usize::from(point.response.region == "cap");
@@ -201,7 +201,7 @@ fn a_pressed_block_follows_one_point() {
     }
 }
 
-/// Two blocks of unlike materials, one above the other: the patch test, every Gauss point has the same stress.
+/// Two blocks of different materials, one above the other, pass the patch test: every Gauss point has the same stress.
 #[test]
 fn two_yielding_blocks_pass_the_patch_test() {
     let mut press = Press::new(stone("[[0.0, 10e6], [0.02, 30e6]]"), &stages(&[3.0]));
@@ -223,9 +223,9 @@ fn two_yielding_blocks_pass_the_patch_test() {
     }
 }
 
-/// A block so strong that nothing yields is an elastic block: same status and factor, and no matrix of a tangent is
-/// factorised. Small and finite displacements. Forces of single points depend on when they slid: pieces say that exactly, the
-/// steps of a block that may yield do not.
+/// A block that is too strong to yield is the same as an elastic block: same status and factor, and no tangent is
+/// factorised, with small and finite displacements. Forces of single points depend on the instant of sliding, which
+/// pieces find exactly and steps do not.
 #[test]
 fn strong_blocks_are_elastic() {
     for finite in [false, true] {
@@ -247,7 +247,7 @@ fn strong_blocks_are_elastic() {
     }
 }
 
-/// Steps are made shorter until the energy of a stage balances, however long they are asked to be.
+/// The energy of a stage balances for any requested step, because steps are shortened until it does.
 #[test]
 fn energy_balances_whatever_the_steps() {
     let press =
@@ -264,7 +264,7 @@ fn energy_balances_whatever_the_steps() {
     assert!(all.iter().all(|(_, error)| *error < 2e-3), "{all:?}");
 }
 
-/// Turned by any angle, or in a scene a thousand times as large, the block crushes alike.
+/// Rotated by any angle, or in a scene a thousand times as large, the block crushes in the same way.
 #[test]
 fn rotation_and_size_do_not_matter() {
     let of = |angle: f64, scale: f64| {
@@ -282,9 +282,9 @@ fn rotation_and_size_do_not_matter() {
     }
 }
 
-/// A column of one block, and of three, of perfectly plastic stone crushed over its whole section: the load is that of the
-/// closed form (29.99250136 MPa) and stands there while the column shortens, plastic work is load × the shortening that is not
-/// elastic, and load control ends at a limit point with that load.
+/// A column of one block, and of three, of perfectly plastic stone crushed over its whole section: the load is that of
+/// the closed form (29.99250136 MPa) and is constant while the column shortens, the plastic work is load × inelastic
+/// shortening, and load control ends at a limit point with this load.
 #[test]
 fn a_column_crushed_through_is_followed() {
     let strength = 29.99250136e6;
@@ -317,8 +317,8 @@ fn a_column_crushed_through_is_followed() {
     }
 }
 
-/// A bar of 1.2 m in plane stress, one element wide, of which a layer of one element softens with this fracture energy
-/// \[J/m²\]; and the factor at which it does.
+/// A bar of 1.2 m in plane stress, one element wide, with one layer of elements that softens with this fracture energy
+/// \[J/m²\], and the factor at which it softens.
 fn softening_bar(energy: f64, layer: f64, width: f64) -> (Press, f64) {
     let softening = format!(
         "law = \"drucker_prager_softening\"\nyoung_modulus = 5e9\npoisson_ratio = 0.2\ndensity = 2200.0\n\
@@ -329,15 +329,16 @@ fn softening_bar(energy: f64, layer: f64, width: f64) -> (Press, f64) {
         .materials
         .push(("sound", "law = \"elastic\"\nyoung_modulus = 5e9\npoisson_ratio = 0.2\ndensity = 2200.0".into()));
     press.blocks = vec![("weak", "stone", 0.0, layer), ("rest", "sound", layer, 1.2)];
-    // A plate that can turn, and rows of Gauss points of order 2, bifurcate from the uniform answer.
+    // A plate that can rotate, and rows of Gauss points of order 2, bifurcate from the uniform solution.
     (press.width, press.elements, press.guided, press.order) = (width, [1, 1], true, 1);
     press.plane = "stress";
     // R / (1 − A) = 10 MPa.
     (press, 10e6 * width / LOAD)
 }
 
-/// A bar of 1.2 m in plane stress of which one layer of elements softens, one element of 10, 5 and 2.5 cm: the same load by shortening through snap-back, and the dissipated energy is that of the softening law.
-/// Arc length and dissipation control. Down to a quarter of the strength: some way below, steps no longer converge.
+/// A softening bar does not depend on the mesh: one layer of elements of 10, 5 or 2.5 cm softens, the load over the
+/// shortening through snap-back is the same, and the dissipated energy is that of the softening law. Arc length and
+/// dissipation control, down to a quarter of the strength; steps do not converge far below it.
 #[test]
 fn a_softening_bar_does_not_depend_on_the_mesh() {
     let energy = 6e3;
@@ -358,11 +359,11 @@ fn a_softening_bar_does_not_depend_on_the_mesh() {
         let last = answer.last.expect("the path goes on");
         let share = last.factor / strength;
         assert!(share < 0.26, "{share}");
-        // Linear softening: the work of opening down to the share λ of the strength is G (1 − λ²) of the area.
+        // Linear softening: the work of opening down to the share λ of the strength is G (1 − λ²) times the area.
         let wanted = energy * layer * (1.0 - share * share);
         let lost = last.work - last.stored;
         assert_close(lost, wanted, 0.01);
-        // σ·Δε^p with σ at the step's end falls short of it, the less the smaller the step.
+        // σ·Δε^p with σ at the end of the step is less, but tends to it with smaller steps.
         assert!(last.dissipated < lost && last.dissipated > 0.9 * lost, "{} of {lost} J", last.dissipated);
         energies.push(lost / wanted);
         let curve: Vec<[f64; 2]> =
@@ -388,8 +389,8 @@ fn a_softening_bar_does_not_depend_on_the_mesh() {
     }
 }
 
-/// A layer of elements twice as long as wide, or half as long, across the band: its energy is that of the law times
-/// h∥ / √A = √2 or 1/√2, the error of a characteristic length that is √A.
+/// A layer of elements twice as long as wide, or half as long, across the band: its energy is that of the law times h∥
+/// / √A = √2 or 1/√2, the error of the characteristic length √A.
 #[test]
 fn the_band_is_as_wide_as_its_element_is_long() {
     let (energy, layer) = (6e3, 0.05);
@@ -406,7 +407,8 @@ fn the_band_is_as_wide_as_its_element_is_long() {
     }
 }
 
-/// Elements too large for the fracture energy are a mistake of the study file that names the sizes and the key.
+/// Elements that are too large for the fracture energy are a mistake of the study file that names the sizes and the
+/// key.
 #[test]
 fn elements_too_large_to_soften_are_refused() {
     let softening = "law = \"drucker_prager_softening\"\nyoung_modulus = 5e9\npoisson_ratio = 0.2\ndensity = 2200.0\n\
@@ -417,8 +419,8 @@ fn elements_too_large_to_soften_are_refused() {
     assert!(all.len() == 1 && all[0].contains("elements") && all[0].contains("fracture energy"), "{all:?}");
 }
 
-/// Limit analysis reads such blocks as rigid and says so; `event_path` is refused and names `newton_path`; `auto` takes
-/// `newton_path`; results of a path with crushed blocks are confirmed by `verify`, and a changed plastic strain is not.
+/// Limit analysis treats such blocks as rigid and reports it; `event_path` is refused and names `newton_path`; `auto`
+/// chooses `newton_path`; `verify` confirms results of a path with crushed blocks and finds a changed plastic strain.
 #[test]
 fn solvers_say_what_they_can() {
     let press = Press::new(stone("[[0.0, 10e6], [0.02, 30e6]]"), &stages(&[3.0]));

@@ -1,5 +1,4 @@
-//! Each class of residual is fed a violation and seen to fail: where a study is run, by a solver that lies, and where its results
-//! are verified.
+//! Each class of residual detects a violation: in a run with a dishonest solver, and in the verification of results.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -30,7 +29,7 @@ type FollowLie = fn(&dyn LimitSolver, &LimitProblem, &mut Vec<JointForce>, &mut 
 /// Makes a state wrong.
 type Violation<'v> = &'v dyn Fn(&mut PathState);
 
-/// A solver that answers as another one, but for a lie.
+/// A solver that gives the answers of another one with one lie.
 #[derive(Debug, Default, Serialize, Deserialize)]
 struct Lying {
     #[serde(skip)]
@@ -51,7 +50,7 @@ impl Lying {
 impl LimitSolver for Lying {
     fn solve(&self, problem: &LimitProblem, question: LimitQuestion) -> LimitAnswer {
         let mut answer = self.honest().solve(problem, question);
-        // The lies are about the answer to the stage, not about the state at its start.
+        // Lies concern the answer for the stage, not the state at its start.
         if let (Some(lie), LimitQuestion::Collapse { .. }) = (self.lie, question) {
             lie(&mut answer);
         }
@@ -71,7 +70,7 @@ impl LimitSolver for Lying {
     }
 }
 
-/// What is said of a lie of the solver that a study names; and of none.
+/// Returns the messages for a lie of the solver named in a study.
 fn said_of_a_lie(text: &str, lie: Option<Lie>, follow: Option<FollowLie>) -> String {
     let mut case = first_case(text);
     let honest = solve_case(&case);
@@ -88,7 +87,7 @@ fn arch() -> Arch {
     Arch { voussoirs: 7, ends: "jointed", solver: "limit_conic", ..Arch::default() }
 }
 
-/// No equilibrium under dead load, but from a factor on.
+/// No equilibrium under dead load, but above a certain factor.
 const PUSHED_BACK: &str = "name = \"cube\"\n[scene]\nscene = \"blocks\"\nwidth = 1.0\nmaterial = \"stone\"\njoint = \"dry\"\n\
     blocks = [\n{ name = \"ground\", vertices = [[-1.0, -1.0], [2.0, -1.0], [2.0, 0.0], [-1.0, 0.0]], fixed = true },\n\
     { name = \"a\", vertices = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]] },\n]\n[materials.stone]\nlaw = \"rigid\"\n\
@@ -108,7 +107,7 @@ fn scale(motion: &mut [Velocity], by: f64) {
     motion.iter_mut().flatten().for_each(|v| *v *= by);
 }
 
-/// A cube that slides as its friction says, pushed aside.
+/// Returns a cube with non-associated friction, pushed sideways.
 fn slides() -> String {
     let text = changed(PUSHED_BACK, "[8.0, -10.0]", "10.0");
     let text = changed(&text, "law = \"coulomb_associated\"", "law = \"coulomb\"");
@@ -125,7 +124,7 @@ fn bridge() -> String {
         .into()
 }
 
-/// The classes of limit analysis, by a solver that lies.
+/// `run` detects each lie of a dishonest limit solver by its class of residual.
 #[test]
 fn run_refuses_each_lie_of_a_limit_solver() {
     let collapse = arch().study();
@@ -167,7 +166,7 @@ fn associated(answer: &mut LimitAnswer) -> &mut Vec<Velocity> {
     own(answer).associated_motion.as_mut().expect("a motion")
 }
 
-/// Rigid blocks that cannot follow: a ray that is forged is found by the proof, without solving again.
+/// For rigid blocks that cannot follow, the proof finds a forged ray without solving again.
 #[test]
 fn a_forged_ray_of_a_settlement_is_found() {
     let settle = "[[stages]]\nname = \"settle\"\nsettlement = [{ support = \"left\", displacement = [0.01, 0.0] }]\n";
@@ -194,7 +193,7 @@ fn a_forged_ray_of_a_settlement_is_found() {
     }
 }
 
-/// A support that is not where it is told to be.
+/// A support that is not at its prescribed position is detected.
 #[test]
 fn a_support_elsewhere_is_seen() {
     let case = first_case(&arch().study());
@@ -207,7 +206,7 @@ fn a_support_elsewhere_is_seen() {
     assert!(off(1e-3).1 > 1e-8);
 }
 
-/// How rigid blocks follow their supports, by a solver that lies.
+/// `run` detects each lie about rigid blocks that follow their supports.
 #[test]
 fn run_refuses_each_lie_about_settlements() {
     let settle = "[[stages]]\nname = \"settle\"\nsettlement = [{ support = \"left\", displacement = [-0.01, 0.0] }]\n";
@@ -216,7 +215,7 @@ fn run_refuses_each_lie_about_settlements() {
     let after = text[live..].find("[solver]").map_or("", |at| &text[live + at..]);
     let text = format!("{}{settle}{after}", &text[..live]);
     let lies: [(&str, FollowLie); 2] = [
-        ("settlement_flow", |_, _, _, motion| motion[2][1] -= 1e-3), // Another field in equilibrium within the strengths: it does not do the work that is dissipated.
+        ("settlement_flow", |_, _, _, motion| motion[2][1] -= 1e-3), // Another field in equilibrium within the strengths: its work is not the dissipation.
         ("settlement_gap", |honest, problem, field, _| {
             *field = honest.solve(problem, LimitQuestion::Admissible(0.0)).field.expect("a field");
         }),
@@ -241,7 +240,7 @@ fn slower(list: &mut Option<Vec<voussoir::results::MotionEntry>>, by: f64) {
     speeds(list).iter_mut().flat_map(|entry| &mut entry.velocity).for_each(|v| *v *= by);
 }
 
-/// The same classes in stored results: by the proofs, without solving again.
+/// `verify` detects each violation of limit analysis in stored results, from the proofs, without solving again.
 #[test]
 fn verify_finds_each_violation_of_limit_analysis() {
     let collapse = arch().study();
@@ -281,8 +280,8 @@ fn verify_finds_each_violation_of_limit_analysis() {
     }
 }
 
-/// What is allowed to rounding is far less than what counts: a factor that is off by 3e-9 is seen, at the origin and a kilometre
-/// from it.
+/// A factor that is off by 3e-9 is detected, at the origin and a kilometre from it: the allowance for rounding is far
+/// smaller.
 #[test]
 fn a_factor_that_is_off_by_little_is_seen() {
     let order: Vec<usize> = (0..arch().voussoirs).collect();
@@ -297,7 +296,7 @@ fn a_factor_that_is_off_by_little_is_seen() {
     }
 }
 
-/// Hands states on, changed from the second load step's third state on.
+/// Passes states on, changed from the third state of the second load step on.
 struct Changed<'a> {
     checker: PathChecker,
     seen: usize,
@@ -315,7 +314,7 @@ impl PathObserver for Changed<'_> {
     }
 }
 
-/// Residuals above their tolerances where each state of a path is changed before it is checked.
+/// Returns the residuals above their tolerances if each state of a path is changed before it is checked.
 fn above(case: &Case, solver: &dyn PathSolver, change: &dyn Fn(&mut PathState)) -> BTreeSet<&'static str> {
     let problem = PathProblem::new(&case.assembly, &case.stages).expect("a path problem");
     let checker = PathChecker::certifying(&case.assembly, &case.stages, false).expect("a structure");
@@ -326,7 +325,7 @@ fn above(case: &Case, solver: &dyn PathSolver, change: &dyn Fn(&mut PathState)) 
     worst.filter(|(name, value)| value.is_nan() || *value > tolerance(name).result).map(|(name, _)| name).collect()
 }
 
-/// The classes of paths at dry joints.
+/// Each violation at a dry joint of a path is detected by its class.
 #[test]
 fn each_violation_at_a_dry_joint_is_seen() {
     let arch = Arch {
@@ -363,7 +362,7 @@ fn each_violation_at_a_dry_joint_is_seen() {
     }
 }
 
-/// Of joints whose law gives tractions from gaps, and of blocks that yield.
+/// Each violation of a response and of a yielding block is detected by its class.
 #[test]
 fn each_violation_of_a_law_and_of_a_yielding_block_is_seen() {
     let text = "name = \"pressed\"\n[scene]\nscene = \"blocks\"\nwidth = 1.0\nmaterial = \"stone\"\njoint = \"mortar\"\nblocks = [\n\
@@ -396,7 +395,7 @@ fn each_violation_of_a_law_and_of_a_yielding_block_is_seen() {
     }
 }
 
-/// What is claimed at the end of a path: the mechanism and the ray.
+/// Each violated claim at the end of a path is detected: the mechanism and the ray.
 #[test]
 fn each_violated_claim_at_the_end_of_a_path_is_seen() {
     let arch = Arch {
@@ -426,7 +425,7 @@ fn each_violated_claim_at_the_end_of_a_path_is_seen() {
     assert!(ray_residual(&problem, load, &ray) <= bound);
     ray.iter_mut().flatten().for_each(|r| *r *= 1.0001);
     assert!(ray_residual(&problem, load, &ray) > bound);
-    // A motion that stretches a joint with a law of tractions from gaps is no mechanism.
+    // A motion that stretches a joint with a response is not a mechanism.
     let soft = Arch { joint: compliant("law = \"coulomb\"\nfriction = 0.6", 1e10, 1e10), ..steep };
     let case = first_case(&changed(
         &soft.study(),

@@ -5,7 +5,7 @@
 use voussoir::core::limit::Status;
 use voussoir_tests::{Arch, answered, elastic, friction};
 
-/// A semicircular ring of centreline radius 1 m with thickness `eta` m, radial joints.
+/// Returns a semicircular ring of centreline radius 1 m with thickness `eta` m and radial joints.
 fn ring(voussoirs: usize, eta: f64, joint: &str) -> String {
     let inner = 1.0 - eta / 2.0;
     Arch {
@@ -31,7 +31,7 @@ fn stands(study: &str) -> bool {
     }
 }
 
-/// Bisection on the verdict of `stands`, false at `low` and true at `high`.
+/// Returns the threshold of `stands` by bisection; it is false at `low` and true at `high`.
 fn threshold(mut low: f64, mut high: f64, stands: impl Fn(f64) -> bool) -> f64 {
     assert!(!stands(low) && stands(high));
     while high - low > 1e-10 {
@@ -46,22 +46,23 @@ fn least_thickness(voussoirs: usize) -> f64 {
     threshold(0.09, 0.12, |eta| stands(&ring(voussoirs, eta, stuck)))
 }
 
-/// 10 and 20 straight-sided voussoirs: 0.10701 and 0.10735 (independent program); the limit of many
-/// is Milankovitch's 0.107478038107 for true wedge centroids.
+/// 10 and 20 straight-sided voussoirs need 0.10701 and 0.10735 (independent program); the limit of many voussoirs is
+/// Milankovitch's 0.107478038107 for exact wedge centroids.
 #[test]
 fn least_thickness_tends_to_milankovitch() {
     assert!((least_thickness(10) - 0.10701).abs() < 5e-6);
     assert!((least_thickness(20) - 0.10735).abs() < 5e-6);
     let limit = 0.107_478_038_107;
     for n in [40, 160, 640] {
-        // Chords and the places where hinges can be both cost a multiple of 1/n².
+        // Chords and the possible positions of hinges each contribute a multiple of 1/n².
         let error = (least_thickness(n) - limit).abs();
         assert!(error < 1.0 / (n * n) as f64, "{n} voussoirs: {error:e}");
     }
     assert!((least_thickness(640) - limit).abs() < 1e-6);
 }
 
-/// Elastic voussoirs with finite displacements: below Milankovitch's thickness no path begins, above it one ends at rest.
+/// Elastic voussoirs with finite displacements: below Milankovitch's thickness no path begins; above it the path ends
+/// in equilibrium.
 #[test]
 fn thin_elastic_rings_have_no_path_under_their_weight() {
     let text = |eta: f64| {
@@ -78,7 +79,7 @@ fn thin_elastic_rings_have_no_path_under_their_weight() {
     assert_eq!((thick.status, thick.solver.as_str()), (Status::Stands, "newton_path"), "{:?}", thick.notes);
 }
 
-/// Below μ = 0.309215444330 no semicircular arch stands; a ring thick enough tends to that value.
+/// Below μ = 0.309215444330 no semicircular arch stands; the threshold of a thick ring tends to this value.
 #[test]
 fn least_friction() {
     let least = |voussoirs: usize| threshold(0.2, 0.5, |mu| stands(&ring(voussoirs, 0.22, &friction(mu))));

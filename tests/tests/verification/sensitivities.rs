@@ -13,12 +13,12 @@ fn entry<'a>(case: &'a CaseResult, key: &str) -> &'a SensitivityEntry {
     found.unwrap_or_else(|| panic!("{key}: {:?} {:?}", case.sensitivities, case.notes))
 }
 
-/// The answer to the study's first case.
+/// Returns the answer for the first case of the study.
 fn answer(study: &Study) -> CaseResult {
     study.run().cases.swap_remove(0)
 }
 
-/// Every derivative against one of second order from two loads on its side.
+/// Asserts that every derivative equals a second-order difference quotient of two loads on its side.
 fn assert_differences(study: &Study, tolerance: f64) -> CaseResult {
     let case = answer(study);
     let factor = case.load_factor.unwrap_or_else(|| panic!("{:?}", case.status));
@@ -45,7 +45,8 @@ fn assert_differences(study: &Study, tolerance: f64) -> CaseResult {
     case
 }
 
-/// A dry ring: λ grows as weight and width, falls as the load; all others by differences.
+/// For a dry ring λ is proportional to weight and width and inversely proportional to the load; all other derivatives
+/// are differences of loads.
 #[test]
 fn derivatives_of_rings_are_differences_of_loads() {
     let arch = Arch { ends: "jointed", span_fraction: 0.27, ..Arch::default() };
@@ -72,7 +73,8 @@ fn derivatives_of_rings_are_differences_of_loads() {
     }
 }
 
-/// A load above the crown: two mirror mechanisms, so that the load falls by the same slope whichever way it moves.
+/// A load above the crown has two mirror mechanisms, so that the load factor falls with the same slope in both
+/// directions.
 #[test]
 fn mirror_mechanisms_give_a_kink_in_the_place_of_the_load() {
     let arch = Arch { ends: "jointed", span_fraction: 0.5, ..Arch::default() };
@@ -93,7 +95,8 @@ fn block(friction: f64, length: f64) -> String {
     )
 }
 
-/// A block of length b and height h = 1 slides or rocks, λ = min(μ, b / h). At μ = b / h both mechanisms exist.
+/// A block of length b and height h = 1 slides or rocks, λ = min(μ, b / h). At μ = b / h both mechanisms exist and both
+/// slopes are given.
 #[test]
 fn where_the_mechanism_changes_both_slopes_are_given() {
     for (mu, length, by_friction, by_length) in
@@ -115,9 +118,9 @@ fn where_the_mechanism_changes_both_slopes_are_given() {
     }
 }
 
-/// A beam of weight W on three supports, pushed at their level: λ = Σ μ_i N_i is the greatest over the shares N_i, of
-/// which equal coefficients leave that of the middle open between 0 and W. So the coefficient of the middle counts W
-/// where it grows and nothing where it falls.
+/// A beam of weight W on three supports, pushed at their level: λ = Σ μ_i N_i is the greatest over the shares N_i. With
+/// equal coefficients the share of the middle is undetermined between 0 and W. The slope with respect to its
+/// coefficient is therefore W if it increases and 0 if it decreases.
 #[test]
 fn where_the_field_is_not_unique_both_slopes_are_given() {
     let ground = |name: &str, x: f64| {
@@ -145,7 +148,7 @@ fn where_the_field_is_not_unique_both_slopes_are_given() {
     }
 }
 
-/// A changed derivative is found; what is no optimum, or a path, has none and says why.
+/// A changed derivative is found; a result without an optimum, or a path, has no derivatives and gives the reason.
 #[test]
 fn derivatives_are_verified_and_refused_where_there_are_none() {
     let ring = Arch { ends: "jointed", ..Arch::default() };

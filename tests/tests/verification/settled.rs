@@ -1,6 +1,6 @@
 //! Random settled arches and piers with a load after the settlement: paths with finite displacements against the energy
-//! program. Joints do not slide (`unilateral`, `tangential = "stuck"`), so that the energies are the same and states have
-//! no history.
+//! program. Joints do not slide (`unilateral`, `tangential = "stuck"`), so that the energies are the same and states
+//! have no history.
 
 use voussoir::core::limit::Status;
 use voussoir::results::CaseResult;
@@ -9,10 +9,10 @@ use voussoir_tests::settled::{Deforming, Draw, Random, SettledScene, Settling, S
 use voussoir_tests::{answered, assert_close, keep};
 
 const FINITE: &str = "solver = \"newton_path\"\nkinematics = \"finite\"";
-/// How far factors may be apart, relative.
+/// Greatest relative difference of factors.
 const APART: f64 = 1e-2;
 
-/// Scene `k` of the family: every fourth is a pier, every second spreads.
+/// Returns scene `k` of the family: every fourth is a pier, every second has a spreading support.
 fn scene(k: usize) -> SettledScene {
     let mut random = Random::new(1000 + k as u64);
     let shape = if k % 4 == 3 { Shape::Pier } else { Shape::Arch };
@@ -21,7 +21,7 @@ fn scene(k: usize) -> SettledScene {
     settled_scene(&mut random, Draw { shape, deforming: Deforming::Compliant, settling, size, stuck: true })
 }
 
-/// What the energy program says of one branch.
+/// The results of the energy program for one branch.
 struct Branch {
     settled: Landing,
     peaks: Vec<f64>,
@@ -40,7 +40,7 @@ fn branches(scene: &EnergyScene) -> Vec<Branch> {
         .collect()
 }
 
-/// What a comparison came to.
+/// Counts of the outcomes of comparisons.
 #[derive(Debug, Default)]
 struct Tally {
     scenes: usize,
@@ -57,7 +57,7 @@ fn near(a: f64, b: f64) -> bool {
     (a - b).abs() <= APART * b.abs()
 }
 
-/// The peak must be the first or the greatest of one branch.
+/// Checks that the peak is the first or the greatest of one branch.
 fn compare(k: usize, result: &CaseResult, branches: &[Branch], tally: &mut Tally) {
     let all: Vec<&Vec<f64>> = branches.iter().map(|branch| &branch.peaks).collect();
     let found = format!("{k}: {:?} {:?} against {all:?} {:?}", result.status, result.load_factor, result.notes);
@@ -77,7 +77,7 @@ fn compare(k: usize, result: &CaseResult, branches: &[Branch], tally: &mut Tally
     }
 }
 
-/// The settled state must be one of the minima.
+/// Checks that the settled state is one of the minima.
 fn compare_settled(k: usize, scene: &EnergyScene, result: &CaseResult, branches: &[Branch], tally: &mut Tally) {
     let Some(displacements) = result.path.displacements.as_ref().filter(|_| result.status == Status::Stands) else {
         return;
@@ -87,7 +87,7 @@ fn compare_settled(k: usize, scene: &EnergyScene, result: &CaseResult, branches:
         scene.place(&held, &branch.settled.q).motion.iter().map(|motion| motion[2]).collect()
     };
     let minima: Vec<Vec<f64>> = branches.iter().map(rotations).collect();
-    // Bonded ends are entries of their own, but turn with their support: they are left out by matching in order.
+    // Bonded ends have separate entries but rotate with their support: matching in order leaves them out.
     let skip = (displacements.len() - minima[0].len()) / 2;
     let own: Vec<f64> = displacements.iter().map(|d| d.displacement[2]).skip(skip).take(minima[0].len()).collect();
     let size = own.iter().fold(1e-6, |a: f64, b| a.max(b.abs()));
@@ -129,15 +129,15 @@ fn tally(range: std::ops::Range<usize>) -> Tally {
     tally
 }
 
-/// The family as far as SETTLED=N says, 56 scenes by default.
+/// Compares SETTLED=N scenes of the family, 56 by default.
 fn family() -> Tally {
     let count = std::env::var("SETTLED").ok().and_then(|n| n.parse().ok()).unwrap_or(56);
     tally(100..100 + count)
 }
 
-/// 56 settled arches and piers, a dozen of which bifurcate while their supports move: the load factor of the path is a
-/// peak of the energy program, the first or the greatest on one of the twins, within 1 %, and every settled state is a
-/// minimum, also where the way bifurcates.
+/// Peaks of 56 settled arches and piers, a dozen of which bifurcate while their supports move, are those of the energy
+/// program: the first or the greatest on one of the twins, within 1 %. Every settled state is a minimum, also if the
+/// path bifurcates.
 #[test]
 fn peaks_of_settled_arches_and_piers_are_those_of_the_energy() {
     let tally = family();
@@ -147,7 +147,7 @@ fn peaks_of_settled_arches_and_piers_are_those_of_the_energy() {
     assert!(tally.unstable.is_empty(), "{}", tally.unstable.join("\n"));
 }
 
-/// Load, or support, shifted by 1e-6 of the scene: the answer changes by less than 1e-3, where nothing bifurcates.
+/// A load or a support shifted by 1e-6 of the scene changes the answer by less than 1e-3 if there is no bifurcation.
 #[test]
 fn a_small_imperfection_changes_little() {
     for k in [100, 101, 103, 105, 107, 109] {
@@ -161,8 +161,8 @@ fn a_small_imperfection_changes_little() {
     }
 }
 
-/// Two arches whose paths fold sharply on their unstable branches, where a joint closes as the load point comes back: the
-/// path goes on from each fold, does not go to and fro between them, and finds all peaks that the energy has.
+/// Two arches whose paths fold sharply on their unstable branches, where a joint closes as the load point moves back:
+/// the path continues from each fold, does not alternate between them, and finds all peaks of the energy program.
 #[test]
 fn a_path_goes_on_over_sharp_folds() {
     let known: [(usize, &[f64]); 2] =
@@ -177,7 +177,7 @@ fn a_path_goes_on_over_sharp_folds() {
     }
 }
 
-/// Peaks that steps once passed over, or took from another branch: (scene, peaks that are right).
+/// Scenes with a peak that is easily missed, or confused with that of another branch: (scene, correct peaks).
 const ONCE_WRONG: [(usize, &[f64]); 5] = [
     (157, &[833.42927]),
     (202, &[28.24817, 0.41591, 171.04272]),
@@ -186,7 +186,7 @@ const ONCE_WRONG: [(usize, &[f64]); 5] = [
     (282, &[685.94575]),
 ];
 
-/// Five of 160 scenes of the family: each has the peak that the energy has.
+/// Five scenes of the family have the peak of the energy program although steps can pass over it.
 #[test]
 fn peaks_that_steps_passed_over() {
     for (k, right) in ONCE_WRONG {
@@ -196,9 +196,8 @@ fn peaks_that_steps_passed_over() {
     }
 }
 
-/// Where the path folds a joint is about to close and two points that slide come to rest: the rate beyond the fold asks
-/// for all three. With the closing joint alone the path once took the way back, all of it, to a certified 156.5. Steps of
-/// 7e-4 to 1.5e-4 of the arch say 57 633.5030 to 57 633.5029; one step of these here passed over an event, and said .5830.
+/// A path continues at a fold at which a joint closes while two sliding points stop: the rate beyond the fold needs all
+/// three changes. Steps of 7e-4 to 1.5e-4 of the arch give 57 633.5030 to 57 633.5029.
 #[test]
 fn a_path_goes_on_where_a_joint_closes_at_a_fold() {
     let result = answered(&further(include_str!("settled/closing_at_a_fold.toml")));
@@ -206,24 +205,24 @@ fn a_path_goes_on_where_a_joint_closes_at_a_fold() {
     assert!(peaks.iter().any(|factor| (factor - 57633.5029).abs() < 1e-8 * factor), "{peaks:?} {:?}", result.notes);
 }
 
-/// A scene whose path goes on beyond the half of its first limit points.
+/// Returns a scene whose path continues beyond half of its first limit points.
 fn further(scene: &str) -> String {
     scene.replace("kinematics = \"finite\"", "kinematics = \"finite\"\nstop = { displacement = 1.0 }")
 }
 
-/// A scene by a continuation strategy.
+/// Returns the result of a scene with a continuation strategy.
 fn by(scene: &str, strategy: &str) -> CaseResult {
     let named = format!("kinematics = \"finite\"\ncontinuation = {{ strategy = {strategy} }}");
     answered(&scene.replace("kinematics = \"finite\"", &named))
 }
 
-/// Whether another strategy than the usual one, or the one that was asked for, has answered.
+/// Returns true if another strategy than the default or the requested one has solved the case.
 fn followed(result: &CaseResult) -> bool {
     result.notes.iter().any(|note| note.starts_with("followed by"))
 }
 
-/// The load falls three times before its greatest peak, while points that slide come to rest: also there their slip is
-/// history. By steps that missed it the peaks were 3e-6 apart.
+/// Slip is part of the history also if the load falls: it falls three times before its greatest peak, while sliding
+/// points stop, and all strategies agree on the peaks.
 #[test]
 fn slip_is_followed_where_the_load_falls() {
     let scene = include_str!("settled/several_peaks.toml");
@@ -235,13 +234,13 @@ fn slip_is_followed_where_the_load_falls() {
         assert!(result.certificate.passed && (one - other).abs() <= 1e-7 * other, "{one} {other}");
         assert_eq!(result.path.limit_points.len(), 4, "{:?}", result.path.limit_points);
     }
-    // With slip that was missed arc lengths lost this one at 59 % of its peak.
+    // If slip were missed, arc lengths would lose this path at 59 % of its peak.
     let result = by(include_str!("settled/lost_without_its_slip.toml"), strategies[0]);
     let factor = result.load_factor.filter(|_| result.status == Status::Collapse);
     assert!(factor.is_some_and(|factor| (factor / 12_936.539_5 - 1.0).abs() < 1e-8), "{factor:?} {:?}", result.notes);
 }
 
-/// Friction may bring a path back to its first limit point in a loop, beside itself: the first one stays what it was.
+/// A path that returns to its first limit point in a loop ends, and the first limit point is unchanged.
 #[test]
 fn a_path_that_comes_back_to_its_peak_in_a_loop_ends() {
     let result = answered(include_str!("settled/in_a_loop.toml"));
@@ -250,7 +249,7 @@ fn a_path_that_comes_back_to_its_peak_in_a_loop_ends() {
     assert_close(result.path.first_limit_point.expect("a first limit point"), 51.355_437_97, 1e-8);
 }
 
-/// A strategy whose measure turns back chooses the length of steps only: it does not lose its path.
+/// The measure of a strategy may turn back: it only controls the length of steps, and the path is not lost.
 #[test]
 fn the_measure_of_a_strategy_may_turn_back() {
     let lost = (include_str!("settled/measure_turns_back.toml"), "\"displacement_control\"", false);
@@ -265,8 +264,7 @@ fn the_measure_of_a_strategy_may_turn_back() {
     }
 }
 
-/// Behind its greatest limit point this path comes to an event from which no rate leads on. Steps by arc lengths said that at
-/// 25 048.25, before the greatest one.
+/// A path that ends without a rate, at an event after its greatest limit point, has this limit point as its greatest.
 #[test]
 fn a_path_that_ends_without_a_rate_has_its_greatest_limit_point() {
     let scene = include_str!("settled/lost_after_its_peak.toml");
@@ -277,8 +275,8 @@ fn a_path_that_ends_without_a_rate_has_its_greatest_limit_point() {
     }
 }
 
-/// Behind a sharp fold a point that sticks in the modes of the step before would creep through 5000 steps, each as short.
-/// Rates are searched there instead, and all strategies say the same load.
+/// A point that would creep after a sharp fold through thousands of short steps is passed by a search for rates, and
+/// all strategies give the same load.
 #[test]
 fn a_point_that_creeps_behind_a_fold_is_led_on_by_the_rates_there() {
     let scene = include_str!("settled/creeps_behind_a_fold.toml");
@@ -290,8 +288,8 @@ fn a_point_that_creeps_behind_a_fold_is_led_on_by_the_rates_there() {
     }
 }
 
-/// Within one step of displacement control lay a peak of 16 148.394 and a trough .14 % below it, and the load rose at both of
-/// its ends: it said 16 142.147, the peak after them.
+/// A step that flattens does not hide a peak of 16 148.394 and a trough 0.14 % below it, although the load rises at
+/// both of its ends.
 #[test]
 fn a_step_that_flattens_does_not_hide_a_peak_and_a_trough() {
     let scene = include_str!("settled/peak_within_a_step.toml");
@@ -302,10 +300,10 @@ fn a_step_that_flattens_does_not_hide_a_peak_and_a_trough() {
     }
 }
 
-/// Between the ends of a step lay a limit point and a trough .3 % below it (54.797; 19 327.1 was the only one). In the other
-/// scene a step of the settlement opened the second point that was to open and not the first: a state of equilibrium to
-/// which no path leads, and the first limit point came to 6.1135. What moves in a step must be what the rates at its ends
-/// say, and the first event must be in it.
+/// Steps do not pass over a part of the path. In one scene a limit point at 54.797 and a trough 0.3 % below it are
+/// between the ends of a step. In the other scene a step of the settlement could open the second point before the
+/// first, a state that no path reaches. The motion in a step must agree with the rates at its ends, and the first event
+/// must be in it.
 #[test]
 fn steps_do_not_pass_over_a_part_of_the_path() {
     for (scene, first, greatest) in [
@@ -321,8 +319,8 @@ fn steps_do_not_pass_over_a_part_of_the_path() {
     }
 }
 
-/// Load control ends at the first limit point that other strategies pass, smooth or kinked, however many follow; at no state
-/// short of it would it be proven.
+/// Load control ends at the first limit point that other strategies pass, smooth or kinked, however many follow; at no
+/// state before it is this proved.
 #[test]
 fn load_control_ends_at_the_first_limit_point() {
     for (scene, first) in [
@@ -330,11 +328,11 @@ fn load_control_ends_at_the_first_limit_point() {
         (include_str!("settled/peak_within_a_step.toml"), 16_148.394_070),
         (include_str!("settled/creeps_behind_a_fold.toml"), 104.263_158_62),
         (include_str!("settled/lost_after_its_peak.toml"), 68.509_020_85),
-        // A corner next to no load: steps were 1e-7 of it beyond.
+        // A corner at almost no load: it is sensitive to steps of 1e-7 beyond it.
         (include_str!("settled/next_to_no_load.toml"), 0.003_518_656_848),
-        // Steps went beyond it by 2e-10, from where no path leads on.
+        // A smooth peak: no path continues from 2e-10 beyond it.
         (include_str!("settled/smooth_peak.toml"), 8_573.082_27),
-        // A point that is to slide next made steps shorter and shorter, five thousand times.
+        // A point is about to slide: steps near it become very short.
         (include_str!("settled/slides_next.toml"), 32.608_676_017),
     ] {
         let result = by(scene, "\"load_control\"");

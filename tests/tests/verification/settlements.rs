@@ -1,5 +1,5 @@
-//! Supports that move, small displacements: what is statically determinate moves at constant forces, and the load after
-//! any settlement is that of the arch whose supports have not moved.
+//! Moving supports with small displacements: a statically determinate structure moves at constant forces, and the load
+//! after any settlement is that of the arch with unmoved supports.
 
 use voussoir::core::certificate::Side;
 use voussoir::core::limit::Status;
@@ -8,7 +8,7 @@ use voussoir::solve_case;
 use voussoir::verify::case::verify_case;
 use voussoir_tests::{answered, assert_close, changed, first_case, passes};
 
-/// The reference arch of 15 elastic voussoirs: dead load, a settlement, a load at the quarter.
+/// Returns the reference arch of 15 elastic voussoirs: dead load, a settlement, a load at the quarter.
 fn arch(solver: &str, settlement: &str, after: &str) -> String {
     format!(
         r#"name = "settled"
@@ -45,10 +45,11 @@ solver = "{solver}"
 
 const LIVE: &str = "[[stages]]\nname = \"live\"\nuntil = \"collapse\"\nloads = [{ kind = \"point\", span_fraction = 0.25, force = [0.0, -1000.0] }]";
 
-/// Limit load of the rigid blocks, without any settlement.
+/// Limit load of the rigid blocks without settlement, the reference.
 const LOAD: f64 = 698.0226652123788;
 
-/// Out, in, down, both, turned: with small displacements rigid-block limit analysis does not see where supports are.
+/// The load after any settlement (out, in, down, both supports, rotated) is that of the unmoved arch: with small
+/// displacements rigid-block limit analysis does not depend on positions of supports.
 #[test]
 fn the_load_after_any_settlement_is_that_of_the_unmoved_arch() {
     let left =
@@ -64,8 +65,8 @@ fn the_load_after_any_settlement_is_that_of_the_unmoved_arch() {
     }
 }
 
-/// Three hinges on the sides that a spreading and a closing support open, as Mery's thrust lines have them; the arch
-/// stands, and its hinges are listed with their sides.
+/// A spread arch stands on three hinges: they open on the sides of Mery's thrust lines for a spreading and for a
+/// closing support, and are listed with their sides.
 #[test]
 fn a_spread_arch_stands_on_three_hinges() {
     for (x, crown, springing) in [(-0.05, Side::Extrados, Side::Intrados), (0.05, Side::Intrados, Side::Extrados)] {
@@ -81,7 +82,7 @@ fn a_spread_arch_stands_on_three_hinges() {
     }
 }
 
-/// Two stages that move a support to and fro leave the forces of the one that moved it least, not of the last.
+/// Two stages that move a support out and back leave the forces of the smaller displacement, not of the last.
 #[test]
 fn a_support_that_moves_back_stands_too() {
     let back = "[[stages]]\nname = \"back\"\nsettlement = [{ support = \"left\", displacement = [0.05, 0.0] }]";
@@ -105,7 +106,7 @@ fn a_support_spreads_without_end_with_small_displacements() {
     }
 }
 
-/// One block on a ground that moves, alone and in a wall: a rigid motion changes no force.
+/// A rigid motion of the ground changes no force, for one block and for a wall.
 #[test]
 fn what_stands_on_one_ground_moves_with_it() {
     let wall = r#"name = "wall"
@@ -145,7 +146,7 @@ solver = "event_path"
     }
 }
 
-/// Strategies that follow a load have none in a stage that only moves a support: each stage has its own.
+/// Each stage has its own strategy: strategies that follow a load do not apply in a stage that only moves a support.
 #[test]
 fn each_stage_has_its_own_strategy() {
     let text = arch("newton_path", "{ support = \"left\", displacement = [-0.005, 0.0] }", LIVE);
@@ -167,7 +168,7 @@ fn each_stage_has_its_own_strategy() {
     }
 }
 
-/// The same arch of rigid blocks without any compliance.
+/// Returns the same arch with rigid blocks without compliance.
 fn rigid(joint: &str, settlement: &str, before: &str, after: &str) -> String {
     let text = arch("auto", settlement, after);
     let text = changed(&text, "law = \"elastic\"\nyoung_modulus = 5e9\npoisson_ratio = 0.3", "law = \"rigid\"");
@@ -175,7 +176,7 @@ fn rigid(joint: &str, settlement: &str, before: &str, after: &str) -> String {
     changed(&text, "[[stages]]\nname = \"settle\"", &format!("{before}\n[[stages]]\nname = \"settle\""))
 }
 
-/// Resultants (N, T, M about the middle) of the forces on each joint.
+/// Returns the resultants (N, T, M about the middle) of the forces on each joint.
 fn resultants(result: &CaseResult, joints: usize) -> Vec<[f64; 3]> {
     let mut sums = vec![[0.0; 3]; joints];
     let mut middles = vec![([0.0; 2], 0.0f64); joints];
@@ -196,8 +197,8 @@ fn resultants(result: &CaseResult, joints: usize) -> Vec<[f64; 3]> {
     sums
 }
 
-/// Where three hinges make an arch determinate its thrust is that of statics, whatever the stiffness: rigid blocks by
-/// least energy and elastic ones by their path carry the same.
+/// If three hinges make an arch determinate, its thrust is that of statics for any stiffness: rigid blocks by least
+/// energy and elastic blocks by their path have the same forces.
 #[test]
 fn rigid_and_elastic_blocks_carry_the_same_after_a_settlement() {
     for x in [-0.05, 0.05] {
@@ -216,7 +217,8 @@ fn rigid_and_elastic_blocks_carry_the_same_after_a_settlement() {
     }
 }
 
-/// Three hinges at A, B and C, a support at A that moves by d: d + θ₁ × (B − A) = θ₂ × (B − C).
+/// For three hinges at A, B and C and a support at A that moves by d, the chain closes: d + θ₁ × (B − A) = θ₂ × (B −
+/// C).
 #[test]
 fn hinges_of_rigid_blocks_close_the_chain() {
     let live = "[[stages]]\nname = \"live\"\nloads = [{ kind = \"point\", span_fraction = 0.25, force = [0.0, -3e5] }]";
@@ -239,7 +241,7 @@ fn hinges_of_rigid_blocks_close_the_chain() {
     }
 }
 
-/// What the supports do together changes nothing: a common translation, and with small displacements a common rotation.
+/// A common motion of all supports changes nothing: a translation, and with small displacements a rotation.
 #[test]
 fn a_common_motion_of_all_supports_changes_nothing() {
     let both = |d: &str, rotation: f64| {
@@ -261,7 +263,7 @@ fn a_common_motion_of_all_supports_changes_nothing() {
     }
 }
 
-/// Rigid blocks whose loads cannot be carried do not follow anything.
+/// Rigid blocks whose loads cannot be carried do not settle.
 #[test]
 fn what_does_not_stand_before_does_not_settle() {
     let thin = changed(
@@ -272,7 +274,8 @@ fn what_does_not_stand_before_does_not_settle() {
     assert_eq!(answered(&thin).status, Status::NoEquilibrium);
 }
 
-/// The load after a settlement of rigid blocks, and the answer by friction that does not dilate, which says how it was read.
+/// Rigid blocks carry the same load after a settlement; friction without dilatancy gives the answer with a note on the
+/// flow rule.
 #[test]
 fn rigid_blocks_carry_the_same_load_after_a_settlement() {
     let moved = "{ support = \"left\", displacement = [-0.05, 0.0] }";
@@ -289,7 +292,7 @@ fn rigid_blocks_carry_the_same_load_after_a_settlement() {
     }
 }
 
-/// Seven rigid voussoirs of low friction whose left support moves in and down.
+/// Returns seven rigid voussoirs of low friction whose left support moves in and down.
 fn low_friction(solver: &str, friction: &str) -> String {
     format!(
         r#"name = "slips"
@@ -320,8 +323,8 @@ solver = "{solver}"
     )
 }
 
-/// Friction that does not dilate: the state of `limit_sequential` is the one that a path comes to as joints grow stiff. With
-/// associated flow the blocks move otherwise, and the thrust is another.
+/// With friction without dilatancy the state of `limit_sequential` equals the limit of a path as joints become stiff.
+/// With associated flow the blocks move in another way, and the thrust differs.
 #[test]
 fn rigid_blocks_slip_after_a_settlement_as_stiff_joints_let_them() {
     let state = |solver: &str, friction: &str| {
@@ -356,9 +359,9 @@ fn rigid_blocks_slip_after_a_settlement_as_stiff_joints_let_them() {
     }
 }
 
-/// A block between ground and ceiling that a piston pushes along: slip that dilates has no room, the law's own has. With H and V
-/// on the piston, V ≤ μ H, statics say H = μ (W + V + N) with the ceiling's N ≥ 0: more than one state, as the result says, and
-/// whichever solver is asked it does not say as well that joints were read otherwise.
+/// A block between ground and ceiling that a piston pushes cannot slide with dilatancy, but with the law's own flow.
+/// With H and V on the piston, V ≤ μ H, statics gives H = μ (W + V + N) with N ≥ 0 of the ceiling: there is more than
+/// one state, which the result reports. No solver reports another flow rule in addition.
 #[test]
 fn a_block_in_a_slot_follows_a_piston_by_its_own_flow_only() {
     let text = r#"name = "slot"
@@ -412,8 +415,8 @@ solver = "auto"
     }
 }
 
-/// A support that moves in against five voussoirs of high friction jams them: forces grow as stiff as joints are made, so that rigid
-/// blocks have no state on the way. Limit analysis refuses, and says why.
+/// A support that moves in against five voussoirs of high friction jams them: forces grow with the stiffness of joints,
+/// so that rigid blocks have no state on the way. Limit analysis refuses the case with the reason.
 #[test]
 fn rigid_blocks_that_jam_are_refused() {
     let scene = |solver: &str, friction: &str| {
@@ -436,7 +439,7 @@ fn rigid_blocks_that_jam_are_refused() {
     assert_close(greatest[1] / greatest[0], 100.0, 0.02);
 }
 
-/// `auto` follows no path where a field proves already that the blocks stand.
+/// `auto` follows no path if a field already proves that the blocks stand.
 #[test]
 fn a_static_field_proves_that_elastic_blocks_stand() {
     let text = arch(
@@ -458,7 +461,7 @@ fn a_static_field_proves_that_elastic_blocks_stand() {
     passes(&other);
 }
 
-/// Stages of loads and supports to and fro: loaded, settled, unloaded, settled, loaded until it collapses.
+/// Loads and settlements in any order (loaded, settled, unloaded, settled, loaded until collapse) end at the same load.
 #[test]
 fn loads_and_settlements_in_any_order_end_at_the_same_load() {
     let load = |name: &str, factor: f64| {

@@ -1,10 +1,10 @@
-//! Snap-through and long slips with finite displacements: arches of thick blocks and shallow arches against
-//! minima of their potential energy, blocks that slide and overturn against closed forms.
+//! Snap-through and long slips with finite displacements: arches of thick blocks and shallow arches against minima of
+//! their potential energy, blocks that slide and overturn against closed forms.
 //!
-//! The energies were minimised by another program, which shares nothing with Voussoir: unknowns are the
-//! motions of the blocks alone, E(q) = Σ ½ k A ⟨−g_n⟩² + ½ k_t A g_t² + Σ W y, ∂E/∂q + P ∂u/∂q = 0 at held
-//! displacements u of the load, the peak by golden section. Gaps are seen in axes that turn by the mean
-//! rotation of two blocks, which with springs is a material law like any other.
+//! Another program, which shares nothing with Voussoir, minimised the energies: unknowns are the motions of the blocks
+//! alone, E(q) = Σ ½ k A ⟨−g_n⟩² + ½ k_t A g_t² + Σ W y, ∂E/∂q + P ∂u/∂q = 0 at held displacements u of the load, the
+//! peak by golden section. Gaps are in axes that rotate by the mean rotation of two blocks, which with springs is a
+//! valid material law.
 
 use std::sync::Arc;
 use voussoir::core::limit::Status;
@@ -34,12 +34,12 @@ fn followed(
     (problem, answer, record.0)
 }
 
-/// Joints that never slide: the tangential spring acts where they are open too, or only where they touch.
+/// Joints that never slide: the tangential spring acts at open points too, or only at closed points.
 const STUCK: &str = "law = \"unilateral\"\ntangential = \"stuck\"";
 const ROUGH: &str = "law = \"coulomb\"\nfriction = 5.0";
 const DRY: &str = "law = \"coulomb\"\nfriction = 0.6";
 
-/// A segmental arch of rigid voussoirs on joints of stiffness k \[Pa/m\], half of it along them.
+/// A segmental arch of rigid voussoirs on joints with the stiffness k \[Pa/m\], and half of it along them.
 struct Arch {
     span: f64,
     rise: f64,
@@ -142,17 +142,17 @@ curve = true
     }
 }
 
-/// The factor of snap-through that the notes name.
+/// Returns the factor of the trough that the notes name.
 fn trough(notes: &[String]) -> f64 {
     let start = "after the peak the load falls to the factor ";
     let note = notes.iter().find_map(|note| note.strip_prefix(start)).unwrap_or_else(|| panic!("{notes:?}"));
     note.split(' ').next().and_then(|number| number.parse().ok()).expect("a number")
 }
 
-/// Two thick blocks hinge at the intrados of the supports and the extrados of the crown and snap through:
-/// peak and trough of the energy, with springs along all of a joint and along what touches of it. At the
-/// troughs one point touches in each joint; in the second case it has slipped so far that its corner has left the face,
-/// which that energy does not know.
+/// Two thick blocks hinge at the intrados of the supports and the extrados of the crown and snap through at the
+/// peak and the trough that another program finds from minima of the energy, with springs along the whole joint and
+/// along its closed part. At the troughs one point touches in each joint. In the second case it has slipped so far that its corner has left the face, which
+/// that energy does not model.
 #[test]
 fn two_thick_blocks_snap_through_at_the_extremes_of_their_energy() {
     for (law, stiffness, peak, low) in [
@@ -177,8 +177,8 @@ fn two_thick_blocks_snap_through_at_the_extremes_of_their_energy() {
     }
 }
 
-/// Peaks of shallow arches of thirteen voussoirs are those of their energy, by arc length and by
-/// displacement control.
+/// Shallow arches of thirteen voussoirs have the peaks that another program finds from minima of the energy, with arc
+/// length and with displacement control.
 #[test]
 fn shallow_arches_peak_where_their_energy_does() {
     for (rise, stiffness, loads, peak) in [
@@ -197,12 +197,12 @@ fn shallow_arches_peak_where_their_energy_does() {
     }
 }
 
-/// Shallow and steeper arches with friction 0.6, followed 0.2 m beyond the peak: each path ends with a peak
-/// and a certified post-peak branch, as far as `stop` says or for a reason that it names. Where the branch meets many slips,
-/// which of the reasons ends it depends on rounding: 1e-13 of the thickness changes it.
-/// Under a load at its crown the arch of rise 1.5 m on soft joints leans over from 170.3 on: the symmetric branch would
-/// peak at 180.0517 (joints that slip without losing contact at their corners), the load 0.1 % of the span beside the crown
-/// does at 176.8752.
+/// Shallow and steeper arches with friction 0.6, followed 0.2 m beyond the peak: each path ends with a peak and a
+/// certified post-peak branch, at the distance of `stop` or with a reason in the notes. On a branch with many slips the
+/// reason depends on rounding: a change of 1e-13 of the thickness changes it. Under a load at its crown the arch of
+/// rise 1.5 m on soft joints leans from 170.3 on: the symmetric branch would have its peak at 180.0517 (joints that
+/// slip without losing contact at their corners); with the load 0.1 % of the span beside the crown the peak is
+/// 176.8752.
 #[test]
 fn paths_of_shallow_arches_end_for_a_reason() {
     let reasons = [
@@ -241,8 +241,9 @@ fn paths_of_shallow_arches_end_for_a_reason() {
     }
 }
 
-/// An arch that its own weight snaps through has no equilibrium, however far it is followed: the same share
-/// of gravity is carried. Followed by .96 m arc lengths rise above that again, hanging, and stall; another strategy answers.
+/// An arch that snaps through under its own weight has no equilibrium, however far it is followed: the carried share of
+/// gravity is the same. Followed by 0.96 m with arc lengths the load rises above it again below the supports; another
+/// strategy solves the case.
 #[test]
 fn an_arch_that_its_weight_snaps_through_has_no_equilibrium() {
     for stop in [0.02, 0.96] {
@@ -295,8 +296,8 @@ loads = [{{ kind = "point", block = "block", point = {push:?}, force = [1000.0, 
     )
 }
 
-/// A block pushed over a wide ground slides under μ W for ever, four times its own width: its points belong
-/// to its own face, so the pressures under it stay as they are.
+/// A block pushed over a wide ground slides under the constant load μ W over four times its width: its points belong to
+/// its own face, so the pressures under it do not change.
 #[test]
 fn a_block_slides_a_long_way_under_the_same_load() {
     for push in [0.2, 0.8] {
@@ -312,7 +313,7 @@ fn a_block_slides_a_long_way_under_the_same_load() {
             for (force, end) in state.force.iter().zip(&last.force) {
                 assert!((force[0] - end[0]).abs() < 1e-6 * 40_000.0, "{force:?} {end:?}");
             }
-            // Moments about the block's left lower corner, turned with it.
+            // Moments about the left lower corner of the block, which rotates with it.
             let [x, y, theta] = state.motion[1];
             let place = |px: f64, py: f64| {
                 let (dx, dy) = (px - 0.5, py - 1.0);
@@ -335,10 +336,11 @@ fn a_block_slides_a_long_way_under_the_same_load() {
     }
 }
 
-/// A block slides over a shorter one, or over one as long, with which it shared both corners: the points belong to the
-/// support, or come to be corners' that stay on a face. The load is W tan(φ + θ) with the little that the block tilts by θ
-/// where all points slide on its face, down to W tan φ where they slide on the support's, and the block tips where the resultant reaches the support's edge: after a slip of b/2 − μ y, y the height of the push,
-/// less what soft joints tilt it by, which falls as 1/k. Read from a slip of h/20 on, where corners have come apart.
+/// A block that slides over a shorter block, or over one of equal length with the same corners, tips when the resultant
+/// reaches the edge of the support. Its points belong to the support, or change to corners that stay on a face. By
+/// theory the load is W tan(φ + θ) with the small tilt θ of the block if all points slide on its face, down to W tan φ
+/// if they slide on the face of the support. It tips after a slip of b/2 − μ y, where y is the height of the push, less
+/// the tilt from soft joints, which decreases as 1/k. Compared from a slip of h/20 on, when corners have separated.
 #[test]
 fn a_block_that_slides_over_an_edge_tips_where_the_resultant_reaches_it() {
     let weight = 60.0;
@@ -352,7 +354,7 @@ fn a_block_that_slides_over_an_edge_tips_where_the_resultant_reaches_it() {
             for state in states.iter().filter(|s| s.load_step == 1 && s.displacement > 0.11) {
                 let slip = -state.gap[0][1];
                 let [pressed, rubbed] = [0, 1].map(|i| state.force.iter().map(|r| r[i].abs()).sum::<f64>());
-                // Where it tips it sticks, and far beyond it slides back.
+                // It sticks while it tips, and slides back far beyond.
                 if rubbed > (0.5 - 1e-9) * pressed && state.factor > 25.0 {
                     let exact = |share: f64| weight * (0.5f64.atan() + share * state.motion[1][2]).tan();
                     let of_block = (state.factor - exact(0.0)) / (exact(1.0) - exact(0.0));

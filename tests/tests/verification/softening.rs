@@ -28,7 +28,7 @@ fn rock() -> DruckerPragerSoftening {
     }
 }
 
-/// code_aster SSNV168A: triaxial compression at 2 MPa; axial stress at three strains, to 1e-6, in one step
+/// code_aster SSNV168A (published): triaxial compression at 2 MPa; axial stress at three strains, to 1e-6, in one step
 /// or in many.
 #[test]
 fn code_aster_ssnv168a() {
@@ -52,8 +52,8 @@ fn code_aster_ssnv168a() {
     }
 }
 
-/// With a fracture energy the work of softening per area is that energy whatever the length, and a
-/// length above the largest is refused: there the stress would have to jump.
+/// With a fracture energy the work of softening per area is this energy for any length, and a length above the largest
+/// is refused, because the stress would have to jump.
 #[test]
 fn crushing_takes_its_fracture_energy_at_any_length() {
     let energy = 5e3;
@@ -81,7 +81,7 @@ fn crushing_takes_its_fracture_energy_at_any_length() {
             peak = peak.max(-point.response.stress[0]);
         }
         assert!(point.response.stress[0].abs() < 1e-6 * crushing);
-        // Trapezes miss the peak between two steps: an error of the order of the step squared.
+        // The trapezoidal rule misses the peak between two steps: an error of the order of the step squared.
         near(work * length, energy, 2e-4);
         assert!(peak <= crushing * (1.0 + 1e-12) && peak > 0.98 * crushing);
     }
@@ -90,9 +90,8 @@ fn crushing_takes_its_fracture_energy_at_any_length() {
     assert_eq!(refused, Err(UpdateFailure::LengthTooLarge));
 }
 
-/// The paper's cap with softening: under hydrostatic compression the work above the residual strength is
-/// G_c at any length, in uniaxial compression too (this cap is almost a wall), and a length above the
-/// largest is refused.
+/// The cap of the paper with softening: under hydrostatic compression the work above the residual strength is G_c for
+/// any length, in uniaxial compression too (this cap is almost a wall), and a length above the largest is refused.
 #[test]
 fn crushing_of_the_cap_takes_its_fracture_energy_at_any_length() {
     let energy = 20e3;
@@ -109,7 +108,7 @@ fn crushing_of_the_cap_takes_its_fracture_energy_at_any_length() {
         let end = 2.0 * energy / (8.0 * MPA) / length;
         let bulk = 5e9 / (3.0 * 0.6);
         let steps = 4000;
-        // Hydrostatic, strain driven.
+        // Hydrostatic compression under strain control.
         let (mut old, mut new) = ([0.0; 8], [0.0; 8]);
         let (mut before, mut work) = ((0.0, 0.0), 0.0);
         let last = 1.3 * end + 10.0 * MPA / bulk;
@@ -126,7 +125,7 @@ fn crushing_of_the_cap_takes_its_fracture_energy_at_any_length() {
         near(before.1, 2.0 * MPA, 1e-12);
         let left = (2.0 * MPA).powi(2) / (2.0 * bulk) + 2.0 * MPA * old[7];
         near((work - left) * length, energy, 1e-3);
-        // Uniaxial.
+        // Uniaxial compression.
         let mut point = DrivenPoint::new(PointLaw::Space(update.clone(), length)).unwrap();
         let mut work = 0.0;
         let last = -(1.3 * end / 3.0 + 30.0 * MPA / 5e9);
@@ -145,8 +144,8 @@ fn crushing_of_the_cap_takes_its_fracture_energy_at_any_length() {
     assert_eq!(refused, Err(UpdateFailure::LengthTooLarge));
 }
 
-/// Behind the peak a controlled stress that falls unloads the point along E (a cohesive joint along its secant) and softens
-/// nothing; one that rises again goes back the same way, and what is beyond the strength that is left is refused.
+/// After the peak a controlled stress that falls unloads the point along E (a cohesive joint along its secant) without
+/// softening; a stress that rises again follows the same line, and a stress above the remaining strength is refused.
 #[test]
 fn a_stress_that_falls_unloads_a_softened_point() {
     let update = rock().stress_update().unwrap();
@@ -170,7 +169,7 @@ fn a_stress_that_falls_unloads_a_softened_point() {
     }
 }
 
-/// At the tip of the cone stress is R/(3A) in all directions, and hydrostatic tension gives the closed form.
+/// At the tip of the cone the stress is R/(3A) in all directions, and hydrostatic tension has the closed form.
 #[test]
 fn hydrostatic_tension_ends_at_the_tip() {
     let update = rock().stress_update().unwrap();
@@ -209,8 +208,8 @@ fn response(law: &Cohesive) -> Arc<dyn InterfaceResponse> {
     law.response().expect("a response")
 }
 
-/// Opening and pure shear: the peak is the strength, the energy dissipated G_I or G_II, exactly and for
-/// any number of steps; the work done is the same, with an error that falls with the step.
+/// In opening and in pure shear the peak is the strength and the dissipated energy is exactly G_I or G_II, for any
+/// number of steps; the work is the same, with an error that decreases with the step.
 #[test]
 fn each_mode_takes_its_fracture_energy() {
     let law = mortar();
@@ -251,8 +250,8 @@ fn each_mode_takes_its_fracture_energy() {
     }
 }
 
-/// Once the bond is gone, |t_t| = μ p exactly, in either sense; the peak before lies between max(c, μ p)
-/// and c + μ p and tends to c + μ p as the joint gets stiffer.
+/// After the bond is lost, |t_t| = μ p exactly, in both senses; the peak before is between max(c, μ p) and c + μ p and
+/// tends to c + μ p as the joint becomes stiffer.
 #[test]
 fn dry_friction_is_left() {
     let mut ratio = Vec::new();
@@ -284,8 +283,8 @@ fn dry_friction_is_left() {
     assert!(ratio[0] < ratio[1] && ratio[1] < ratio[2] && ratio[2] > 0.96, "{ratio:?}");
 }
 
-/// Unloading of an open joint goes back to the origin, and a closed joint presses as if it were whole: no
-/// memory of opening in compression, but damage stays.
+/// Unloading of an open joint returns to the origin, and a closed joint in compression behaves as if it were intact:
+/// opening has no effect in compression, but damage remains.
 #[test]
 fn an_opened_joint_closes_where_it_was() {
     let update = response(&mortar());

@@ -41,8 +41,7 @@ fn push(height: f64, extra: &str) -> String {
 const SOLVERS: [&str; 2] = ["limit_chain", "limit_conic"];
 const ROUGH: &str = "law = \"coulomb_associated\"\nfriction = 0.6";
 
-/// Pushed at its top with μ 0.6 a cube tips about its edge at W/2 = 5 kN; at its foot it slides at
-/// μ W = 6 kN.
+/// Pushed at its top with μ 0.6 a cube tips about its edge at W/2 = 5 kN; pushed at its foot it slides at μ W = 6 kN.
 #[test]
 fn a_cube_tips_or_slides() {
     for solver in SOLVERS {
@@ -57,8 +56,8 @@ fn a_cube_tips_or_slides() {
     }
 }
 
-/// With cohesion 2 kPa, tension 1 kPa and crushing 100 kPa the integrated joint gives sliding at
-/// c A + μ W = 8 kN, and tipping at the top at M = (N + f_t A)(f_c A − N) h / (2 A (f_c + f_t)).
+/// With cohesion 2 kPa, tension 1 kPa and crushing 100 kPa the integrated joint slides at c A + μ W = 8 kN, and tips at
+/// the top at M = (N + f_t A)(f_c A − N) h / (2 A (f_c + f_t)).
 #[test]
 fn a_mortared_cube_follows_the_stress_block() {
     let mortar = "law = \"mohr_coulomb\"\nfriction = 0.6\ncohesion = 2000.0\ntensile_strength = 1000.0\ncompressive_strength = 1e5";
@@ -71,8 +70,8 @@ fn a_mortared_cube_follows_the_stress_block() {
     }
 }
 
-/// Gravity beyond the friction cone: no equilibrium, refuted by a sliding motion; pushing back makes
-/// it possible from 2 kN, reported as an interval and not as a load factor.
+/// Gravity outside the friction cone: there is no equilibrium, refuted by a sliding motion. A push in the opposite
+/// direction makes it possible from 2 kN, which is reported as an interval and not as a load factor.
 #[test]
 fn dead_load_alone_fails() {
     let tilted = "[8.0, -10.0]";
@@ -85,15 +84,15 @@ fn dead_load_alone_fails() {
         assert_close(low.expect("finite"), 2.0, 1e-12);
         assert!(high.expect("finite") > 2.0);
         assert_eq!(result.stages[0].status, Status::NoEquilibrium);
-        // Nothing but dead load: the same, without an interval.
+        // Dead load alone: the same status, without an interval.
         let dead = answered(&block(ROUGH, tilted, "", solver));
         assert_eq!((dead.status, dead.feasible_interval), (Status::NoEquilibrium, None));
         assert!(dead.certificate.passed, "{:?}", dead.certificate);
     }
 }
 
-/// With finite displacements too: where friction alone holds no share of gravity is carried, and none is tried; with
-/// cohesion c A = 1 kN the block slides away at the share c A / (8 kN − 0.6 · 10 kN) = ½ of it.
+/// With finite displacements too: if friction alone holds no share of gravity, none is tried; with cohesion c A = 1 kN
+/// the block slides at the share c A / (8 kN − 0.6 · 10 kN) = ½.
 #[test]
 fn finite_displacements_know_what_carries_no_share_of_its_weight() {
     let tilted = |joint: &str| {
@@ -109,7 +108,7 @@ fn finite_displacements_know_what_carries_no_share_of_its_weight() {
     assert_eq!(tilted("law = \"coulomb\"\nfriction = 0.81").status, Status::Stands);
 }
 
-/// No factor helps: pushing upwards on a block that slides away leaves equilibrium impossible.
+/// No factor makes equilibrium possible if a sliding block is pushed upwards.
 #[test]
 fn no_factor_makes_equilibrium_possible() {
     let level = "[[stages]]\nname = \"down\"\nuntil = \"collapse\"\nloads = [{ kind = \"point\", block = \"a\", point = [0.5, 1.0], force = [600.0, -1000.0] }]";
@@ -120,7 +119,7 @@ fn no_factor_makes_equilibrium_possible() {
     }
 }
 
-/// A load that presses the block on is carried at any factor, with a ray; capped by factor_max it stands.
+/// A load that presses the block on the ground is carried at any factor, with a ray; limited by factor_max it stands.
 #[test]
 fn a_pressed_block_is_unbounded_and_stands_up_to_a_cap() {
     let press = |extra: &str| {
@@ -138,7 +137,7 @@ fn a_pressed_block_is_unbounded_and_stands_up_to_a_cap() {
     }
 }
 
-/// A stage with a factor stands if it gets there and collapses on the way if it does not.
+/// A stage with a factor stands if the factor is reached, and collapses otherwise.
 #[test]
 fn a_stage_with_a_factor_stands_or_collapses_on_the_way() {
     let to = |factor: f64| changed(&push(1.0, ""), "until = \"collapse\"", &format!("factor = {factor:?}"));
@@ -162,7 +161,7 @@ fn zero_friction_is_frictionless() {
     }
 }
 
-/// A non-associated law is read with its own flow; a solver that reads it as associated says so.
+/// A non-associated law has its own flow; a solver with associated flow reports it.
 #[test]
 fn non_associated_friction_is_flagged() {
     let coulomb = "law = \"coulomb\"\nfriction = 0.6";

@@ -1,6 +1,5 @@
-//! Walls of Ferris & Tin-Loi (2001), Int. J. Mech. Sci. 43, and Gilbert, Casapulla & Ahmed (2006),
-//! Computers & Structures 84: associated load factors .643, .404, .332, computed to eight digits by
-//! an independent program.
+//! Walls of Ferris & Tin-Loi (2001), Int. J. Mech. Sci. 43, and Gilbert, Casapulla & Ahmed (2006), Computers &
+//! Structures 84: associated load factors .643, .404, .332, computed to eight digits by an independent program.
 
 use voussoir::core::limit::Status;
 use voussoir_tests::known::{FIVE, SIX, published_wall};
@@ -29,7 +28,7 @@ fn wall_4() {
     associated(4);
 }
 
-/// A wall of 20 courses by 20 bricks is answered and certified: relative gap at most 1e-9.
+/// A wall of 20 courses by 20 bricks is solved and certified with a relative gap of at most 1e-9.
 #[test]
 fn twenty_by_twenty() {
     let result = answered(&Wall::in_bond(20, 20).study());
@@ -38,16 +37,16 @@ fn twenty_by_twenty() {
     assert!((high - low) / high <= 1e-9 && result.certificate.passed);
 }
 
-/// Without weight a wall carries no push: the factor is 0, not "rounding".
+/// A wall without weight carries no push: the factor is exactly 0.
 #[test]
 fn a_weightless_wall_carries_nothing() {
     let result = answered(&Wall { gravity: 0.0, ..Wall::of_rows(&[SIX, FIVE]) }.study());
     assert_eq!((result.status, result.load_factor), (Status::Collapse, Some(0.0)));
 }
 
-/// A wall of 40 courses by 40 bricks: one program by blocks, and bounds that meet to rounding though some rows carry
-/// next to nothing. Clarabel and a polish of its pair came to 0.4530678655 in 8 s, with a field that exceeds strengths by 7e-13 of
-/// the load, which is worth 6e-11 of the factor.
+/// A wall of 40 courses by 40 bricks needs one program by blocks, and its bounds are equal within rounding although
+/// some rows carry almost no force. Another program (Clarabel with a polish of its solution) gives 0.4530678655, with a
+/// field that exceeds strengths by 7e-13 of the load, which is 6e-11 of the factor.
 #[test]
 fn forty_by_forty() {
     let result = answered(&Wall::in_bond(40, 40).study());
@@ -60,8 +59,8 @@ fn forty_by_forty() {
     assert!(counters["factorisations"] <= 62, "{counters:?}");
 }
 
-/// A wall of 150 courses by 150 bricks. The factors alone leave 6e-10 out of equilibrium there, however often they solve for it:
-/// conjugate corrections take it off.
+/// A wall of 150 courses by 150 bricks is solved and certified: the factors alone leave 6e-10 of the load out of
+/// equilibrium, and conjugate corrections remove it.
 #[test]
 #[ignore = "by hand: half a minute of processor time"]
 fn a_hundred_and_fifty_by_a_hundred_and_fifty() {
