@@ -17,6 +17,8 @@ pub(crate) mod live;
 pub mod markdown;
 pub(crate) mod page;
 pub mod parquet;
+#[cfg(test)]
+mod parquet_bytes;
 pub mod path_proofs;
 #[cfg(feature = "png")]
 pub mod png;
