@@ -19,8 +19,8 @@ const PAGES: [(&[&str], &str); 9] = [
     (&["units", "unit"], include_str!("topics/units.md")),
 ];
 
-/// The glossary, of whose tables each row explains the words of its first column.
-const GLOSSARY: &str = include_str!("../../../docs/reference/glossary.md");
+/// The glossary, a copy of `docs/reference/glossary.md` in the package. Each row of its tables explains the words of its first column.
+const GLOSSARY: &str = include_str!("../../templates/glossary.md");
 
 /// Words of the glossary with their meaning.
 fn glossary() -> impl Iterator<Item = (&'static str, &'static str)> {

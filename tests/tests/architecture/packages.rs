@@ -95,17 +95,19 @@ fn packages_hold_what_they_include() {
     assert!(missing.is_empty(), "not in the package:\n{}", missing.join("\n"));
 }
 
-/// `voussoir new law` writes the files of the example, which is compiled and tested.
+/// Files outside a package that the program includes are copied into it: the law of the example, which `voussoir new law` writes,
+/// and the glossary.
 #[test]
-fn the_template_of_a_law_is_the_example() {
-    let studies = workspace().join("studies");
-    for (template, example) in
-        [("keyed.rs", "src/keyed.rs"), ("keyed.md", "src/keyed.md"), ("test.rs", "tests/keyed.rs")]
-    {
-        let read = |path: PathBuf| std::fs::read_to_string(path).expect("a file");
-        let same =
-            read(studies.join("templates").join(template)) == read(studies.join("examples/my_law").join(example));
-        assert!(same, "cp studies/examples/my_law/{example} studies/templates/{template}");
+fn copies_are_up_to_date() {
+    let read = |path: &str| std::fs::read_to_string(workspace().join(path)).expect("a file");
+    for (copy, original) in [
+        ("keyed.rs", "studies/examples/my_law/src/keyed.rs"),
+        ("keyed.md", "studies/examples/my_law/src/keyed.md"),
+        ("test.rs", "studies/examples/my_law/tests/keyed.rs"),
+        ("glossary.md", "docs/reference/glossary.md"),
+    ] {
+        let copy = format!("studies/templates/{copy}");
+        assert!(read(&copy) == read(original), "cp {original} {copy}");
     }
 }
 
