@@ -9,6 +9,9 @@
 //! parallel to t and goes from −h/2 (end 0) to +h/2 (end 1).
 #![forbid(unsafe_code)]
 
+// The derive `Keys` names this crate from outside.
+extern crate self as voussoir_core;
+
 pub mod certificate;
 pub mod elastic;
 mod form;

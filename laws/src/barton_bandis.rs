@@ -1,26 +1,30 @@
 //! `barton_bandis`: a rough rock joint: hyperbolic closure, friction that falls with pressure.
 #![doc = include_str!("barton_bandis.md")]
 
-use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use voussoir_core::law::{Effect, InterfaceLaw, InterfaceResponse, TractionPoint, UpdateBranch, UpdateFailure};
-use voussoir_core::plugin::{Capability, Card, KnownPath, Parameter, PluginKind, Property, Quantity, Range, Sample};
+use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, PluginKind, Property, Sample};
 
 /// A rock joint by its index numbers.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Keys)]
 pub struct BartonBandis {
-    /// JRC.
+    /// joint roughness coefficient JRC
+    #[key(unit = "-", range = ">= 0, <= 20")]
     pub roughness: f64,
-    /// JCS \[Pa\].
+    /// joint wall compressive strength JCS
+    #[key(unit = "Pa", range = "> 0")]
     pub wall_strength: f64,
-    /// φ_r \[deg\].
+    /// residual angle of friction φ_r
+    #[key(unit = "deg", range = ">= 10, <= 60")]
     pub residual_angle: f64,
-    /// k_ni \[Pa/m\].
+    /// k_ni, against the first closing
+    #[key(unit = "Pa/m", range = "> 0")]
     pub normal_stiffness: f64,
-    /// V_m \[m\].
+    /// V_m, at which the hyperbola would be infinitely stiff
+    #[key(unit = "m", range = "> 0")]
     pub greatest_closure: f64,
-    /// k_t \[Pa/m\].
+    /// k_t, up to the peak
+    #[key(unit = "Pa/m", range = "> 0")]
     pub shear_stiffness: f64,
 }
 
@@ -140,14 +144,6 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::InterfaceLaw,
         tag: "barton_bandis",
         summary: "a rough rock joint: hyperbolic closure, friction by roughness and wall strength that falls with pressure",
-        parameters: &[
-            Parameter::number("roughness", Quantity::Ratio, Range::new(0.0, false, 20.0, false), "joint roughness coefficient JRC"),
-            Parameter::number("wall_strength", Quantity::Stress, Range::POSITIVE, "joint wall compressive strength JCS"),
-            Parameter::number("residual_angle", Quantity::Degrees, Range::new(10.0, false, 60.0, false), "residual angle of friction φ_r"),
-            Parameter::number("normal_stiffness", Quantity::Stiffness, Range::POSITIVE, "k_ni, against the first closing"),
-            Parameter::number("greatest_closure", Quantity::Length, Range::POSITIVE, "V_m, at which the hyperbola would be infinitely stiff"),
-            Parameter::number("shear_stiffness", Quantity::Stiffness, Range::POSITIVE, "k_t, up to the peak"),
-        ],
         provides: &[Capability::RESPONSE],
         claims: &[Property::DISSIPATIVE],
         samples: &[
@@ -161,6 +157,6 @@ voussoir_core::inventory::submit! {
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("barton_bandis.md"),
-        ..Card::BLANK
+        ..Card::of::<BartonBandis>()
     }
 }

@@ -1,33 +1,38 @@
 //! `cohesive`: a bond that softens in tension and shear and leaves dry friction behind.
 #![doc = include_str!("cohesive.md")]
 
-use crate::parameters::*;
-use serde::{Deserialize, Serialize};
+use crate::shared::*;
 use std::sync::Arc;
 use voussoir_core::law::{Effect, InterfaceLaw, InterfaceResponse, TractionPoint, UpdateBranch, UpdateFailure};
-use voussoir_core::plugin::{
-    Capability, Card, KnownPath, Need, Parameter, PluginKind, Property, Quantity, Range, Sample, check_as,
-};
+use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, PluginKind, Property, Sample};
 
 /// A mortared joint with fracture energies.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Keys)]
+#[keys(check = Cohesive::validate)]
 pub struct Cohesive {
     /// μ.
+    #[key(like = JointKeys)]
     pub friction: Option<f64>,
     /// atan μ \[deg\].
+    #[key(like = JointKeys)]
     pub friction_angle: Option<f64>,
-    /// f_t \[Pa\].
+    /// greatest tension of the bond
+    #[key(unit = "Pa", range = "> 0")]
     pub tensile_strength: f64,
-    /// c \[Pa\].
+    /// greatest shear of the bond without compression
+    #[key(unit = "Pa", range = "> 0")]
     pub cohesion: f64,
     /// k_n \[Pa/m\].
+    #[key(like = JointKeys)]
     pub normal_stiffness: f64,
     /// k_t \[Pa/m\].
+    #[key(like = JointKeys)]
     pub shear_stiffness: f64,
-    /// G_I \[J/m²\].
+    /// energy that opening takes per area, mode I
+    #[key(unit = "J/m2", range = "> 0")]
     pub tensile_fracture_energy: f64,
-    /// G_II \[J/m²\].
+    /// energy that shearing the bond takes per area without friction, mode II
+    #[key(unit = "J/m2", range = "> 0")]
     pub shear_fracture_energy: f64,
 }
 
@@ -220,8 +225,6 @@ impl InterfaceResponse for CohesiveResponse {
     }
 }
 
-const STRENGTH: Range = Range::POSITIVE;
-
 /// Opened on the bilinear law, f_t (g_u − g) / (g_u − g_0) with g_u = 2 G_I / f_t, back on the secant, and closed.
 const KNOWN_PATHS: &[KnownPath] = &[KnownPath {
     table: "friction = 0.6\ntensile_strength = 3e5\ncohesion = 5e5\nnormal_stiffness = 1e10\nshear_stiffness = 5e9\ntensile_fracture_energy = 20.0\nshear_fracture_energy = 150.0",
@@ -241,16 +244,6 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::InterfaceLaw,
         tag: "cohesive",
         summary: "a bond that softens in tension and shear, with fracture energies, down to dry friction",
-        parameters: &[
-            FRICTION,
-            FRICTION_ANGLE,
-            Parameter::number("tensile_strength", Quantity::Stress, STRENGTH, "greatest tension of the bond"),
-            Parameter::number("cohesion", Quantity::Stress, STRENGTH, "greatest shear of the bond without compression"),
-            Parameter { need: Need::Required, ..NORMAL_STIFFNESS },
-            Parameter { need: Need::Required, ..SHEAR_STIFFNESS },
-            Parameter::number("tensile_fracture_energy", Quantity::EnergyPerArea, Range::POSITIVE, "energy that opening takes per area, mode I"),
-            Parameter::number("shear_fracture_energy", Quantity::EnergyPerArea, Range::POSITIVE, "energy that shearing the bond takes per area without friction, mode II"),
-        ],
         provides: &[Capability::RESPONSE],
         claims: &[Property::DISSIPATIVE],
         samples: &[
@@ -264,7 +257,6 @@ voussoir_core::inventory::submit! {
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("cohesive.md"),
-        check: |value| check_as::<Cohesive>(value, Cohesive::validate),
-        ..Card::BLANK
+        ..Card::of::<Cohesive>()
     }
 }

@@ -1,26 +1,35 @@
 //! `coulomb`: unilateral contact with Coulomb friction, slip not dilating unless asked.
 #![doc = include_str!("coulomb.md")]
 
-use crate::parameters::*;
-use serde::{Deserialize, Serialize};
+use crate::shared::*;
 use voussoir_core::law::{Facet, InterfaceLaw};
-use voussoir_core::plugin::{Capability, Card, KnownPath, Parameter, PluginKind, Property, Sample, check_as};
+use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, PluginKind, Property, Sample};
 
 /// Dry friction, non-associated by default.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Keys)]
+#[keys(check = Coulomb::validate)]
 pub struct Coulomb {
     /// μ.
+    #[key(like = JointKeys)]
     pub friction: Option<f64>,
     /// atan μ \[deg\].
+    #[key(like = JointKeys)]
     pub friction_angle: Option<f64>,
     /// ψ \[deg\].
-    #[serde(default)]
+    #[key(like = JointKeys, default = 0.0)]
     pub dilatancy_angle: f64,
     /// k_n \[Pa/m\].
+    #[key(like = JointKeys)]
     pub normal_stiffness: Option<f64>,
     /// k_t \[Pa/m\].
+    #[key(like = JointKeys)]
     pub shear_stiffness: Option<f64>,
+}
+
+impl Coulomb {
+    fn validate(&self) -> Vec<(String, String)> {
+        validate_friction(self.friction, self.friction_angle, Some(self.dilatancy_angle))
+    }
 }
 
 #[typetag::serde(name = "coulomb")]
@@ -35,9 +44,6 @@ impl InterfaceLaw for Coulomb {
         stiffness(self.normal_stiffness, self.shear_stiffness)
     }
 }
-
-const PARAMETERS: &[Parameter] =
-    &[FRICTION, FRICTION_ANGLE, DILATANCY_ANGLE.default("0.0"), NORMAL_STIFFNESS, SHEAR_STIFFNESS];
 
 /// Closed, slipped, back within stick, slipped the other way, opened.
 const KNOWN_PATHS: &[KnownPath] = &[KnownPath {
@@ -58,7 +64,6 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::InterfaceLaw,
         tag: "coulomb",
         summary: "no tension, Coulomb friction; slip does not dilate (non-associated) unless dilatancy_angle says so",
-        parameters: PARAMETERS,
         provides: &[Capability::FACETS, Capability::RESPONSE],
         claims: &[Property::DISSIPATIVE],
         samples: &[
@@ -70,9 +75,6 @@ voussoir_core::inventory::submit! {
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("coulomb.md"),
-        check: |value| check_as::<Coulomb>(value, |law| {
-            validate_friction(law.friction, law.friction_angle, Some(law.dilatancy_angle))
-        }),
-        ..Card::BLANK
+        ..Card::of::<Coulomb>()
     }
 }

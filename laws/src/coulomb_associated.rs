@@ -1,23 +1,32 @@
 //! `coulomb_associated`: Coulomb friction whose slip dilates by the angle of friction.
 #![doc = include_str!("coulomb_associated.md")]
 
-use crate::parameters::*;
-use serde::{Deserialize, Serialize};
+use crate::shared::*;
 use voussoir_core::law::{Facet, InterfaceLaw};
-use voussoir_core::plugin::{Capability, Card, KnownPath, PluginKind, Property, Sample, check_as};
+use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, PluginKind, Property, Sample};
 
 /// Dry friction with associated flow.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Keys)]
+#[keys(check = CoulombAssociated::validate)]
 pub struct CoulombAssociated {
     /// μ.
+    #[key(like = JointKeys)]
     pub friction: Option<f64>,
     /// atan μ \[deg\].
+    #[key(like = JointKeys)]
     pub friction_angle: Option<f64>,
     /// k_n \[Pa/m\].
+    #[key(like = JointKeys)]
     pub normal_stiffness: Option<f64>,
     /// k_t \[Pa/m\].
+    #[key(like = JointKeys)]
     pub shear_stiffness: Option<f64>,
+}
+
+impl CoulombAssociated {
+    fn validate(&self) -> Vec<(String, String)> {
+        validate_friction(self.friction, self.friction_angle, None)
+    }
 }
 
 #[typetag::serde(name = "coulomb_associated")]
@@ -49,7 +58,6 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::InterfaceLaw,
         tag: "coulomb_associated",
         summary: "no tension, Coulomb friction with associated flow: slip opens the joint, as linear programs assume",
-        parameters: &[FRICTION, FRICTION_ANGLE, NORMAL_STIFFNESS, SHEAR_STIFFNESS],
         provides: &[Capability::FACETS, Capability::RESPONSE],
         claims: &[Property::ASSOCIATED, Property::DISSIPATIVE, Property::SYMMETRIC_TANGENT],
         samples: &[
@@ -60,9 +68,6 @@ voussoir_core::inventory::submit! {
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("coulomb_associated.md"),
-        check: |value| check_as::<CoulombAssociated>(value, |law| {
-            validate_friction(law.friction, law.friction_angle, None)
-        }),
-        ..Card::BLANK
+        ..Card::of::<CoulombAssociated>()
     }
 }

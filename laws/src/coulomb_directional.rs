@@ -1,27 +1,29 @@
 //! `coulomb_directional`: friction that differs with the sense of slip.
 #![doc = include_str!("coulomb_directional.md")]
 
-use crate::parameters::*;
-use serde::{Deserialize, Serialize};
+use crate::shared::*;
 use voussoir_core::law::{Facet, FacetMode, InterfaceLaw};
-use voussoir_core::plugin::{
-    Capability, Card, KnownPath, Parameter, PluginKind, Property, Quantity, Range, Sample, check_as,
-};
+use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, PluginKind, Property, Sample};
 
 /// Dry friction with a grain.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Keys)]
+#[keys(check = CoulombDirectional::validate)]
 pub struct CoulombDirectional {
-    /// μ₊.
+    /// coefficient μ₊ against slip of the plus body along +t (t is the joint's normal from minus to plus,
+    /// turned by +90°)
+    #[key(unit = "-", range = ">= 0")]
     pub friction_forward: f64,
-    /// μ₋.
+    /// coefficient μ₋ against slip along −t
+    #[key(unit = "-", range = ">= 0")]
     pub friction_backward: f64,
     /// ψ \[deg\].
-    #[serde(default)]
+    #[key(like = JointKeys, default = 0.0)]
     pub dilatancy_angle: f64,
     /// k_n \[Pa/m\].
+    #[key(like = JointKeys)]
     pub normal_stiffness: Option<f64>,
     /// k_t \[Pa/m\].
+    #[key(like = JointKeys)]
     pub shear_stiffness: Option<f64>,
 }
 
@@ -71,13 +73,6 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::InterfaceLaw,
         tag: "coulomb_directional",
         summary: "no tension, Coulomb friction that differs with the sense of slip, as of tooled or bedded faces",
-        parameters: &[
-            Parameter::number("friction_forward", Quantity::Ratio, Range::NON_NEGATIVE, "coefficient μ₊ against slip of the plus body along +t (t is the joint's normal from minus to plus, turned by +90°)"),
-            Parameter::number("friction_backward", Quantity::Ratio, Range::NON_NEGATIVE, "coefficient μ₋ against slip along −t"),
-            DILATANCY_ANGLE.default("0.0"),
-            NORMAL_STIFFNESS,
-            SHEAR_STIFFNESS,
-        ],
         provides: &[Capability::FACETS, Capability::RESPONSE],
         claims: &[Property::DISSIPATIVE],
         samples: &[
@@ -92,7 +87,6 @@ voussoir_core::inventory::submit! {
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("coulomb_directional.md"),
-        check: |value| check_as::<CoulombDirectional>(value, CoulombDirectional::validate),
-        ..Card::BLANK
+        ..Card::of::<CoulombDirectional>()
     }
 }

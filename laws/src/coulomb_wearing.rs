@@ -1,30 +1,39 @@
 //! `coulomb_wearing`: dilatant friction whose dilatancy wears out with slip.
 #![doc = include_str!("coulomb_wearing.md")]
 
-use crate::parameters::*;
-use serde::{Deserialize, Serialize};
+use crate::shared::*;
 use std::sync::Arc;
 use voussoir_core::law::{Effect, InterfaceLaw, InterfaceResponse, TractionPoint, UpdateBranch, UpdateFailure};
-use voussoir_core::plugin::{
-    Capability, Card, KnownPath, Need, Parameter, PluginKind, Property, Quantity, Range, Sample, check_as,
-};
+use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, PluginKind, Property, Sample};
 
 /// A rough joint that becomes smooth.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Keys)]
+#[keys(check = CoulombWearing::validate)]
 pub struct CoulombWearing {
     /// μ of the worn joint.
+    #[key(like = JointKeys)]
     pub friction: Option<f64>,
     /// atan μ \[deg\].
+    #[key(like = JointKeys)]
     pub friction_angle: Option<f64>,
-    /// ψ_0 \[deg\].
+    /// angle ψ_0 by which slip opens the fresh joint; its tangent adds to the friction
+    #[key(unit = "deg", range = ">= 0, < 90")]
     pub dilatancy_angle: f64,
-    /// z_0 \[m\].
+    /// slip z_0 over which the dilatancy falls to 1/e
+    #[key(unit = "m", range = "> 0")]
     pub wear_slip: f64,
     /// k_n \[Pa/m\].
+    #[key(like = JointKeys)]
     pub normal_stiffness: f64,
     /// k_t \[Pa/m\].
+    #[key(like = JointKeys)]
     pub shear_stiffness: f64,
+}
+
+impl CoulombWearing {
+    fn validate(&self) -> Vec<(String, String)> {
+        validate_friction(self.friction, self.friction_angle, None)
+    }
 }
 
 #[typetag::serde(name = "coulomb_wearing")]
@@ -192,14 +201,6 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::InterfaceLaw,
         tag: "coulomb_wearing",
         summary: "no tension, friction with dilatancy that wears out with slip",
-        parameters: &[
-            FRICTION,
-            FRICTION_ANGLE,
-            Parameter::number("dilatancy_angle", Quantity::Degrees, Range::new(0.0, false, 90.0, true), "angle ψ_0 by which slip opens the fresh joint; its tangent adds to the friction"),
-            Parameter::number("wear_slip", Quantity::Length, Range::POSITIVE, "slip z_0 over which the dilatancy falls to 1/e"),
-            Parameter { need: Need::Required, ..NORMAL_STIFFNESS },
-            Parameter { need: Need::Required, ..SHEAR_STIFFNESS },
-        ],
         provides: &[Capability::RESPONSE],
         claims: &[Property::DISSIPATIVE],
         samples: &[
@@ -213,7 +214,6 @@ voussoir_core::inventory::submit! {
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("coulomb_wearing.md"),
-        check: |value| check_as::<CoulombWearing>(value, |law| validate_friction(law.friction, law.friction_angle, None)),
-        ..Card::BLANK
+        ..Card::of::<CoulombWearing>()
     }
 }

@@ -4,52 +4,55 @@
 pub mod surface;
 mod update;
 
-use crate::elastic::{POISSON_RATIO, YOUNG_MODULUS};
-use crate::rigid::DENSITY;
-use serde::{Deserialize, Serialize};
+use crate::shared::MaterialKeys;
 use std::sync::Arc;
 use surface::Surface;
 use update::{CapUpdate, Strength};
 use voussoir_core::law::{BulkMaterial, Elasticity, Isotropic, StressUpdate};
-use voussoir_core::plugin::{
-    Capability, Card, KnownPath, Need, Parameter, PluginKind, Property, Quantity, Range, Sample, Shape, check_as,
-};
+use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, PluginKind, Property, Sample};
 
 /// The modified Drucker–Prager model with a cap.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Keys)]
+#[keys(check = DruckerPragerCap::validate)]
 pub struct DruckerPragerCap {
     /// E \[Pa\].
+    #[key(like = MaterialKeys)]
     pub young_modulus: f64,
     /// ν.
+    #[key(like = MaterialKeys)]
     pub poisson_ratio: f64,
     /// ρ \[kg/m³\].
+    #[key(like = MaterialKeys)]
     pub density: f64,
-    /// β \[deg\].
+    /// slope β of the shear surface in the plane of pressure p and von Mises stress q
+    #[key(unit = "deg", range = ">= 0, < 90")]
     pub cap_friction_angle: f64,
-    /// d \[Pa\].
+    /// d, the von Mises stress of the shear surface at p = 0
+    #[key(unit = "Pa", range = ">= 0")]
     pub cap_cohesion: f64,
-    /// R.
+    /// R, the cap's half axis along p over that along q
+    #[key(unit = "-", range = "> 0")]
     pub cap_eccentricity: f64,
-    /// α.
-    #[serde(default)]
+    /// α, size of the rounded transition between shear surface and cap
+    #[key(unit = "-", range = ">= 0", default = 0.0)]
     pub transition: f64,
-    /// (ε_v, p_b \[Pa\]) pairs.
+    /// pairs \[compaction, p_b\]: pressure of yield in hydrostatic compression over volumetric plastic
+    /// strain, constant beyond the ends
+    #[key(names = ["plastic volume strain", "pressure"], unit = ["-", "Pa"], range = ["", "> 0"], len = ">= 1, <= 1000", optional = "uniaxial_strength is given")]
     pub hardening: Option<Vec<[f64; 2]>>,
-    /// Strength in uniaxial compression \[Pa\], instead of `hardening`.
+    /// strength in uniaxial compression, which sets a constant p_b
+    #[key(unit = "Pa", range = "> 0", optional = "hardening is given")]
     pub uniaxial_strength: Option<f64>,
-    /// ε_v of the undeformed material.
-    #[serde(default)]
+    /// compaction of the undeformed material, where the table is entered
+    #[key(unit = "-", default = 0.0)]
     pub initial_compaction: f64,
-    /// G_c \[J/m²\]: crushing softens.
+    /// G_c: p_b falls as the material crushes, and a band that crushes under hydrostatic pressure takes
+    /// this energy per area
+    #[key(unit = "J/m2", range = "> 0", optional = "crushing does not soften")]
     pub crushing_fracture_energy: Option<f64>,
-    /// p_b of crushed material over p_b of intact material.
-    #[serde(default = "residual_ratio")]
+    /// p_b of crushed over p_b of intact material, with crushing_fracture_energy
+    #[key(unit = "-", range = "> 0, < 1", default = 0.1)]
     pub residual_ratio: f64,
-}
-
-fn residual_ratio() -> f64 {
-    0.1
 }
 
 impl DruckerPragerCap {
@@ -67,7 +70,7 @@ impl DruckerPragerCap {
             uniaxial_strength: None,
             initial_compaction: 0.0,
             crushing_fracture_energy: None,
-            residual_ratio: residual_ratio(),
+            residual_ratio: Self::default_of("residual_ratio"),
         }
     }
 
@@ -267,10 +270,6 @@ impl BulkMaterial for DruckerPragerCap {
     }
 }
 
-const NUMBER: Shape = Shape::Number(Quantity::Ratio, Range::ANY);
-const STRENGTH: Shape = Shape::Number(Quantity::Stress, Range::POSITIVE);
-static ENTRY: Shape = Shape::Tuple(&[("plastic volume strain", NUMBER), ("pressure", STRENGTH)]);
-
 /// Squeezed from all sides beyond a constant p_b, then back with K.
 const KNOWN_PATHS: &[KnownPath] = &[KnownPath {
     table: "young_modulus = 5e9\npoisson_ratio = 0.2\ndensity = 2200.0\ncap_friction_angle = 40.0\ncap_cohesion = 1e7\ncap_eccentricity = 0.3\ntransition = 0.05\nhardening = [[0.0, 1e7]]",
@@ -288,25 +287,6 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::BulkMaterial,
         tag: "drucker_prager_cap",
         summary: "modified Drucker-Prager with a cap: fails in shear, crushes under pressure",
-        parameters: &[
-            YOUNG_MODULUS,
-            POISSON_RATIO,
-            DENSITY,
-            Parameter::number("cap_friction_angle", Quantity::Degrees, Range::new(0.0, false, 90.0, true), "slope β of the shear surface in the plane of pressure p and von Mises stress q"),
-            Parameter::number("cap_cohesion", Quantity::Stress, Range::NON_NEGATIVE, "d, the von Mises stress of the shear surface at p = 0"),
-            Parameter::number("cap_eccentricity", Quantity::Ratio, Range::POSITIVE, "R, the cap's half axis along p over that along q"),
-            Parameter::number("transition", Quantity::Ratio, Range::NON_NEGATIVE, "α, size of the rounded transition between shear surface and cap").default("0.0"),
-            Parameter {
-                name: "hardening",
-                doc: "pairs [compaction, p_b]: pressure of yield in hydrostatic compression over volumetric plastic strain, constant beyond the ends",
-                shape: Shape::List { of: &ENTRY, min: 1, max: 1000 },
-                need: Need::Optional("uniaxial_strength is given"),
-            },
-            Parameter::number("uniaxial_strength", Quantity::Stress, Range::POSITIVE, "strength in uniaxial compression, which sets a constant p_b").optional("hardening is given"),
-            Parameter::number("initial_compaction", Quantity::Ratio, Range::ANY, "compaction of the undeformed material, where the table is entered").default("0.0"),
-            Parameter::number("crushing_fracture_energy", Quantity::EnergyPerArea, Range::POSITIVE, "G_c: p_b falls as the material crushes, and a band that crushes under hydrostatic pressure takes this energy per area").optional("crushing does not soften"),
-            Parameter::number("residual_ratio", Quantity::Ratio, Range::new(0.0, true, 1.0, true), "p_b of crushed over p_b of intact material, with crushing_fracture_energy").default("0.1"),
-        ],
         provides: &[Capability::STRESS_UPDATE, Capability::RIGID_LIMIT],
         claims: &[Property::DISSIPATIVE, Property::ISOTROPIC],
         samples: &[
@@ -323,7 +303,6 @@ voussoir_core::inventory::submit! {
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("drucker_prager_cap.md"),
-        check: |value| check_as::<DruckerPragerCap>(value, DruckerPragerCap::validate),
-        ..Card::BLANK
+        ..Card::of::<DruckerPragerCap>()
     }
 }

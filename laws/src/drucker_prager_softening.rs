@@ -1,39 +1,42 @@
 //! `drucker_prager_softening`: a Drucker–Prager cone that shrinks as it yields.
 #![doc = include_str!("drucker_prager_softening.md")]
 
-use crate::elastic::{POISSON_RATIO, YOUNG_MODULUS};
 use crate::meridian::{APEX, Returned, SHEAR, Trial, state_names};
-use crate::rigid::DENSITY;
-use serde::{Deserialize, Serialize};
+use crate::shared::MaterialKeys;
 use std::sync::Arc;
 use voussoir_core::law::{
     BulkMaterial, Elasticity, Isotropic, StressPoint, StressUpdate, UpdateContext, UpdateFailure, Voigt,
 };
-use voussoir_core::plugin::{
-    Capability, Card, KnownPath, Parameter, PluginKind, Property, Quantity, Range, Sample, check_as,
-};
+use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, PluginKind, Property, Sample};
 
 /// Associated Drucker–Prager with linear softening.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Keys)]
+#[keys(check = DruckerPragerSoftening::validate)]
 pub struct DruckerPragerSoftening {
     /// E \[Pa\].
+    #[key(like = MaterialKeys)]
     pub young_modulus: f64,
     /// ν.
+    #[key(like = MaterialKeys)]
     pub poisson_ratio: f64,
     /// ρ \[kg/m³\].
+    #[key(like = MaterialKeys)]
     pub density: f64,
-    /// A.
+    /// A in q + A tr σ = R
+    #[key(unit = "-", range = ">= 0, < 1")]
     pub pressure_coefficient: f64,
-    /// σ_Y \[Pa\].
+    /// R of the intact material; it crushes at yield_stress / (1 − A)
+    #[key(unit = "Pa", range = "> 0")]
     pub yield_stress: f64,
-    /// R_u \[Pa\].
-    #[serde(default)]
+    /// R once it has softened
+    #[key(unit = "Pa", range = ">= 0", default = 0.0)]
     pub residual_stress: f64,
-    /// κ_u, instead of `crushing_fracture_energy`.
-    pub ultimate_plastic_strain: Option<f64>,
-    /// G_c \[J/m²\].
+    /// energy of softening in uniaxial compression per area
+    #[key(unit = "J/m2", range = "> 0", optional = "ultimate_plastic_strain is given")]
     pub crushing_fracture_energy: Option<f64>,
+    /// cumulated plastic strain at which softening ends, whatever the element size
+    #[key(unit = "-", range = "> 0", optional = "crushing_fracture_energy is given")]
+    pub ultimate_plastic_strain: Option<f64>,
 }
 
 impl DruckerPragerSoftening {
@@ -226,16 +229,6 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::BulkMaterial,
         tag: "drucker_prager_softening",
         summary: "Drucker-Prager cone that softens linearly; its fracture energy makes it independent of the mesh",
-        parameters: &[
-            YOUNG_MODULUS,
-            POISSON_RATIO,
-            DENSITY,
-            Parameter::number("pressure_coefficient", Quantity::Ratio, Range::new(0.0, false, 1.0, true), "A in q + A tr σ = R"),
-            Parameter::number("yield_stress", Quantity::Stress, Range::POSITIVE, "R of the intact material; it crushes at yield_stress / (1 − A)"),
-            Parameter::number("residual_stress", Quantity::Stress, Range::NON_NEGATIVE, "R once it has softened").default("0.0"),
-            Parameter::number("crushing_fracture_energy", Quantity::EnergyPerArea, Range::POSITIVE, "energy of softening in uniaxial compression per area").optional("ultimate_plastic_strain is given"),
-            Parameter::number("ultimate_plastic_strain", Quantity::Ratio, Range::POSITIVE, "cumulated plastic strain at which softening ends, whatever the element size").optional("crushing_fracture_energy is given"),
-        ],
         provides: &[Capability::STRESS_UPDATE, Capability::RIGID_LIMIT],
         claims: &[Property::DISSIPATIVE, Property::ISOTROPIC, Property::SYMMETRIC_TANGENT],
         samples: &[
@@ -251,7 +244,6 @@ voussoir_core::inventory::submit! {
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("drucker_prager_softening.md"),
-        check: |value| check_as::<DruckerPragerSoftening>(value, DruckerPragerSoftening::validate),
-        ..Card::BLANK
+        ..Card::of::<DruckerPragerSoftening>()
     }
 }

@@ -4,20 +4,21 @@
 //! G = E / (2(1 + ν)), λ_L = E ν / ((1 + ν)(1 − 2ν)). **State.** None. **Validity.** Small strains.
 //! Limit loads do not depend on E and ν: limit analysis reads such blocks as rigid.
 
-use crate::rigid::DENSITY;
-use serde::{Deserialize, Serialize};
+use crate::shared::MaterialKeys;
 use voussoir_core::law::{BulkMaterial, Elasticity};
-use voussoir_core::plugin::{Capability, Card, KnownPath, Parameter, PluginKind, Property, Quantity, Range, Sample};
+use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, PluginKind, Property, Sample};
 
 /// A linear elastic material.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Keys)]
 pub struct Elastic {
     /// E \[Pa\].
+    #[key(like = MaterialKeys)]
     pub young_modulus: f64,
     /// ν.
+    #[key(like = MaterialKeys)]
     pub poisson_ratio: f64,
     /// ρ \[kg/m³\].
+    #[key(like = MaterialKeys)]
     pub density: f64,
 }
 
@@ -31,14 +32,6 @@ impl BulkMaterial for Elastic {
         Some(Elasticity::isotropic(self.young_modulus, self.poisson_ratio))
     }
 }
-
-/// E, which every material that deforms has.
-pub(crate) const YOUNG_MODULUS: Parameter =
-    Parameter::number("young_modulus", Quantity::Stress, Range::POSITIVE, "Young's modulus E");
-
-/// ν, which every material that deforms has.
-pub(crate) const POISSON_RATIO: Parameter =
-    Parameter::number("poisson_ratio", Quantity::Ratio, Range::new(-1.0, true, 0.5, true), "Poisson's ratio ν");
 
 /// Stretched along x, and sheared.
 const KNOWN_PATHS: &[KnownPath] = &[KnownPath {
@@ -56,11 +49,6 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::BulkMaterial,
         tag: "elastic",
         summary: "linear isotropic elasticity",
-        parameters: &[
-            YOUNG_MODULUS,
-            POISSON_RATIO,
-            DENSITY,
-        ],
         provides: &[Capability::RIGID_LIMIT, Capability::LINEAR, Capability::STRESS_UPDATE],
         claims: &[Property::DISSIPATIVE, Property::ISOTROPIC, Property::SYMMETRIC_TANGENT],
         samples: &[
@@ -71,6 +59,6 @@ voussoir_core::inventory::submit! {
         file: file!(),
         package: voussoir_core::package!(),
         page: "# `elastic`\n\nHooke's law with E and ν. Limit loads do not depend on them: limit analysis reads such blocks as rigid.\n",
-        ..Card::BLANK
+        ..Card::of::<Elastic>()
     }
 }

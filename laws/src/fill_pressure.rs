@@ -1,16 +1,13 @@
 //! `fill_pressure`: Rankine's pressures, of which shares are mobilised.
 #![doc = include_str!("fill_pressure.md")]
 
-use serde::{Deserialize, Serialize};
 use voussoir_core::law::{FillResistance, FillState};
-use voussoir_core::plugin::{Card, Need, Parameter, PluginKind, Quantity, Range, Shape};
+use voussoir_core::plugin::{Card, Keys, PluginKind};
 
 /// The least pressure of the fill.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
 pub enum LeastPressure {
     /// None.
-    #[default]
     Zero,
     /// Active: the fill follows a ring that moves away.
     Active,
@@ -19,28 +16,20 @@ pub enum LeastPressure {
 }
 
 /// Shares of Rankine's passive pressure.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Keys)]
 pub struct FillPressure {
-    /// m_p, of the pressure by friction.
-    #[serde(default = "passive")]
+    /// m_p, share of the passive pressure by friction that is mobilised; 0 switches it off
+    #[key(unit = "-", range = ">= 0", default = 0.33)]
     pub passive_factor: f64,
-    /// m_c, of the pressure by cohesion.
-    #[serde(default = "cohesive")]
+    /// m_c, share of the passive pressure by cohesion that is mobilised; 0 switches it off
+    #[key(unit = "-", range = ">= 0", default = 0.05)]
     pub cohesion_factor: f64,
-    /// What the fill presses with at least.
-    #[serde(default)]
+    /// what the fill presses with at least: nothing, the active pressure, or that at rest
+    #[key(default = "zero")]
     pub lower: LeastPressure,
-    /// Pressure by displacement \[Pa/m\].
+    /// pressure by displacement into the fill before it yields; limit loads do not depend on it
+    #[key(unit = "Pa/m", range = "> 0", optional = "the fill is rigid until it yields")]
     pub stiffness: Option<f64>,
-}
-
-fn passive() -> f64 {
-    0.33
-}
-
-fn cohesive() -> f64 {
-    0.05
 }
 
 /// K_p = (1 + sin φ)/(1 − sin φ).
@@ -75,35 +64,6 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::FillResistance,
         tag: "fill_pressure",
         summary: "shares of Rankine's passive pressure, from nothing, the active pressure or that at rest upwards",
-        parameters: &[
-            Parameter::number(
-                "passive_factor",
-                Quantity::Ratio,
-                Range::NON_NEGATIVE,
-                "m_p, share of the passive pressure by friction that is mobilised; 0 switches it off",
-            )
-            .default("0.33"),
-            Parameter::number(
-                "cohesion_factor",
-                Quantity::Ratio,
-                Range::NON_NEGATIVE,
-                "m_c, share of the passive pressure by cohesion that is mobilised; 0 switches it off",
-            )
-            .default("0.05"),
-            Parameter {
-                name: "lower",
-                doc: "what the fill presses with at least: nothing, the active pressure, or that at rest",
-                shape: Shape::Choice(&["zero", "active", "at_rest"]),
-                need: Need::Default("\"zero\""),
-            },
-            Parameter::number(
-                "stiffness",
-                Quantity::Stiffness,
-                Range::POSITIVE,
-                "pressure by displacement into the fill before it yields; limit loads do not depend on it",
-            )
-            .optional("the fill is rigid until it yields"),
-        ],
         sources: &[
             "Rankine 1857, Phil. Trans. R. Soc. 147",
             "Jaky 1944 (pressure at rest)",
@@ -113,7 +73,7 @@ voussoir_core::inventory::submit! {
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("fill_pressure.md"),
-        ..Card::BLANK
+        ..Card::of::<FillPressure>()
     }
 }
 

@@ -2,8 +2,8 @@
 #![forbid(unsafe_code)]
 
 mod meridian;
-mod parameters;
 mod principal;
+mod shared;
 
 pub mod backing;
 pub mod barton_bandis;

@@ -4,54 +4,59 @@
 mod return_map;
 mod surface;
 
-use crate::parameters::*;
+use crate::shared::*;
 use return_map::{Return, Returned};
-use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use surface::{Cap, Surface};
 use voussoir_core::law::{Effect, InterfaceLaw, InterfaceResponse, TractionPoint, UpdateBranch, UpdateFailure};
-use voussoir_core::plugin::{
-    Capability, Card, KnownPath, Need, Parameter, PluginKind, Property, Quantity, Range, Sample, check_as,
-};
+use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, PluginKind, Property, Sample};
 
 /// The composite joint: tension cut-off, Coulomb friction and elliptical cap.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Keys)]
+#[keys(check = LourencoRots::validate)]
 pub struct LourencoRots {
     /// μ_0.
+    #[key(like = JointKeys)]
     pub friction: Option<f64>,
     /// atan μ_0 \[deg\].
+    #[key(like = JointKeys)]
     pub friction_angle: Option<f64>,
-    /// μ_r.
+    /// coefficient of friction where the bond is gone
+    #[key(unit = "-", range = ">= 0", optional = "friction does not soften")]
     pub residual_friction: Option<f64>,
     /// ψ \[deg\].
-    #[serde(default)]
+    #[key(like = JointKeys, default = 0.0)]
     pub dilatancy_angle: f64,
-    /// f_t \[Pa\].
+    /// tension cut-off f_t, at most cohesion / friction
+    #[key(unit = "Pa", range = "> 0")]
     pub tensile_strength: f64,
-    /// c \[Pa\].
+    /// shear strength without pressure
+    #[key(unit = "Pa", range = "> 0")]
     pub cohesion: f64,
     /// k_n \[Pa/m\].
+    #[key(like = JointKeys)]
     pub normal_stiffness: f64,
     /// k_t \[Pa/m\].
+    #[key(like = JointKeys)]
     pub shear_stiffness: f64,
-    /// G_I \[J/m²\].
+    /// energy that opening takes per area, G_I
+    #[key(unit = "J/m2", range = "> 0")]
     pub tensile_fracture_energy: f64,
-    /// G_II \[J/m²\].
+    /// energy that the bond takes per area in shear without pressure, G_II
+    #[key(unit = "J/m2", range = "> 0")]
     pub shear_fracture_energy: f64,
-    /// f_m \[Pa\].
+    /// strength f_m of the masonry across the joint
+    #[key(unit = "Pa", range = "> 0")]
     pub compressive_strength: f64,
-    /// G_fc \[J/m²\].
+    /// energy per area beyond the peak and above the residual strength, G_fc
+    #[key(unit = "J/m2", range = "> 0")]
     pub compressive_fracture_energy: f64,
-    /// κ_p \[m\].
+    /// plastic closing κ_p at the peak
+    #[key(unit = "m", range = "> 0")]
     pub peak_closing: f64,
-    /// C_ss.
-    #[serde(default = "cap_shear_factor")]
+    /// weight C_ss of shear in the cap
+    #[key(unit = "-", range = "> 0", default = 9.0)]
     pub cap_shear_factor: f64,
-}
-
-fn cap_shear_factor() -> f64 {
-    9.0
 }
 
 impl LourencoRots {
@@ -276,30 +281,11 @@ const KNOWN_PATHS: &[KnownPath] = &[
     },
 ];
 
-const ENERGY: Quantity = Quantity::EnergyPerArea;
-
 voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::InterfaceLaw,
         tag: "lourenco_rots",
         summary: "a mortar joint that cracks, slides and crushes: tension cut-off, Coulomb friction and elliptical cap, all softening",
-        parameters: &[
-            FRICTION,
-            FRICTION_ANGLE,
-            Parameter::number("residual_friction", Quantity::Ratio, Range::NON_NEGATIVE, "coefficient of friction where the bond is gone")
-                .optional("friction does not soften"),
-            Parameter { need: Need::Default("0.0"), ..DILATANCY_ANGLE },
-            Parameter::number("tensile_strength", Quantity::Stress, Range::POSITIVE, "tension cut-off f_t, at most cohesion / friction"),
-            Parameter::number("cohesion", Quantity::Stress, Range::POSITIVE, "shear strength without pressure"),
-            Parameter { need: Need::Required, ..NORMAL_STIFFNESS },
-            Parameter { need: Need::Required, ..SHEAR_STIFFNESS },
-            Parameter::number("tensile_fracture_energy", ENERGY, Range::POSITIVE, "energy that opening takes per area, G_I"),
-            Parameter::number("shear_fracture_energy", ENERGY, Range::POSITIVE, "energy that the bond takes per area in shear without pressure, G_II"),
-            Parameter::number("compressive_strength", Quantity::Stress, Range::POSITIVE, "strength f_m of the masonry across the joint"),
-            Parameter::number("compressive_fracture_energy", ENERGY, Range::POSITIVE, "energy per area beyond the peak and above the residual strength, G_fc"),
-            Parameter::number("peak_closing", Quantity::Length, Range::POSITIVE, "plastic closing κ_p at the peak"),
-            Parameter::number("cap_shear_factor", Quantity::Ratio, Range::POSITIVE, "weight C_ss of shear in the cap").default("9.0"),
-        ],
         provides: &[Capability::RESPONSE],
         claims: &[Property::DISSIPATIVE],
         samples: &[
@@ -316,7 +302,6 @@ voussoir_core::inventory::submit! {
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("lourenco_rots.md"),
-        check: |value| check_as::<LourencoRots>(value, LourencoRots::validate),
-        ..Card::BLANK
+        ..Card::of::<LourencoRots>()
     }
 }

@@ -1,35 +1,44 @@
 //! `mohr_coulomb`: friction with cohesion, tension cut-off and crushing strength.
 #![doc = include_str!("mohr_coulomb.md")]
 
-use crate::parameters::*;
-use serde::{Deserialize, Serialize};
+use crate::shared::*;
 use voussoir_core::law::{Facet, InterfaceLaw};
-use voussoir_core::plugin::{
-    Capability, Card, KnownPath, Parameter, PluginKind, Property, Quantity, Range, Sample, check_as,
-};
+use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, PluginKind, Property, Sample};
 
 /// A joint with strengths.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Keys)]
+#[keys(check = MohrCoulomb::validate)]
 pub struct MohrCoulomb {
     /// μ.
+    #[key(like = JointKeys)]
     pub friction: Option<f64>,
     /// atan μ \[deg\].
+    #[key(like = JointKeys)]
     pub friction_angle: Option<f64>,
-    /// c \[Pa\].
-    #[serde(default)]
+    /// shear strength without compression
+    #[key(unit = "Pa", range = ">= 0", default = 0.0)]
     pub cohesion: f64,
-    /// f_t \[Pa\].
-    #[serde(default)]
+    /// tension cut-off; cohesion / μ bounds it too
+    #[key(unit = "Pa", range = ">= 0", default = 0.0)]
     pub tensile_strength: f64,
-    /// f_c \[Pa\].
+    /// crushing strength of the joint
+    #[key(unit = "Pa", range = "> 0", optional = "unlimited")]
     pub compressive_strength: Option<f64>,
     /// ψ \[deg\].
+    #[key(like = JointKeys, optional = "the angle of friction: associated flow")]
     pub dilatancy_angle: Option<f64>,
     /// k_n \[Pa/m\].
+    #[key(like = JointKeys)]
     pub normal_stiffness: Option<f64>,
     /// k_t \[Pa/m\].
+    #[key(like = JointKeys)]
     pub shear_stiffness: Option<f64>,
+}
+
+impl MohrCoulomb {
+    fn validate(&self) -> Vec<(String, String)> {
+        validate_friction(self.friction, self.friction_angle, self.dilatancy_angle)
+    }
 }
 
 #[typetag::serde(name = "mohr_coulomb")]
@@ -48,7 +57,6 @@ impl InterfaceLaw for MohrCoulomb {
     }
 }
 
-const STRENGTH: Range = Range::NON_NEGATIVE;
 /// f_c \[Pa\] from which on a joint does not crush: the rounding of a motion times such a strength would outweigh all loads.
 const NO_CRUSHING: f64 = 1e15;
 
@@ -83,18 +91,6 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::InterfaceLaw,
         tag: "mohr_coulomb",
         summary: "friction with cohesion, tension cut-off and crushing; associated unless dilatancy_angle says otherwise",
-        parameters: &[
-            FRICTION,
-            FRICTION_ANGLE,
-            Parameter::number("cohesion", Quantity::Stress, STRENGTH, "shear strength without compression").default("0.0"),
-            Parameter::number("tensile_strength", Quantity::Stress, STRENGTH, "tension cut-off; cohesion / μ bounds it too")
-                .default("0.0"),
-            Parameter::number("compressive_strength", Quantity::Stress, Range::POSITIVE, "crushing strength of the joint")
-                .optional("unlimited"),
-            DILATANCY_ANGLE.optional("the angle of friction: associated flow"),
-            NORMAL_STIFFNESS,
-            SHEAR_STIFFNESS,
-        ],
         provides: &[Capability::FACETS, Capability::RESPONSE],
         claims: &[Property::DISSIPATIVE],
         samples: &[
@@ -105,9 +101,6 @@ voussoir_core::inventory::submit! {
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("mohr_coulomb.md"),
-        check: |value| check_as::<MohrCoulomb>(value, |law| {
-            validate_friction(law.friction, law.friction_angle, law.dilatancy_angle)
-        }),
-        ..Card::BLANK
+        ..Card::of::<MohrCoulomb>()
     }
 }

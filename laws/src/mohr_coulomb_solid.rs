@@ -1,35 +1,37 @@
 //! `mohr_coulomb_solid`: Mohr–Coulomb strength of a block, with a tension cut-off.
 #![doc = include_str!("mohr_coulomb_solid.md")]
 
-use crate::elastic::{POISSON_RATIO, YOUNG_MODULUS};
 use crate::principal::{PrincipalFacet, PrincipalUpdate};
 use crate::rankine::{TENSION, TENSION_CORNER, TENSION_EDGE, cut_offs};
-use crate::rigid::DENSITY;
-use serde::{Deserialize, Serialize};
+use crate::shared::MaterialKeys;
 use std::sync::Arc;
 use voussoir_core::law::{BulkMaterial, Effect, Elasticity, StressUpdate, UpdateBranch};
-use voussoir_core::plugin::{
-    Capability, Card, KnownPath, Parameter, PluginKind, Property, Quantity, Range, Sample, check_as,
-};
+use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, PluginKind, Property, Sample};
 
 /// Cohesion and friction in space, perfectly plastic.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Keys)]
+#[keys(check = MohrCoulombSolid::validate)]
 pub struct MohrCoulombSolid {
     /// E \[Pa\].
+    #[key(like = MaterialKeys)]
     pub young_modulus: f64,
     /// ν.
+    #[key(like = MaterialKeys)]
     pub poisson_ratio: f64,
     /// ρ \[kg/m³\].
+    #[key(like = MaterialKeys)]
     pub density: f64,
-    /// c \[Pa\].
+    /// c, shear strength without normal stress
+    #[key(unit = "Pa", range = "> 0")]
     pub cohesion: f64,
-    /// φ \[deg\].
+    /// angle of internal friction φ
+    #[key(unit = "deg", range = "> 0, < 90")]
     pub friction_angle: f64,
-    /// ψ \[deg\].
-    #[serde(default)]
+    /// angle of dilatancy ψ of the flow, at most φ
+    #[key(unit = "deg", range = ">= 0, < 90", default = 0.0)]
     pub dilatancy_angle: f64,
-    /// f_t \[Pa\].
+    /// f_t, which no principal stress exceeds; at most c / tan φ
+    #[key(unit = "Pa", range = "> 0")]
     pub tensile_strength: f64,
 }
 
@@ -136,15 +138,6 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::BulkMaterial,
         tag: "mohr_coulomb_solid",
         summary: "cohesion and friction of a block in space with a tension cut-off, perfectly plastic",
-        parameters: &[
-            YOUNG_MODULUS,
-            POISSON_RATIO,
-            DENSITY,
-            Parameter::number("cohesion", Quantity::Stress, Range::POSITIVE, "c, shear strength without normal stress"),
-            Parameter::number("friction_angle", Quantity::Degrees, Range::new(0.0, true, 90.0, true), "angle of internal friction φ"),
-            Parameter::number("dilatancy_angle", Quantity::Degrees, Range::new(0.0, false, 90.0, true), "angle of dilatancy ψ of the flow, at most φ").default("0.0"),
-            Parameter::number("tensile_strength", Quantity::Stress, Range::POSITIVE, "f_t, which no principal stress exceeds; at most c / tan φ"),
-        ],
         provides: &[Capability::STRESS_UPDATE, Capability::RIGID_LIMIT],
         claims: &[Property::DISSIPATIVE, Property::ISOTROPIC],
         samples: &[
@@ -160,7 +153,6 @@ voussoir_core::inventory::submit! {
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("mohr_coulomb_solid.md"),
-        check: |value| check_as::<MohrCoulombSolid>(value, MohrCoulombSolid::validate),
-        ..Card::BLANK
+        ..Card::of::<MohrCoulombSolid>()
     }
 }

@@ -1,35 +1,40 @@
 //! `orthotropic_elastic`: linear elasticity with three axes, such as bedded stone.
 #![doc = include_str!("orthotropic_elastic.md")]
 
-use crate::rigid::DENSITY;
-use serde::{Deserialize, Serialize};
+use crate::shared::MaterialKeys;
 use voussoir_core::law::{BulkMaterial, Elasticity};
-use voussoir_core::plugin::{
-    Capability, Card, KnownPath, Parameter, PluginKind, Property, Quantity, Range, Sample, check_as,
-};
+use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, PluginKind, Property, Sample};
 
 /// A linear elastic material with axes.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Keys)]
+#[keys(check = OrthotropicElastic::validate)]
 pub struct OrthotropicElastic {
-    /// E_1 \[Pa\].
+    /// E_1, along the first axis
+    #[key(unit = "Pa", range = "> 0")]
     pub young_modulus_1: f64,
-    /// E_2 \[Pa\].
+    /// E_2, along the second axis in the plane
+    #[key(unit = "Pa", range = "> 0")]
     pub young_modulus_2: f64,
-    /// E_3 \[Pa\].
+    /// E_3, across the plane
+    #[key(unit = "Pa", range = "> 0")]
     pub young_modulus_3: f64,
-    /// G_12 \[Pa\].
+    /// G_12, in the plane
+    #[key(unit = "Pa", range = "> 0")]
     pub shear_modulus_12: f64,
-    /// ν_12.
+    /// ν_12: contraction along axis 2 per strain by stress along axis 1; ν_21 = ν_12 E_2 / E_1
+    #[key(unit = "-")]
     pub poisson_ratio_12: f64,
-    /// ν_13.
+    /// ν_13: contraction across the plane per strain by stress along axis 1
+    #[key(unit = "-")]
     pub poisson_ratio_13: f64,
-    /// ν_23.
+    /// ν_23: contraction across the plane per strain by stress along axis 2
+    #[key(unit = "-")]
     pub poisson_ratio_23: f64,
-    /// φ \[deg\].
-    #[serde(default)]
+    /// angle φ from a block's first edge (the intrados of a voussoir) to axis 1, anticlockwise
+    #[key(unit = "deg", default = 0.0)]
     pub axis_angle: f64,
     /// ρ \[kg/m³\].
+    #[key(like = MaterialKeys)]
     pub density: f64,
 }
 
@@ -91,8 +96,6 @@ impl BulkMaterial for OrthotropicElastic {
     }
 }
 
-const RATIO: Range = Range::ANY;
-
 /// The strains of 10 MPa along axis 1 alone, of 10 MPa across the plane alone, and of shear in the plane.
 const KNOWN_PATHS: &[KnownPath] = &[KnownPath {
     table: "young_modulus_1 = 2e10\nyoung_modulus_2 = 8e9\nyoung_modulus_3 = 1.2e10\nshear_modulus_12 = 5e9\npoisson_ratio_12 = 0.25\npoisson_ratio_13 = 0.2\npoisson_ratio_23 = 0.15\ndensity = 2200.0",
@@ -110,17 +113,6 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::BulkMaterial,
         tag: "orthotropic_elastic",
         summary: "linear elasticity with three axes, one of them across the plane",
-        parameters: &[
-            Parameter::number("young_modulus_1", Quantity::Stress, Range::POSITIVE, "E_1, along the first axis"),
-            Parameter::number("young_modulus_2", Quantity::Stress, Range::POSITIVE, "E_2, along the second axis in the plane"),
-            Parameter::number("young_modulus_3", Quantity::Stress, Range::POSITIVE, "E_3, across the plane"),
-            Parameter::number("shear_modulus_12", Quantity::Stress, Range::POSITIVE, "G_12, in the plane"),
-            Parameter::number("poisson_ratio_12", Quantity::Ratio, RATIO, "ν_12: contraction along axis 2 per strain by stress along axis 1; ν_21 = ν_12 E_2 / E_1"),
-            Parameter::number("poisson_ratio_13", Quantity::Ratio, RATIO, "ν_13: contraction across the plane per strain by stress along axis 1"),
-            Parameter::number("poisson_ratio_23", Quantity::Ratio, RATIO, "ν_23: contraction across the plane per strain by stress along axis 2"),
-            Parameter::number("axis_angle", Quantity::Degrees, Range::ANY, "angle φ from a block's first edge (the intrados of a voussoir) to axis 1, anticlockwise").default("0.0"),
-            DENSITY,
-        ],
         provides: &[Capability::RIGID_LIMIT, Capability::LINEAR, Capability::STRESS_UPDATE],
         claims: &[Property::DISSIPATIVE, Property::SYMMETRIC_TANGENT],
         samples: &[
@@ -131,7 +123,6 @@ voussoir_core::inventory::submit! {
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("orthotropic_elastic.md"),
-        check: |value| check_as::<OrthotropicElastic>(value, OrthotropicElastic::validate),
-        ..Card::BLANK
+        ..Card::of::<OrthotropicElastic>()
     }
 }

@@ -1,25 +1,26 @@
 //! `rankine`: a material that tears where its greatest principal stress reaches a strength.
 #![doc = include_str!("rankine.md")]
 
-use crate::elastic::{POISSON_RATIO, YOUNG_MODULUS};
 use crate::principal::{PrincipalFacet, PrincipalUpdate};
-use crate::rigid::DENSITY;
-use serde::{Deserialize, Serialize};
+use crate::shared::MaterialKeys;
 use std::sync::Arc;
 use voussoir_core::law::{BulkMaterial, Effect, Elasticity, StressUpdate, UpdateBranch};
-use voussoir_core::plugin::{Capability, Card, KnownPath, Parameter, PluginKind, Property, Quantity, Range, Sample};
+use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, PluginKind, Property, Sample};
 
 /// Greatest principal stress, perfectly plastic.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Keys)]
 pub struct Rankine {
     /// E \[Pa\].
+    #[key(like = MaterialKeys)]
     pub young_modulus: f64,
     /// ν.
+    #[key(like = MaterialKeys)]
     pub poisson_ratio: f64,
     /// ρ \[kg/m³\].
+    #[key(like = MaterialKeys)]
     pub density: f64,
-    /// f_t \[Pa\].
+    /// f_t, which no principal stress exceeds
+    #[key(unit = "Pa", range = "> 0")]
     pub tensile_strength: f64,
 }
 
@@ -88,12 +89,6 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::BulkMaterial,
         tag: "rankine",
         summary: "tears where its greatest principal stress reaches the tensile strength, perfectly plastic",
-        parameters: &[
-            YOUNG_MODULUS,
-            POISSON_RATIO,
-            DENSITY,
-            Parameter::number("tensile_strength", Quantity::Stress, Range::POSITIVE, "f_t, which no principal stress exceeds"),
-        ],
         provides: &[Capability::STRESS_UPDATE, Capability::RIGID_LIMIT],
         claims: &[Property::ASSOCIATED, Property::DISSIPATIVE, Property::ISOTROPIC, Property::SYMMETRIC_TANGENT],
         samples: &[
@@ -107,6 +102,6 @@ voussoir_core::inventory::submit! {
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("rankine.md"),
-        ..Card::BLANK
+        ..Card::of::<Rankine>()
     }
 }

@@ -3,23 +3,15 @@
 //! **Purpose.** Limit analysis, and blocks far stiffer than the rest of the scene. **Equations.** ε = 0.
 //! **State.** None. **Validity.** Stresses inside a rigid block are not defined.
 
-use serde::{Deserialize, Serialize};
+use crate::shared::MaterialKeys;
 use voussoir_core::law::{BulkMaterial, Elasticity};
-use voussoir_core::plugin::{Capability, Card, Parameter, PluginKind, Quantity, Range, Sample};
-
-/// ρ, which every material has.
-pub(crate) const DENSITY: Parameter = Parameter::number(
-    "density",
-    Quantity::Density,
-    Range::NON_NEGATIVE,
-    "density, or specific weight such as \"22 kN/m3\"",
-);
+use voussoir_core::plugin::{Capability, Card, Keys, PluginKind, Sample};
 
 /// A material that does not deform.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Keys)]
 pub struct Rigid {
     /// ρ \[kg/m³\].
+    #[key(like = MaterialKeys)]
     pub density: f64,
 }
 
@@ -39,7 +31,6 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::BulkMaterial,
         tag: "rigid",
         summary: "blocks that do not deform",
-        parameters: &[DENSITY],
         provides: &[Capability::RIGID_LIMIT, Capability::LINEAR],
         samples: &[
             Sample::new("density = 2200.0", 1e-3, &[]),
@@ -48,6 +39,6 @@ voussoir_core::inventory::submit! {
         file: file!(),
         package: voussoir_core::package!(),
         page: "# `rigid`\n\nBlocks that do not deform: ε = 0. Limit loads are those of rigid blocks.\n",
-        ..Card::BLANK
+        ..Card::of::<Rigid>()
     }
 }

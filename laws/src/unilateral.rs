@@ -1,30 +1,30 @@
 //! `unilateral`: contact that cannot pull; tangentially free or stuck.
 #![doc = include_str!("unilateral.md")]
 
-use crate::parameters::*;
-use serde::{Deserialize, Serialize};
+use crate::shared::*;
 use voussoir_core::law::{Facet, InterfaceLaw};
-use voussoir_core::plugin::{Capability, Card, KnownPath, Need, Parameter, PluginKind, Property, Sample, Shape};
+use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, PluginKind, Property, Sample};
 
 /// What a closed joint does along itself.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
 pub enum TangentialContact {
-    /// Slides without resistance.
-    Free,
     /// Never slides.
     Stuck,
+    /// Slides without resistance.
+    Free,
 }
 
 /// No tension.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Keys)]
 pub struct Unilateral {
-    /// Along the joint.
+    /// along the joint: "stuck" never slides, "free" slides without resistance
+    #[key(default = "stuck")]
     pub tangential: TangentialContact,
     /// k_n \[Pa/m\].
+    #[key(like = JointKeys)]
     pub normal_stiffness: Option<f64>,
     /// k_t \[Pa/m\].
+    #[key(like = JointKeys)]
     pub shear_stiffness: Option<f64>,
 }
 
@@ -64,16 +64,6 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::InterfaceLaw,
         tag: "unilateral",
         summary: "no tension; tangentially stuck (Heyman's assumptions) or free (frictionless)",
-        parameters: &[
-            Parameter {
-                name: "tangential",
-                doc: "along the joint: \"stuck\" never slides, \"free\" slides without resistance",
-                shape: Shape::Choice(&["stuck", "free"]),
-                need: Need::Default("\"stuck\""),
-            },
-            NORMAL_STIFFNESS,
-            SHEAR_STIFFNESS,
-        ],
         provides: &[Capability::FACETS, Capability::RESPONSE],
         claims: &[Property::ASSOCIATED, Property::DISSIPATIVE, Property::SYMMETRIC_TANGENT],
         samples: &[
@@ -85,6 +75,6 @@ voussoir_core::inventory::submit! {
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("unilateral.md"),
-        ..Card::BLANK
+        ..Card::of::<Unilateral>()
     }
 }

@@ -1,21 +1,23 @@
 //! `keyed`: a dry joint with shear keys.
 #![doc = include_str!("keyed.md")]
 
-use serde::{Deserialize, Serialize};
 use voussoir_core::law::{Facet, InterfaceLaw};
-use voussoir_core::plugin::{Capability, Card, KnownPath, Parameter, PluginKind, Property, Quantity, Range, Sample};
+use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, PluginKind, Property, Sample};
 
 /// Friction and keys; no tension.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Keys)]
 pub struct Keyed {
-    /// μ.
+    /// coefficient of friction μ
+    #[key(unit = "-", range = ">= 0")]
     pub friction: f64,
-    /// c \[Pa\].
+    /// shear strength c of the keys, over the whole joint
+    #[key(unit = "Pa", range = ">= 0")]
     pub key_strength: f64,
-    /// k_n \[Pa/m\].
+    /// stiffness of the joint itself against closing
+    #[key(unit = "Pa/m", range = "> 0", optional = "the joint itself is stiff")]
     pub normal_stiffness: Option<f64>,
-    /// k_t \[Pa/m\].
+    /// stiffness of the joint itself against slip
+    #[key(unit = "Pa/m", range = "> 0", optional = "the joint itself is stiff")]
     pub shear_stiffness: Option<f64>,
 }
 
@@ -48,12 +50,6 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::InterfaceLaw,
         tag: "keyed",
         summary: "no tension, friction and shear keys",
-        parameters: &[
-            Parameter::number("friction", Quantity::Ratio, Range::NON_NEGATIVE, "coefficient of friction μ"),
-            Parameter::number("key_strength", Quantity::Stress, Range::NON_NEGATIVE, "shear strength c of the keys, over the whole joint"),
-            Parameter::number("normal_stiffness", Quantity::Stiffness, Range::POSITIVE, "stiffness of the joint itself against closing").optional("the joint itself is stiff"),
-            Parameter::number("shear_stiffness", Quantity::Stiffness, Range::POSITIVE, "stiffness of the joint itself against slip").optional("the joint itself is stiff"),
-        ],
         provides: &[Capability::FACETS, Capability::RESPONSE],
         claims: &[Property::DISSIPATIVE],
         samples: &[Sample::new("friction = 0.5\nkey_strength = 2e5\nnormal_stiffness = 1e10\nshear_stiffness = 5e9", 2e-4, &["elastic", "sliding"])],
@@ -62,6 +58,6 @@ voussoir_core::inventory::submit! {
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("keyed.md"),
-        ..Card::BLANK
+        ..Card::of::<Keyed>()
     }
 }

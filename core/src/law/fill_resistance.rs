@@ -1,5 +1,6 @@
 //! The pressure of fill on a ring: the trait that laws of fill resistance implement.
 
+use crate::plugin::{KeyValue, PluginKind, Shape};
 use std::fmt::Debug;
 
 /// State of the fill at a point beside a ring.
@@ -26,4 +27,8 @@ pub trait FillResistance: Debug + Send + Sync {
     fn stiffness(&self) -> Option<f64> {
         None
     }
+}
+
+impl KeyValue for Box<dyn FillResistance> {
+    const SHAPE: Shape = Shape::Plugin(PluginKind::FillResistance);
 }

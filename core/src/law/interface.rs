@@ -6,6 +6,7 @@
 use super::facet::Facet;
 use super::facet_response::FacetResponse;
 use super::response::InterfaceResponse;
+use crate::plugin::{KeyValue, PluginKind, Shape};
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -28,4 +29,8 @@ pub trait InterfaceLaw: Debug + Send + Sync {
     /// Returns the joint stiffness \[k_n, k_t\] \[Pa/m\] if the joint itself is compliant. Limit loads do not depend on
     /// it.
     fn stiffness(&self) -> Option<[f64; 2]>;
+}
+
+impl KeyValue for Box<dyn InterfaceLaw> {
+    const SHAPE: Shape = Shape::Plugin(PluginKind::InterfaceLaw);
 }

@@ -5,6 +5,7 @@
 
 use super::elasticity::{Elasticity, LinearUpdate};
 use super::stress::StressUpdate;
+use crate::plugin::{KeyValue, PluginKind, Shape};
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -27,4 +28,8 @@ pub trait BulkMaterial: Debug + Send + Sync {
     fn stress_update(&self) -> Option<Arc<dyn StressUpdate>> {
         self.inelastic().or_else(|| Some(Arc::new(LinearUpdate(self.elasticity()?))))
     }
+}
+
+impl KeyValue for Box<dyn BulkMaterial> {
+    const SHAPE: Shape = Shape::Plugin(PluginKind::BulkMaterial);
 }

@@ -1,7 +1,7 @@
 //! Straight joints between two bodies: their bond, their frame, their initial opening.
 
 use super::geometry::{Vec2, turned};
-use serde::{Deserialize, Serialize};
+use crate::plugin::Keys;
 
 /// The connection of two bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -12,14 +12,16 @@ pub enum Bond {
     Law(usize),
 }
 
-/// Initial opening of a joint: a number, or a table along the joint.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
+/// Initial opening of a joint: a number, or a table along it.
+#[derive(Debug, Clone, PartialEq, Keys)]
+#[keys(untagged)]
 pub enum Gap {
-    /// The same opening everywhere \[m\].
+    /// The same everywhere \[m\].
+    #[key(unit = "m", range = ">= 0")]
     Uniform(f64),
-    /// Pairs \[s, gap\] \[m\], s ascending from end 0 of the joint; linear between pairs, constant before the first and
-    /// after the last.
+    /// Pairs \[s, gap\] \[m\], s ascending from the joint's end 0; linear between them, constant
+    /// before the first and after the last.
+    #[key(names = ["s", "gap"], unit = "m", range = ["", ">= 0"], len = ">= 1")]
     Table(Vec<[f64; 2]>),
 }
 

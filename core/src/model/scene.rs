@@ -1,7 +1,7 @@
 //! Scenes: descriptions of geometry that are converted into an [`Assembly`].
 
 use super::assembly::{Assembly, Catalogue};
-use crate::plugin::Diagnostic;
+use crate::plugin::{Diagnostic, KeyValue, PluginKind, Shape};
 use std::fmt::Debug;
 
 /// A kind of scene, chosen by `[scene] scene = …`.
@@ -9,4 +9,8 @@ use std::fmt::Debug;
 pub trait Scene: Debug + Send + Sync {
     /// Builds bodies and joints. Paths of diagnostics start at the root of the study (`scene.…`).
     fn build(&self, catalogue: &Catalogue) -> Result<Assembly, Vec<Diagnostic>>;
+}
+
+impl KeyValue for Box<dyn Scene> {
+    const SHAPE: Shape = Shape::Plugin(PluginKind::Scene);
 }

@@ -1,5 +1,6 @@
 //! Continuation strategies: the choice of the next point of a path.
 
+use crate::plugin::{KeyValue, PluginKind, Shape};
 use std::any::Any;
 use std::fmt::{self, Debug};
 
@@ -94,4 +95,8 @@ pub trait Continuation: Any + Debug + Send + Sync {
     fn largest_step(&self) -> f64 {
         f64::INFINITY
     }
+}
+
+impl KeyValue for Box<dyn Continuation> {
+    const SHAPE: Shape = Shape::Plugin(PluginKind::Continuation);
 }

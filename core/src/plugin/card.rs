@@ -4,6 +4,7 @@
 //! configuration, `inventory::submit!` hands in its [`Card`]. Lists, help pages, the JSON Schema,
 //! the check of study files and the conformance tests read cards only.
 
+use super::keys::Keys;
 use super::schema::{Parameter, PluginKind};
 use std::sync::OnceLock;
 
@@ -172,6 +173,11 @@ impl Card {
         page: "",
         check: |_| Vec::new(),
     };
+
+    /// Nothing but the keys of a type and their check, for `..Card::of::<Law>()`.
+    pub const fn of<T: Keys>() -> Card {
+        Card { parameters: T::PARAMETERS, check: |value| check_as::<T>(value, T::check), ..Card::BLANK }
+    }
 
     /// Whether it offers a capability.
     pub fn offers(&self, capability: Capability) -> bool {

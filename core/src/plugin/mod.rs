@@ -3,6 +3,7 @@
 
 mod card;
 mod diagnostic;
+pub mod keys;
 mod schema;
 mod units;
 
@@ -11,5 +12,7 @@ pub use self::card::{
     cards_of, check_as, describe, nearest,
 };
 pub use self::diagnostic::Diagnostic;
+pub use self::keys::{KeyValue, Keys};
 pub use self::schema::{Need, Parameter, PluginKind, Range, Shape, Variant};
 pub use self::units::{Quantity, STANDARD_GRAVITY};
+pub use voussoir_keys_derive::Keys;

@@ -33,7 +33,7 @@ impl Range {
     }
 
     /// Whether the finite number `x` lies in the range.
-    pub fn contains(&self, x: f64) -> bool {
+    pub const fn contains(&self, x: f64) -> bool {
         x.is_finite()
             && (if self.min_open { x > self.min } else { x >= self.min })
             && (if self.max_open { x < self.max } else { x <= self.max })

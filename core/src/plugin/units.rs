@@ -28,6 +28,22 @@ pub enum Quantity {
     Temperature,
 }
 
+/// Compares texts while the program is compiled.
+pub(super) const fn same(one: &str, other: &str) -> bool {
+    let (one, other) = (one.as_bytes(), other.as_bytes());
+    if one.len() != other.len() {
+        return false;
+    }
+    let mut i = 0;
+    while i < one.len() {
+        if one[i] != other[i] {
+            return false;
+        }
+        i += 1;
+    }
+    true
+}
+
 const POUND_FORCE: f64 = 4.448_221_615_260_5; // exact: 0.45359237 kg × 9.80665 m/s²
 const FOOT: f64 = 0.3048; // exact
 const INCH: f64 = 0.0254; // exact
@@ -55,8 +71,41 @@ const SPECIFIC_WEIGHTS: &[(&str, f64)] =
 const ACCELERATIONS: &[(&str, f64)] = &[("m/s2", 1.0), ("g", STANDARD_GRAVITY), ("ft/s2", FOOT)];
 
 impl Quantity {
+    /// The quantity with this SI unit; `"-"` is that of a pure number.
+    ///
+    /// # Panics
+    /// No quantity has this unit.
+    pub const fn of_unit(unit: &str) -> Self {
+        if same(unit, "-") {
+            return Quantity::Ratio;
+        }
+        let mut i = 0;
+        while i < Quantity::ALL.len() {
+            if !unit.is_empty() && same(Quantity::ALL[i].unit(), unit) {
+                return Quantity::ALL[i];
+            }
+            i += 1;
+        }
+        panic!("no quantity has this unit; units of keys: - m deg rad N Pa Pa/m kg/m3 m/s2 J/m2 K")
+    }
+
+    /// All quantities.
+    pub const ALL: [Quantity; 11] = [
+        Quantity::Ratio,
+        Quantity::Length,
+        Quantity::Degrees,
+        Quantity::Radians,
+        Quantity::Force,
+        Quantity::Stress,
+        Quantity::Stiffness,
+        Quantity::Density,
+        Quantity::Acceleration,
+        Quantity::EnergyPerArea,
+        Quantity::Temperature,
+    ];
+
     /// The unit of a plain number; empty for a ratio.
-    pub fn unit(self) -> &'static str {
+    pub const fn unit(self) -> &'static str {
         match self {
             Quantity::Ratio => "",
             Quantity::Length => "m",
@@ -154,6 +203,74 @@ mod tests {
         assert!((read(Quantity::Stress, "1 psi") - 6_894.757_293_168).abs() < 1e-6);
         assert_eq!(read(Quantity::Degrees, "25°"), 25.0);
         assert!((read(Quantity::Radians, "180 deg") - std::f64::consts::PI).abs() < 1e-15);
+    }
+
+    /// Every unit of every quantity with its value in the quantity's own unit, from its definition: the international yard
+    /// and pound of 1959 (0.9144 m, 0.45359237 kg), standard gravity of 1901 (9.80665 m/s²), π. A specific weight counts
+    /// with the gravity of the study, 10 m/s² here.
+    const UNITS: &[(Quantity, &[(&str, f64)])] = &[
+        (Quantity::Ratio, &[("%", 0.01)]),
+        (Quantity::Length, &[("m", 1.0), ("mm", 0.001), ("cm", 0.01), ("ft", 0.3048), ("in", 0.0254)]),
+        (Quantity::Degrees, &[("deg", 1.0), ("rad", 57.295_779_513_082_32), ("°", 1.0)]),
+        (Quantity::Radians, &[("rad", 1.0), ("deg", 0.017_453_292_519_943_295), ("°", 0.017_453_292_519_943_295)]),
+        (
+            Quantity::Force,
+            &[("N", 1.0), ("kN", 1e3), ("MN", 1e6), ("lbf", 4.448_221_615_260_5), ("kip", 4_448.221_615_260_5)],
+        ),
+        (
+            Quantity::Stress,
+            &[
+                ("Pa", 1.0),
+                ("kPa", 1e3),
+                ("MPa", 1e6),
+                ("GPa", 1e9),
+                ("N/mm2", 1e6),
+                ("kN/m2", 1e3),
+                ("psi", 6_894.757_293_168_361),
+                ("ksi", 6_894_757.293_168_361),
+            ],
+        ),
+        (Quantity::Stiffness, &[("Pa/m", 1.0), ("kPa/m", 1e3), ("MPa/m", 1e6), ("GPa/m", 1e9), ("N/mm3", 1e9)]),
+        (
+            Quantity::Density,
+            &[
+                ("kg/m3", 1.0),
+                ("t/m3", 1e3),
+                ("lb/ft3", 16.018_463_373_960_14),
+                ("N/m3", 0.1),
+                ("kN/m3", 100.0),
+                ("lbf/ft3", 15.708_746_384_624_62),
+            ],
+        ),
+        (Quantity::Acceleration, &[("m/s2", 1.0), ("g", 9.80665), ("ft/s2", 0.3048)]),
+        (Quantity::EnergyPerArea, &[("J/m2", 1.0), ("N/m", 1.0), ("kJ/m2", 1e3), ("N/mm", 1e3)]),
+        (Quantity::Temperature, &[("K", 1.0)]),
+    ];
+
+    #[test]
+    fn every_unit_has_the_value_of_its_definition() {
+        assert_eq!(UNITS.len(), Quantity::ALL.len());
+        for (quantity, units) in UNITS {
+            let names: Vec<_> = quantity.table(10.0).into_iter().map(|(name, _)| name).collect();
+            assert_eq!(names, units.iter().map(|(name, _)| *name).collect::<Vec<_>>(), "{quantity:?}");
+            for (name, value) in *units {
+                for number in [1.0, -3.0, 0.7] {
+                    let read = quantity.parse(&format!("{number} {name}"), 10.0).unwrap();
+                    let expected = number * value;
+                    let off = (read - expected).abs() / expected.abs();
+                    assert!(off <= 2.0 * f64::EPSILON, "{number} {name}: {read}, not {expected}");
+                }
+            }
+            let own = if quantity.unit().is_empty() { "-" } else { quantity.unit() };
+            assert_eq!(Quantity::of_unit(own), *quantity);
+            assert_eq!(quantity.parse("1.5", 10.0), Ok(1.5), "a plain number is in the quantity's own unit");
+        }
+    }
+
+    #[test]
+    #[should_panic = "no quantity has this unit"]
+    fn a_unit_that_is_not_si_is_none_of_a_key() {
+        Quantity::of_unit("MPa");
     }
 
     #[test]

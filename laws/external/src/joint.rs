@@ -2,36 +2,31 @@
 
 use crate::behaviour::{Family, Request, Wrong};
 use crate::runner::Runner;
-use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use voussoir_core::law::{InterfaceLaw, InterfaceResponse, TractionPoint, UpdateFailure};
-use voussoir_core::plugin::{Capability, Card, Need, Parameter, PluginKind, Quantity, Range, Shape, check_as};
+use voussoir_core::plugin::{Capability, Card, Keys, PluginKind};
 
 /// A cohesive zone model from a shared library.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Keys)]
+#[keys(check = complaints)]
 pub struct ExternalJoint {
-    /// Path of the library.
+    /// path of the shared library; the command line must allow it: --allow-library PATH
     pub library: String,
-    /// Name of the behaviour.
+    /// name of the behaviour in the library
     pub behaviour: String,
-    /// Material properties by their names in the library.
-    #[serde(default)]
+    /// its material properties, by their names in the library and in SI units
+    #[key(unit = "-", default = {})]
     pub properties: BTreeMap<String, f64>,
-    /// Temperature \[K\].
-    #[serde(default = "room")]
+    /// temperature
+    #[key(unit = "K", range = "> 0", default = 293.15)]
     pub temperature: f64,
-    /// External state variables by their names in the library, without the temperature.
-    #[serde(default)]
+    /// its external state variables without the temperature, by their names in the library
+    #[key(unit = "-", default = {})]
     pub variables: BTreeMap<String, f64>,
-    /// True if it runs in a separate process.
-    #[serde(default)]
+    /// true if it runs in a separate process, so that a crash of it ends one case only
+    #[key(default = false)]
     pub isolate: bool,
-}
-
-pub(crate) fn room() -> f64 {
-    293.15
 }
 
 pub(crate) const FAMILY: Family = Family {
@@ -96,40 +91,6 @@ impl InterfaceResponse for ExternalResponse {
     }
 }
 
-pub(crate) const LIBRARY: Parameter = Parameter {
-    name: "library",
-    doc: "path of the shared library; the command line must allow it: --allow-library PATH",
-    shape: Shape::Text,
-    need: Need::Required,
-};
-pub(crate) const BEHAVIOUR: Parameter = Parameter {
-    name: "behaviour",
-    doc: "name of the behaviour in the library",
-    shape: Shape::Text,
-    need: Need::Required,
-};
-pub(crate) const PROPERTIES: Parameter = Parameter {
-    name: "properties",
-    doc: "its material properties, by their names in the library and in SI units",
-    shape: Shape::Map(&Shape::Number(Quantity::Ratio, Range::ANY)),
-    need: Need::Default("{}"),
-};
-pub(crate) const TEMPERATURE: Parameter =
-    Parameter::number("temperature", Quantity::Temperature, Range::POSITIVE, "temperature").default("293.15");
-pub(crate) const VARIABLES: Parameter = Parameter {
-    name: "variables",
-    doc: "its external state variables without the temperature, by their names in the library",
-    shape: Shape::Map(&Shape::Number(Quantity::Ratio, Range::ANY)),
-    need: Need::Default("{}"),
-};
-
-pub(crate) const ISOLATE: Parameter = Parameter {
-    name: "isolate",
-    doc: "whether it runs in a process of its own, so that a crash of it ends one case only",
-    shape: Shape::Boolean,
-    need: Need::Default("false"),
-};
-
 /// The reason why there is no behaviour, for cards.
 fn complaints(law: &ExternalJoint) -> Vec<(String, String)> {
     law.load().err().unwrap_or_default()
@@ -140,13 +101,11 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::InterfaceLaw,
         tag: "external",
         summary: "a cohesive zone model of a shared library, by MFront's generic interface",
-        parameters: &[LIBRARY, BEHAVIOUR, PROPERTIES, TEMPERATURE, VARIABLES, ISOLATE],
         provides: &[Capability::RESPONSE],
         sources: &["Helfer et al. 2020, J. Open Source Softw. 5(48) (the generic interface)"],
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("external.md"),
-        check: |value| check_as::<ExternalJoint>(value, complaints),
-        ..Card::BLANK
+        ..Card::of::<ExternalJoint>()
     }
 }

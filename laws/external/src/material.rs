@@ -2,36 +2,38 @@
 //! and multiplies off-diagonal components by √2.
 
 use crate::behaviour::{Family, Request, Wrong};
-use crate::joint::{BEHAVIOUR, ISOLATE, LIBRARY, PROPERTIES, TEMPERATURE, VARIABLES, room};
+use crate::joint::ExternalJoint;
 use crate::runner::Runner;
-use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_1_SQRT_2;
 use std::sync::Arc;
 use voussoir_core::law::{BulkMaterial, Elasticity, StressPoint, StressUpdate, UpdateContext, UpdateFailure, Voigt};
-use voussoir_core::plugin::{Capability, Card, Parameter, PluginKind, Quantity, Range, check_as};
+use voussoir_core::plugin::{Capability, Card, Keys, PluginKind};
 
 /// A behaviour with small strains from a shared library.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Keys)]
+#[keys(check = complaints)]
 pub struct ExternalMaterial {
     /// Path of the library.
+    #[key(like = ExternalJoint)]
     pub library: String,
     /// Name of the behaviour.
+    #[key(like = ExternalJoint)]
     pub behaviour: String,
     /// Material properties by their names in the library.
-    #[serde(default)]
+    #[key(like = ExternalJoint, default)]
     pub properties: BTreeMap<String, f64>,
     /// Temperature \[K\].
-    #[serde(default = "room")]
+    #[key(like = ExternalJoint, default)]
     pub temperature: f64,
     /// External state variables by their names in the library, without the temperature.
-    #[serde(default)]
+    #[key(like = ExternalJoint, default)]
     pub variables: BTreeMap<String, f64>,
     /// True if it runs in a separate process.
-    #[serde(default)]
+    #[key(like = ExternalJoint, default)]
     pub isolate: bool,
-    /// Density ρ \[kg/m³\].
+    /// mass per volume
+    #[key(unit = "kg/m3", range = ">= 0")]
     pub density: f64,
 }
 
@@ -131,21 +133,11 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::BulkMaterial,
         tag: "external",
         summary: "a behaviour of small strains of a shared library, by MFront's generic interface",
-        parameters: &[
-            LIBRARY,
-            BEHAVIOUR,
-            PROPERTIES,
-            TEMPERATURE,
-            VARIABLES,
-            ISOLATE,
-            Parameter::number("density", Quantity::Density, Range::NON_NEGATIVE, "mass per volume"),
-        ],
         provides: &[Capability::STRESS_UPDATE],
         sources: &["Helfer et al. 2020, J. Open Source Softw. 5(48) (the generic interface)"],
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("external.md"),
-        check: |value| check_as::<ExternalMaterial>(value, complaints),
-        ..Card::BLANK
+        ..Card::of::<ExternalMaterial>()
     }
 }

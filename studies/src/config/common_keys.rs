@@ -1,41 +1,60 @@
 //! Keys and words that every plug-in of a kind takes besides those of its card.
 
-use voussoir_core::plugin::{Need, Parameter, PluginKind, Quantity, Range, Shape};
+use serde_json::Value as Json;
+use voussoir_core::plugin::{Keys, Parameter, PluginKind, Shape};
 
-const fn key(name: &'static str, shape: Shape, need: Need, doc: &'static str) -> Parameter {
-    Parameter { name, doc, shape, need }
+/// `stop`: the end of a path after a peak.
+#[derive(Debug, Clone, Copy, Keys)]
+pub struct Stop {
+    /// displacement of the load point after a peak
+    #[key(unit = "m", range = "> 0", optional = "not a limit")]
+    pub displacement: Option<f64>,
+    /// load factor at which a path ends
+    #[key(unit = "-", optional = "not a limit")]
+    pub factor: Option<f64>,
 }
 
-/// How far to go after a peak.
-pub static STOP: Shape = Shape::Table(&[
-    Parameter::number("displacement", Quantity::Length, Range::POSITIVE, "displacement of the load point after a peak")
-        .optional("not a limit"),
-    Parameter::number("factor", Quantity::Ratio, Range::ANY, "load factor at which a path ends")
-        .optional("not a limit"),
-]);
+/// Small or finite displacements.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
+pub enum Kinematics {
+    /// Equilibrium in the undeformed position.
+    Small,
+    /// Equilibrium in displaced positions.
+    Finite,
+}
 
 /// Keys of `[solver]` that every solver has.
-pub static SOLVER: &[Parameter] = &[
-    key("kinematics", Shape::Choice(&["small", "finite"]), Need::Default("\"small\""), "small or finite displacements"),
-    key(
-        "continuation",
-        Shape::Plugin(PluginKind::Continuation),
-        Need::Optional("the solver's own"),
-        "strategy of path solvers: { strategy = \"arc_length\" }",
-    ),
-    Parameter::number(
-        "tolerance",
-        Quantity::Ratio,
-        Range::new(0.0, true, 0.01, false),
-        "relative tolerance of loads: of certificates, and of the states that path solvers accept",
-    )
-    .default("1e-9"),
-    key("stop", STOP, Need::Optional("the path ends at collapse"), "how far to go after a peak"),
-];
+#[derive(Debug, Clone, Keys)]
+pub struct SolverKeys {
+    /// small or finite displacements
+    #[key(default = "small")]
+    pub kinematics: Kinematics,
+    /// strategy of path solvers: { strategy = "arc_length" }
+    #[key(shape = Shape::Plugin(PluginKind::Continuation), optional = "the solver's own")]
+    pub continuation: Option<Json>,
+    /// relative tolerance of loads: of certificates, and of the states that path solvers accept
+    #[key(unit = "-", range = "> 0, <= 0.01", default = 1e-9)]
+    pub tolerance: f64,
+    /// how far to go after a peak
+    #[key(optional = "the path ends at collapse")]
+    pub stop: Option<Stop>,
+}
+
+/// The keys of `T` in a checked table that holds keys of others besides; `None` if they cannot be read.
+pub fn own_keys<T: Keys>(table: &Json) -> Option<T> {
+    let own = |(name, _): &(&String, &Json)| T::PARAMETERS.iter().any(|key| key.name == name.as_str());
+    let own = table.as_object()?.iter().filter(own).map(|(name, value)| (name.clone(), value.clone()));
+    serde_json::from_value(Json::Object(own.collect())).ok()
+}
+
+/// The word that names the plug-in which a table configures.
+pub fn tag_of(kind: PluginKind, table: &Json) -> &str {
+    table.get(kind.tag_key()).and_then(Json::as_str).unwrap_or_default()
+}
 
 /// Keys that every plug-in of a kind has besides those of its card.
 pub fn common_parameters(kind: PluginKind) -> &'static [Parameter] {
-    if kind == PluginKind::LimitSolver { SOLVER } else { &[] }
+    if kind == PluginKind::LimitSolver { SolverKeys::PARAMETERS } else { &[] }
 }
 
 /// What a kind is called in messages: limit and path solvers share one place.

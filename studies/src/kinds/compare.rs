@@ -4,30 +4,22 @@
 use super::kind::{KindEntry, LoadedStudy, OwnResults, StudyKind};
 use crate::config::diagnostic::suggest;
 use crate::results::{CaseResult, Comparison, ComparisonCell, ComparisonRow};
-use crate::study::{Outline, Study, StudyError, StudySource, VARIANT};
+use crate::study::{Outline, Study, StudyError, StudySource, VariantTable};
 use voussoir_core::limit::Status;
-use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Shape};
+use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind};
 
 struct Compare;
 
-/// The key of the variant that others are divided by, the same in every kind that compares.
-pub(super) const REFERENCE: Parameter = Parameter {
-    name: "reference",
-    doc: "name of the variant that the others are divided by",
-    shape: Shape::Text,
-    need: Need::Optional("the first variant"),
-};
-
-/// Keys of `[compare]`.
-pub const KEYS: &[Parameter] = &[
-    REFERENCE,
-    Parameter {
-        name: "scenes",
-        doc: "[[compare.scenes]]: name and set, as in [[variants]]; a variant is set on top of each",
-        shape: Shape::List { of: &VARIANT, min: 1, max: usize::MAX },
-        need: Need::Optional("the study's own scene"),
-    },
-];
+/// `[compare]`.
+#[derive(Debug, Clone, Keys)]
+pub(super) struct CompareTable {
+    /// name of the variant that the others are divided by
+    #[key(optional = "the first variant")]
+    pub reference: Option<String>,
+    /// \[\[compare.scenes\]\]: name and set, as in \[\[variants\]\]; a variant is set on top of each
+    #[key(len = ">= 1", optional = "the study's own scene")]
+    scenes: Option<Vec<VariantTable>>,
+}
 
 voussoir_core::inventory::submit! { KindEntry { tag: "compare", kind: &Compare } }
 
@@ -36,16 +28,20 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::StudyKind,
         tag: "compare",
         summary: "several laws and solvers (variants) on one or several scenes: one table with ratios, one figure",
-        parameters: KEYS,
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("compare.md"),
-        ..Card::BLANK
+        ..Card::of::<CompareTable>()
     }
 }
 
-/// Mistakes that every kind that compares looks for: fewer variants than it needs, names of none.
-pub(super) fn check_variants(kind: &str, outline: &Outline, keys: &[&str], least: usize) -> Vec<Diagnostic> {
+/// Mistakes that every kind that compares looks for: fewer variants than it needs, names (by key) of none.
+pub(super) fn check_variants(
+    kind: &str,
+    outline: &Outline,
+    named: &[(&str, &Option<String>)],
+    least: usize,
+) -> Vec<Diagnostic> {
     let mut diagnostics = Vec::new();
     if outline.variants.len() < least {
         let message =
@@ -56,9 +52,9 @@ pub(super) fn check_variants(kind: &str, outline: &Outline, keys: &[&str], least
         );
         return diagnostics;
     }
-    for key in keys {
-        if let Some(name) = outline.table.get(*key).and_then(|value| value.as_str())
-            && outline.variant(key).is_none()
+    for (key, name) in named {
+        if let Some(name) = name
+            && outline.variant(Some(name)).is_none()
         {
             let names: Vec<&str> = outline.variants.iter().map(String::as_str).collect();
             let message = format!("there is no variant \"{name}\"");
@@ -118,11 +114,14 @@ impl StudyKind for Compare {
     }
 
     fn check(&self, outline: &Outline) -> Vec<Diagnostic> {
-        check_variants("compare", outline, &["reference"], 2)
+        let table = outline.read::<CompareTable>();
+        check_variants("compare", outline, &[("reference", &table.and_then(|table| table.reference))], 2)
     }
 
     fn own_results(&self, study: &Study, cases: &[CaseResult]) -> OwnResults {
-        let comparison = beside_each_other(study, cases, study.outline.variant("reference").unwrap_or(0));
+        let table = study.outline.read::<CompareTable>();
+        let reference = study.outline.variant(table.and_then(|table| table.reference).as_ref());
+        let comparison = beside_each_other(study, cases, reference.unwrap_or(0));
         OwnResults { comparison, ..OwnResults::default() }
     }
 }

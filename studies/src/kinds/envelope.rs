@@ -14,51 +14,12 @@ use crate::side_by_side::side_by_side;
 use crate::solve::{Observer, solve_cases, solve_unless_cancelled};
 use crate::study::{Case, Outline, Study, StudyError, StudySource};
 use std::borrow::Cow;
-use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Quantity, Range, Shape};
+use voussoir_core::plugin::{Card, Diagnostic, PluginKind};
 
-/// Greatest number of places on the even scan.
-const MAX_SCAN: i64 = 100_000;
 /// Cases of one run of one vehicle have ids from a multiple of this on, after those of the study.
 const STRIDE: usize = 1_000_000;
 
 struct Envelope;
-
-/// Keys of `[envelope]`.
-pub const KEYS: &[Parameter] = &[
-    Parameter {
-        name: "parameter",
-        doc: "path of the key that moves the load, such as \"stages.1.loads.0.at\"",
-        shape: Shape::Text,
-        need: Need::Required,
-    },
-    Parameter::number("from", Quantity::Ratio, Range::ANY, "least value, in the unit of the key"),
-    Parameter::number("to", Quantity::Ratio, Range::ANY, "greatest value, in the unit of the key"),
-    Parameter::number(
-        "tolerance",
-        Quantity::Ratio,
-        Range::new(0.0, true, 1.0, false),
-        "of the worst value, as a share of the range from `from` to `to`",
-    )
-    .default("1e-3"),
-    Parameter {
-        name: "scan",
-        doc: "number of places on an even scan; places where axles enter or edges of patches meet joints are added",
-        shape: Shape::Integer { min: 2, max: MAX_SCAN },
-        need: Need::Default("41"),
-    },
-    Parameter {
-        name: "directions",
-        doc: "which way vehicles stand",
-        shape: Shape::Choice(&["both", "forward", "backward"]),
-        need: Need::Optional("both for a load of kind \"vehicle\", forward for others"),
-    },
-    Parameter {
-        name: "vehicles",
-        doc: "entries of [vehicles] that are tried in turn",
-        shape: Shape::List { of: &Shape::Reference("vehicles"), min: 1, max: 1000 },
-        need: Need::Optional("the load's own vehicle"),
-    },
-];
 
 voussoir_core::inventory::submit! { KindEntry { tag: "envelope", kind: &Envelope } }
 
@@ -67,11 +28,10 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::StudyKind,
         tag: "envelope",
         summary: "moves a load over a range, both ways and for several vehicles: the worst place, and the factor at all of them",
-        parameters: KEYS,
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("envelope.md"),
-        ..Card::BLANK
+        ..Card::of::<Request>()
     }
 }
 
@@ -96,11 +56,11 @@ impl Envelope {
 impl StudyKind for Envelope {
     fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, StudyError> {
         let study = Study::from_source(source)?;
-        let Some(request) = Request::of(&study.outline) else { return Ok(Box::new(study)) };
+        let Some(request) = study.outline.read::<Request>() else { return Ok(Box::new(study)) };
         // Mistakes at one end of the range show before anything is solved.
         for case in &study.cases {
             for run in request.runs(case) {
-                for value in request.range {
+                for value in request.range() {
                     study.at(case.id, &request.values(&run, value))?;
                 }
             }
@@ -109,17 +69,17 @@ impl StudyKind for Envelope {
     }
 
     fn check(&self, outline: &Outline) -> Vec<Diagnostic> {
-        let Some(request) = Request::of(outline) else {
+        let Some(request) = outline.read::<Request>() else {
             return vec![
                 Diagnostic::new("envelope", "is missing").help("say what moves: [envelope] parameter, from, to"),
             ];
         };
-        range_mistakes("envelope", request.range, &request.keys(), outline)
+        range_mistakes("envelope", request.range(), &request.keys(), outline)
     }
 
     fn solve(&self, study: &Study, wanted: &[usize], jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {
         let mut results = solve_cases(study, wanted, jobs, observer);
-        let Some(request) = Request::of(&study.outline) else { return results };
+        let Some(request) = study.outline.read::<Request>() else { return results };
         let all = || wanted.iter().flat_map(|base| self.of_case(study, *base, &request, observer)).collect::<Vec<_>>();
         results.extend(side_by_side(jobs, all));
         results
@@ -133,7 +93,7 @@ impl StudyKind for Envelope {
         if let Some(case) = study.cases.get(label.id) {
             return Some(Cow::Borrowed(case));
         }
-        let request = Request::of(&study.outline)?;
+        let request = study.outline.read::<Request>()?;
         // Every case has as many runs as the first, because kinds of loads are not swept.
         let runs = request.runs(study.cases.first()?).len();
         let base = (label.id - study.cases.len()) / STRIDE / runs;
@@ -143,7 +103,7 @@ impl StudyKind for Envelope {
     }
 
     fn own_results(&self, study: &Study, cases: &[CaseResult]) -> OwnResults {
-        let Some(request) = Request::of(&study.outline) else { return OwnResults::default() };
+        let Some(request) = study.outline.read::<Request>() else { return OwnResults::default() };
         OwnResults { other: worsts::entries(study, &request, cases), ..OwnResults::default() }
     }
 }

@@ -1,30 +1,32 @@
 //! `map`: several laws and solvers over two swept numbers.
 #![doc = include_str!("map.md")]
 
-use super::compare::{REFERENCE, beside_each_other, check_variants};
+use super::compare::{CompareTable, beside_each_other, check_variants};
 use super::kind::{KindEntry, LoadedStudy, OwnResults, StudyKind};
 use crate::results::{CaseResult, Comparison, MapAxes};
 use crate::study::{Outline, Study, StudyError, StudySource};
-use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Shape};
+use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind};
 
 struct Map;
 
-const fn text(name: &'static str, doc: &'static str, otherwise: &'static str) -> Parameter {
-    Parameter { name, doc, shape: Shape::Text, need: Need::Optional(otherwise) }
+/// `[map]`.
+#[derive(Debug, Clone, Keys)]
+struct MapTable {
+    #[key(like = CompareTable)]
+    reference: Option<String>,
+    /// name of the variant whose load over that of the reference is drawn as contours
+    #[key(optional = "the first that is not the reference")]
+    contours: Option<String>,
+    /// name of the variant whose kinds of mechanism are coloured
+    #[key(optional = "the reference")]
+    regions: Option<String>,
+    /// name of the first axis of the sweep in the figure
+    #[key(optional = "its key in words")]
+    x_label: Option<String>,
+    /// name of the second axis of the sweep in the figure
+    #[key(optional = "its key in words")]
+    y_label: Option<String>,
 }
-
-/// Keys of `[map]`.
-pub const KEYS: &[Parameter] = &[
-    REFERENCE,
-    text(
-        "contours",
-        "name of the variant whose load over that of the reference is drawn as contours",
-        "the first that is not the reference",
-    ),
-    text("regions", "name of the variant whose kinds of mechanism are coloured", "the reference"),
-    text("x_label", "name of the first axis of the sweep in the figure", "its key in words"),
-    text("y_label", "name of the second axis of the sweep in the figure", "its key in words"),
-];
 
 voussoir_core::inventory::submit! { KindEntry { tag: "map", kind: &Map } }
 
@@ -33,11 +35,10 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::StudyKind,
         tag: "map",
         summary: "one or several laws (variants) over two swept numbers: regions of mechanisms, contours of loads or ratios",
-        parameters: KEYS,
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("map.md"),
-        ..Card::BLANK
+        ..Card::of::<MapTable>()
     }
 }
 
@@ -59,7 +60,9 @@ impl StudyKind for Map {
     }
 
     fn check(&self, outline: &Outline) -> Vec<Diagnostic> {
-        let mut diagnostics = check_variants("map", outline, &["reference", "contours", "regions"], 0);
+        let table = outline.read().unwrap_or_else(MapTable::defaults);
+        let named = [("reference", &table.reference), ("contours", &table.contours), ("regions", &table.regions)];
+        let mut diagnostics = check_variants("map", outline, &named, 0);
         if outline.axes.len() != 2 {
             let message = format!("\"map\" needs two axes, but [sweep] has {}", outline.axes.len());
             diagnostics
@@ -83,25 +86,24 @@ impl StudyKind for Map {
 /// The variants beside each other over the two axes.
 fn map_of(study: &Study, cases: &[CaseResult]) -> Option<Comparison> {
     let outline = &study.outline;
-    let reference = outline.variant("reference").unwrap_or(0);
+    let table = outline.read().unwrap_or_else(MapTable::defaults);
+    let reference = outline.variant(table.reference.as_ref()).unwrap_or(0);
     // Of one law alone loads are drawn, not ratios.
     let other = if outline.variants.len() < 2 { 0 } else { usize::from(reference == 0) };
     let mut comparison = beside_each_other(study, cases, reference)?;
     let [x, y] = [0, 1].map(|axis| outline.axes.get(axis).and_then(|(keys, _)| keys.first()).cloned());
     let (x, y) = (x?, y?);
     let keys = study.swept_keys();
-    let label = |name: &str, key: &str| match outline.table.get(name).and_then(|text| text.as_str()) {
-        Some(text) => text.to_string(),
-        None => keys.title(key),
-    };
+    let label = |given: Option<String>, key: &str| given.unwrap_or_else(|| keys.title(key));
     let names = comparison.variants.clone();
-    let name = |key: &str, otherwise: usize| names[outline.variant(key).unwrap_or(otherwise)].clone();
+    let name =
+        |given: Option<String>, otherwise: usize| names[outline.variant(given.as_ref()).unwrap_or(otherwise)].clone();
     if let (Some(x_values), Some(y_values)) = (values(study, &x), values(study, &y)) {
         comparison.map = Some(MapAxes {
-            x_label: label("x_label", &x),
-            y_label: label("y_label", &y),
-            contours: name("contours", other),
-            regions: name("regions", reference),
+            x_label: label(table.x_label, &x),
+            y_label: label(table.y_label, &y),
+            contours: name(table.contours, other),
+            regions: name(table.regions, reference),
             x,
             x_values,
             y,

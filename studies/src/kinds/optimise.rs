@@ -13,55 +13,9 @@ use crate::side_by_side::side_by_side;
 use crate::solve::{Observer, solve_cases, solve_unless_cancelled};
 use crate::study::{Case, Outline, Study, StudyError, StudySource};
 use std::borrow::Cow;
-use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Quantity, Range, Shape};
-
-/// Greatest number of values on the scan.
-const MAX_SCAN: i64 = 100_000;
+use voussoir_core::plugin::{Card, Diagnostic, PluginKind};
 
 struct Optimise;
-
-/// Keys of `[optimise]`.
-pub const KEYS: &[Parameter] = &[
-    Parameter {
-        name: "parameter",
-        doc: "path of the numeric key that varies, such as \"scene.springing\"",
-        shape: Shape::Text,
-        need: Need::Optional("parameters is given"),
-    },
-    Parameter {
-        name: "parameters",
-        doc: "paths of several keys that vary in lockstep",
-        shape: Shape::List { of: &Shape::Text, min: 1, max: 100 },
-        need: Need::Optional("parameter is given"),
-    },
-    Parameter::number("from", Quantity::Ratio, Range::ANY, "least value, in the unit of the key"),
-    Parameter::number("to", Quantity::Ratio, Range::ANY, "greatest value, in the unit of the key"),
-    Parameter {
-        name: "goal",
-        doc: "which way is better",
-        shape: Shape::Choice(&["maximise", "minimise"]),
-        need: Need::Default("\"maximise\""),
-    },
-    Parameter {
-        name: "result",
-        doc: "what is optimised",
-        shape: Shape::Choice(&["load_factor", "first_limit_point"]),
-        need: Need::Optional("load_factor for small displacements, first_limit_point for finite ones"),
-    },
-    Parameter {
-        name: "scan",
-        doc: "number of even values that are tried first",
-        shape: Shape::Integer { min: 2, max: MAX_SCAN },
-        need: Need::Default("41"),
-    },
-    Parameter::number(
-        "tolerance",
-        Quantity::Ratio,
-        Range::new(0.0, true, 1.0, false),
-        "of the best value, as a share of the range from `from` to `to`",
-    )
-    .default("1e-3"),
-];
 
 voussoir_core::inventory::submit! { KindEntry { tag: "optimise", kind: &Optimise } }
 
@@ -70,23 +24,22 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::StudyKind,
         tag: "optimise",
         summary: "the value of a key at which a result is greatest or least, for each variant and sweep point",
-        parameters: KEYS,
         sources: &["Kiefer 1953, Proc. Amer. Math. Soc. 4, 502-506"],
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("optimise.md"),
-        ..Card::BLANK
+        ..Card::of::<Request>()
     }
 }
 
 impl StudyKind for Optimise {
     fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, StudyError> {
         let study = Study::from_source(source)?;
-        if let Some(request) = Request::of(&study.outline) {
+        if let Some(request) = study.outline.read::<Request>() {
             // A key that does not exist, or that takes no number, shows at both ends.
             let at = |value: f64| study.at(0, &request.values(value));
-            let middle = 0.5 * (request.range[0] + request.range[1]);
-            if let (Err(wrong), Err(_), Err(_)) = (at(request.range[0]), at(request.range[1]), at(middle)) {
+            let middle = 0.5 * (request.range()[0] + request.range()[1]);
+            if let (Err(wrong), Err(_), Err(_)) = (at(request.range()[0]), at(request.range()[1]), at(middle)) {
                 return Err(wrong);
             }
         }
@@ -94,19 +47,18 @@ impl StudyKind for Optimise {
     }
 
     fn check(&self, outline: &Outline) -> Vec<Diagnostic> {
-        let missing = |key: &str| !outline.table.contains_key(key);
-        if missing("parameter") == missing("parameters") {
+        let Some(request) = outline.read::<Request>() else { return Vec::new() };
+        if request.parameter.is_some() == request.parameters.is_some() {
             let help =
                 "[optimise] parameter = \"scene.springing\", from, to; several keys in lockstep: parameters = [...]";
             return vec![Diagnostic::new("optimise", "needs parameter, or parameters, and not both").help(help)];
         }
-        let Some(request) = Request::of(outline) else { return Vec::new() };
-        range_mistakes("optimise", request.range, &request.keys, outline)
+        range_mistakes("optimise", request.range(), &request.keys(), outline)
     }
 
     fn solve(&self, study: &Study, wanted: &[usize], jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {
         let mut results = solve_cases(study, wanted, jobs, observer);
-        let Some(request) = Request::of(&study.outline) else { return results };
+        let Some(request) = study.outline.read::<Request>() else { return results };
         let all = || {
             let of = |&base: &usize| {
                 let first = study.cases.len() + base * STRIDE;
@@ -131,14 +83,14 @@ impl StudyKind for Optimise {
         if let Some(case) = study.cases.get(label.id) {
             return Some(Cow::Borrowed(case));
         }
-        let request = Request::of(&study.outline)?;
+        let request = study.outline.read::<Request>()?;
         let base = (label.id - study.cases.len()) / STRIDE;
-        let value = label.parameters.get(request.keys.first()?)?.as_f64()?;
+        let value = label.parameters.get(request.keys().first()?)?.as_f64()?;
         case_at(study, base, label.id, &request.values(value)).map(Cow::Owned)
     }
 
     fn own_results(&self, study: &Study, cases: &[CaseResult]) -> OwnResults {
-        let Some(request) = Request::of(&study.outline) else { return OwnResults::default() };
+        let Some(request) = study.outline.read::<Request>() else { return OwnResults::default() };
         OwnResults { other: optima::entries(study, &request, cases), ..OwnResults::default() }
     }
 }

@@ -11,7 +11,7 @@ mod surface;
 
 use super::kind::{KindEntry, LoadedStudy, StudyKind};
 use crate::study::{StudyError, StudySource};
-use voussoir_core::plugin::{Card, Parameter, PluginKind};
+use voussoir_core::plugin::{Card, Keys, Parameter, PluginKind};
 
 struct Point;
 
@@ -22,14 +22,13 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::StudyKind,
         tag: "point",
         summary: "drives one law at one point through strains, stresses or both",
-        parameters: study::POINT,
         file: file!(),
         package: voussoir_core::package!(),
         page: "# `point`\n\nDrives a material or a joint through `[[point.path]]`, segment by segment. Each segment moves the components it names, \
                in `steps` equal steps, to the strains (gaps) or stresses (tractions) given; a component that is not named keeps \
                the strain or the stress it was controlled by last, at first a strain of zero. Strains are tension positive with \
                engineering shears; a joint's gap opens and its traction presses positive.\n",
-        ..Card::BLANK
+        ..Card::of::<study::PointTable>()
     }
 }
 
@@ -39,6 +38,6 @@ impl StudyKind for Point {
     }
 
     fn file_keys(&self) -> Option<&'static [Parameter]> {
-        Some(study::STUDY)
+        Some(study::PointFile::PARAMETERS)
     }
 }

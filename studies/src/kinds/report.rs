@@ -6,7 +6,6 @@ mod contents;
 mod evaluate;
 mod expression;
 mod figures;
-mod keys;
 mod page;
 mod parts;
 mod series;
@@ -19,7 +18,7 @@ mod value;
 
 use super::kind::{KindEntry, LoadedStudy, StudyKind};
 use crate::study::{ReadFile, StudyError, StudySource, no_files};
-use voussoir_core::plugin::{Card, Parameter, PluginKind};
+use voussoir_core::plugin::{Card, Keys, Parameter, PluginKind};
 
 struct Report;
 
@@ -30,11 +29,10 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::StudyKind,
         tag: "report",
         summary: "runs several studies and writes one page: texts, charts of their results, verdicts on claims",
-        parameters: keys::REPORT,
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("report.md"),
-        ..Card::BLANK
+        ..Card::of::<contents::Contents>()
     }
 }
 
@@ -48,6 +46,6 @@ impl StudyKind for Report {
     }
 
     fn file_keys(&self) -> Option<&'static [Parameter]> {
-        Some(keys::STUDY)
+        Some(contents::ReportFile::PARAMETERS)
     }
 }

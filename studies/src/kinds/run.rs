@@ -16,7 +16,6 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::StudyKind,
         tag: "run",
         summary: "answers every case of the study (variants × sweep) on its own",
-        parameters: &[],
         file: file!(),
         package: voussoir_core::package!(),
         page: "# `run`\n\nAnswers every case, variants outermost, then the axes of the sweep. One row of the table and one entry of results.json a case. More than 5000 cases are made, solved, written and forgotten one by one: memory does not grow with their number, results.json, results.csv and, where it is asked for, results.parquet are written, and nothing is drawn.\n",

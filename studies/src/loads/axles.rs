@@ -1,22 +1,22 @@
 //! `axles`: wheels or axles on the extrados of an arch.
 
 use super::extrados::{on_extrados, reach, x_at};
-use super::keys::{FRACTION, many};
 use super::load_kind::{LoadKind, Placed};
 use super::site::LoadSite;
-use serde::{Deserialize, Serialize};
 use voussoir_core::model::geometry::Vec2;
-use voussoir_core::plugin::{Card, Diagnostic, Parameter, PluginKind, Quantity, Range, Shape};
+use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind};
 
 /// Wheels or axles on the extrados of an arch.
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Keys)]
 pub struct Axles {
-    /// Span fraction of the origin of the positions.
+    /// span fraction of the origin of the positions
+    #[key(unit = "-")]
     pub at: f64,
-    /// Horizontal distances from there \[m\].
+    /// positions of the axles, as horizontal distances from the origin
+    #[key(unit = "m", len = ">= 1")]
     pub positions: Vec<f64>,
-    /// Downwards \[N\], one for each position.
+    /// forces, downwards, one for each position
+    #[key(unit = "N", len = ">= 1")]
     pub forces: Vec<f64>,
 }
 
@@ -59,15 +59,10 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::LoadKind,
         tag: "axles",
         summary: "wheels or axles on the extrados of an arch",
-        parameters: &[
-            Parameter::number("at", Quantity::Ratio, FRACTION, "span fraction of the origin of the positions"),
-            many("positions", &Shape::Number(Quantity::Length, Range::ANY), "positions of the axles, as horizontal distances from the origin"),
-            many("forces", &Shape::Number(Quantity::Force, Range::ANY), "forces, downwards, one for each position"),
-        ],
         file: file!(),
         package: voussoir_core::package!(),
         page: "# `axles`\n\nDownward forces on the extrados of an arch at distances from a span fraction, as of a vehicle. An axle \
                that is not yet or no longer on the extrados counts nothing, and a note says so.\n",
-        ..Card::BLANK
+        ..Card::of::<Axles>()
     }
 }

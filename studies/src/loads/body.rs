@@ -2,15 +2,14 @@
 
 use super::load_kind::{LoadKind, Placed};
 use super::site::LoadSite;
-use serde::{Deserialize, Serialize};
 use voussoir_core::model::geometry::Vec2;
-use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Quantity, Range, Shape};
+use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind};
 
 /// Acceleration of every block, times its mass.
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Keys)]
 pub struct BodyLoad {
-    /// \[m/s²\].
+    /// acceleration, x to the right and y upwards
+    #[key(names = ["x", "y"], unit = "m/s2")]
     pub acceleration: [f64; 2],
 }
 
@@ -22,22 +21,14 @@ impl LoadKind for BodyLoad {
     }
 }
 
-const ACCELERATION: Shape = Shape::Number(Quantity::Acceleration, Range::ANY);
-
 voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::LoadKind,
         tag: "body",
         summary: "acceleration of every block, times its mass",
-        parameters: &[Parameter {
-            name: "acceleration",
-            doc: "acceleration, x to the right and y upwards",
-            shape: Shape::Tuple(&[("x", ACCELERATION), ("y", ACCELERATION)]),
-            need: Need::Required,
-        }],
         file: file!(),
         package: voussoir_core::package!(),
         page: "# `body`\n\nAn acceleration of every block, times its mass: for pushover and tilting.\n",
-        ..Card::BLANK
+        ..Card::of::<BodyLoad>()
     }
 }

@@ -1,34 +1,18 @@
 //! Keys that several load kinds share, and the shape of an entry of `loads`.
 
-pub(super) use crate::scenes::POINT;
+use super::dispersion::Dispersion;
+use super::site::BlockName;
 use std::sync::LazyLock;
-use voussoir_core::plugin::{Need, Parameter, PluginKind, Quantity, Range, Shape, Variant, cards_of};
+use voussoir_core::plugin::{Keys, PluginKind, Shape, Variant, cards_of};
 
-/// A span fraction.
-pub(super) const FRACTION: Range = Range::ANY;
-/// A force \[x, y\].
-pub(super) const VECTOR: Shape = Shape::Tuple(&[("x", FORCE), ("y", FORCE)]);
-const FORCE: Shape = Shape::Number(Quantity::Force, Range::ANY);
-/// An index or a number of a block.
-pub(super) const NUMBER: Shape = Shape::Integer { min: 0, max: i64::MAX };
-/// A block.
-pub(super) const BLOCK: Parameter = Parameter {
-    name: "block",
-    doc: "name of the block, on arches the number of the voussoir from the left",
-    shape: Shape::Either(&[Shape::Text, NUMBER]),
-    need: Need::Required,
-};
-/// How a load spreads on its way to the extrados.
-pub(super) const DISPERSION: Parameter = Parameter {
-    name: "dispersion",
-    doc: "how the load spreads on its way to the extrados: { law = \"uniform\", angle = 30.0, depth = 0.5 }",
-    shape: Shape::Plugin(PluginKind::Dispersion),
-    need: Need::Optional("it does not spread"),
-};
-
-/// A list of at least one entry that must be given.
-pub(super) const fn many(name: &'static str, of: &'static Shape, doc: &'static str) -> Parameter {
-    Parameter { name, doc, shape: Shape::List { of, min: 1, max: usize::MAX }, need: Need::Required }
+/// Keys that several load kinds share.
+#[derive(Debug, Keys)]
+pub(super) struct LoadKeys {
+    /// name of the block, on arches the number of the voussoir from the left
+    block: BlockName,
+    /// how the load spreads on its way to the extrados: { law = "uniform", angle = 30.0, depth = 0.5 }
+    #[key(optional = "it does not spread")]
+    dispersion: Option<Box<dyn Dispersion>>,
 }
 
 /// What an entry of `loads` may hold: the keys of one of the registered load kinds.

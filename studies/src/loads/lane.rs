@@ -3,19 +3,20 @@
 use super::extrados::on_faces;
 use super::load_kind::{LoadKind, Placed};
 use super::site::LoadSite;
-use serde::{Deserialize, Serialize};
 use voussoir_core::model::geometry::Vec2;
-use voussoir_core::plugin::{Card, Diagnostic, Parameter, PluginKind, Quantity, Range};
+use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind};
 
 /// An even load along the road.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Keys)]
 pub struct Lane {
-    /// x of its left end \[m\].
+    /// x of the left end
+    #[key(unit = "m")]
     pub from: f64,
-    /// x of its right end \[m\].
+    /// x of the right end
+    #[key(unit = "m")]
     pub to: f64,
-    /// On the plan area, over the full width, downwards \[Pa\].
+    /// on the plan area over the full width, downwards
+    #[key(unit = "Pa")]
     pub pressure: f64,
 }
 
@@ -43,15 +44,10 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::LoadKind,
         tag: "lane",
         summary: "an even load along the road of a bridge, as of a lane or a track",
-        parameters: &[
-            Parameter::number("from", Quantity::Length, Range::ANY, "x of the left end"),
-            Parameter::number("to", Quantity::Length, Range::ANY, "x of the right end"),
-            Parameter::number("pressure", Quantity::Stress, Range::ANY, "on the plan area over the full width, downwards"),
-        ],
         file: file!(),
         package: voussoir_core::package!(),
         page: "# `lane`\n\nAn even vertical pressure on the plan area between two x, over the full width. Each block carries what stands \
                above its upper face; at its ends the load does not spread. What lies beyond the bridge goes to the ground.\n",
-        ..Card::BLANK
+        ..Card::of::<Lane>()
     }
 }

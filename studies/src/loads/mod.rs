@@ -22,4 +22,4 @@ pub use keys::load_shape;
 pub use load_kind::{LoadKind, Placed};
 pub use site::{BlockName, LoadSite, LoadTables};
 pub use track::{Track, footprints};
-pub use vehicle_axles::{Axle, VEHICLE, VehicleAxles};
+pub use vehicle_axles::{Axle, VehicleAxles};

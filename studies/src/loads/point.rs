@@ -2,26 +2,29 @@
 
 use super::dispersion::{Dispersion, Patch};
 use super::extrados::{dispersed, on_extrados, on_patch, x_at};
-use super::keys::{BLOCK, DISPERSION, FRACTION, POINT, VECTOR};
+use super::keys::LoadKeys;
 use super::load_kind::{LoadKind, Placed};
 use super::site::{BlockName, LoadSite};
-use serde::{Deserialize, Serialize};
 use voussoir_core::model::geometry::Vec2;
-use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Quantity};
+use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind};
 
 /// A force at a point.
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Keys)]
 pub struct PointLoad {
-    /// Place on the extrados of an arch.
+    /// place on the extrados of an arch, along the span from the left
+    #[key(unit = "-", optional = "block and point are given")]
     pub span_fraction: Option<f64>,
     /// Or the block …
+    #[key(like = LoadKeys, optional = "span_fraction is given")]
     pub block: Option<BlockName>,
-    /// … and a point in or on it \[m\].
+    /// point in or on the block
+    #[key(names = ["x", "y"], unit = "m", optional = "span_fraction is given")]
     pub point: Option<[f64; 2]>,
-    /// \[N\].
+    /// force, x to the right and y upwards
+    #[key(names = ["x", "y"], unit = "N")]
     pub force: [f64; 2],
     /// How it spreads on its way to the extrados.
+    #[key(like = LoadKeys)]
     pub dispersion: Option<Box<dyn Dispersion>>,
 }
 
@@ -70,28 +73,10 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::LoadKind,
         tag: "point",
         summary: "a force at a point",
-        parameters: &[
-            Parameter::number(
-                "span_fraction",
-                Quantity::Ratio,
-                FRACTION,
-                "place on the extrados of an arch, along the span from the left",
-            )
-            .optional("block and point are given"),
-            BLOCK.optional("span_fraction is given"),
-            Parameter {
-                name: "point",
-                doc: "point in or on the block",
-                shape: POINT,
-                need: Need::Optional("span_fraction is given"),
-            },
-            Parameter { name: "force", doc: "force, x to the right and y upwards", shape: VECTOR, need: Need::Required },
-            DISPERSION,
-        ],
         file: file!(),
         package: voussoir_core::package!(),
         page: "# `point`\n\nA force at a point: on the extrados of an arch at `span_fraction`, or in or on a `block` at `point`. \
                At the boundary of two voussoirs it goes to the one nearer to midspan, at midspan half to each.\n",
-        ..Card::BLANK
+        ..Card::of::<PointLoad>()
     }
 }

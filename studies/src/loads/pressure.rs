@@ -1,21 +1,21 @@
 //! `pressure`: pressure on an edge of a block.
 
-use super::keys::{BLOCK, NUMBER};
+use super::keys::LoadKeys;
 use super::load_kind::{LoadKind, Placed};
 use super::site::{BlockName, LoadSite};
-use serde::{Deserialize, Serialize};
 use voussoir_core::model::geometry::turned;
-use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Quantity, Range};
+use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind};
 
 /// Pressure on an edge of a block.
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Keys)]
 pub struct Pressure {
     /// The block.
+    #[key(like = LoadKeys)]
     pub block: BlockName,
-    /// Index of the edge's first vertex, anticlockwise.
+    /// index of its first vertex, anticlockwise; on voussoirs 0 intrados, 1 right, 2 extrados, 3 left
     pub edge: usize,
-    /// Pushes inwards \[Pa\].
+    /// pressure, which pushes inwards
+    #[key(unit = "Pa")]
     pub value: f64,
 }
 
@@ -41,19 +41,9 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::LoadKind,
         tag: "pressure",
         summary: "pressure on an edge of a block",
-        parameters: &[
-            BLOCK,
-            Parameter {
-                name: "edge",
-                doc: "index of its first vertex, anticlockwise; on voussoirs 0 intrados, 1 right, 2 extrados, 3 left",
-                shape: NUMBER,
-                need: Need::Required,
-            },
-            Parameter::number("value", Quantity::Stress, Range::ANY, "pressure, which pushes inwards"),
-        ],
         file: file!(),
         package: voussoir_core::package!(),
         page: "# `pressure`\n\nAn even pressure on one edge of a block, over the full width: > 0 pushes inwards.\n",
-        ..Card::BLANK
+        ..Card::of::<Pressure>()
     }
 }

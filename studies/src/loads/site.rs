@@ -3,23 +3,22 @@
 use super::dispersion::Dispersion;
 use super::vehicle_axles::VehicleAxles;
 use crate::scenes::unknown;
-use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use voussoir_core::model::geometry::{Vec2, contains};
 use voussoir_core::model::{Assembly, CONTACT_TOLERANCE, PointForce};
-use voussoir_core::plugin::Diagnostic;
+use voussoir_core::plugin::{Diagnostic, Keys};
 
 /// Parts of an evenly spread load on a deformable block.
 const PARTS: usize = 16;
 
 /// A block by name; a whole number is the name of a voussoir.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(untagged)]
+#[derive(Debug, Clone, PartialEq, Eq, Keys)]
+#[keys(untagged)]
 pub enum BlockName {
-    /// By number.
-    Number(u64),
     /// By name.
     Name(String),
+    /// By number.
+    Number(u64),
 }
 
 impl BlockName {

@@ -2,24 +2,26 @@
 
 use super::dispersion::{Dispersion, Patch};
 use super::extrados::{dispersed, on_patch, x_at};
-use super::keys::{DISPERSION, FRACTION};
+use super::keys::LoadKeys;
 use super::load_kind::{LoadKind, Placed};
 use super::site::LoadSite;
-use serde::{Deserialize, Serialize};
 use voussoir_core::model::geometry::Vec2;
-use voussoir_core::plugin::{Card, Diagnostic, Parameter, PluginKind, Quantity, Range};
+use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind};
 
 /// Vertical pressure on the extrados of an arch, over the full width.
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Keys)]
 pub struct Strip {
-    /// Span fraction of its left end.
+    /// span fraction of the left end
+    #[key(unit = "-")]
     pub from: f64,
-    /// Span fraction of its right end.
+    /// span fraction of the right end
+    #[key(unit = "-")]
     pub to: f64,
-    /// On the plan area, downwards \[Pa\].
+    /// on the plan area, downwards
+    #[key(unit = "Pa")]
     pub pressure: f64,
     /// How it spreads on its way to the extrados.
+    #[key(like = LoadKeys)]
     pub dispersion: Option<Box<dyn Dispersion>>,
 }
 
@@ -50,16 +52,10 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::LoadKind,
         tag: "strip",
         summary: "vertical pressure on the extrados of an arch, over the full width",
-        parameters: &[
-            Parameter::number("from", Quantity::Ratio, FRACTION, "span fraction of the left end"),
-            Parameter::number("to", Quantity::Ratio, FRACTION, "span fraction of the right end"),
-            Parameter::number("pressure", Quantity::Stress, Range::ANY, "on the plan area, downwards"),
-            DISPERSION,
-        ],
         file: file!(),
         package: voussoir_core::package!(),
         page: "# `strip`\n\nAn even vertical pressure on the plan area between two span fractions, over the full width. Each \
                voussoir carries what stands above its straight extrados.\n",
-        ..Card::BLANK
+        ..Card::of::<Strip>()
     }
 }

@@ -2,62 +2,30 @@
 
 use super::dispersion::Patch;
 use super::vehicle_axles::Axle;
-use serde::{Deserialize, Serialize};
-use voussoir_core::plugin::{Need, Parameter, Quantity, Range, Shape};
+use voussoir_core::plugin::Keys;
 
 /// What carries an axle to the road. The road is the level under the ballast.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Copy, PartialEq, Keys)]
 pub struct Track {
-    /// Distance of sleepers \[m\].
+    /// distance of sleepers
+    #[key(unit = "m", range = "> 0")]
     pub sleeper_spacing: f64,
-    /// Of a sleeper, along the track \[m\].
+    /// of a sleeper, along the track
+    #[key(unit = "m", range = "> 0")]
     pub sleeper_width: f64,
-    /// Of a sleeper, across the track \[m\].
+    /// of a sleeper, across the track
+    #[key(unit = "m", range = "> 0", optional = "the wheel_width of the axle counts for an effective width")]
     pub sleeper_length: Option<f64>,
-    /// Of the ballast below the sleepers \[m\].
-    #[serde(default)]
+    /// of the ballast below the sleepers
+    #[key(unit = "m", range = ">= 0", default = 0.0)]
     pub ballast_depth: f64,
-    /// Of the spread in the ballast, from the vertical \[deg\].
-    #[serde(default = "one_in_four")]
+    /// of the spread in the ballast, from the vertical; the default is 4 : 1
+    #[key(unit = "deg", range = ">= 0, < 90", default = 14.036243467926479)]
     pub ballast_angle: f64,
-    /// Shares of the sleeper before the axle, under it, and after it.
-    #[serde(default = "quarters")]
+    /// of an axle on the sleeper before it, under it and after it
+    #[key(unit = "-", range = ">= 0, <= 1", default = [0.25, 0.5, 0.25])]
     pub shares: [f64; 3],
 }
-
-fn one_in_four() -> f64 {
-    14.036243467926479
-}
-
-fn quarters() -> [f64; 3] {
-    [0.25, 0.5, 0.25]
-}
-
-const SHARE: Shape = Shape::Number(Quantity::Ratio, Range::new(0.0, false, 1.0, false));
-
-/// What `track` may hold.
-pub(super) const TRACK: Shape = Shape::Table(&[
-    Parameter::number("sleeper_spacing", Quantity::Length, Range::POSITIVE, "distance of sleepers"),
-    Parameter::number("sleeper_width", Quantity::Length, Range::POSITIVE, "of a sleeper, along the track"),
-    Parameter::number("sleeper_length", Quantity::Length, Range::POSITIVE, "of a sleeper, across the track")
-        .optional("the wheel_width of the axle counts for an effective width"),
-    Parameter::number("ballast_depth", Quantity::Length, Range::NON_NEGATIVE, "of the ballast below the sleepers")
-        .default("0.0"),
-    Parameter::number(
-        "ballast_angle",
-        Quantity::Degrees,
-        Range::new(0.0, false, 90.0, true),
-        "of the spread in the ballast, from the vertical; the default is 4 : 1",
-    )
-    .default("14.036243467926479"),
-    Parameter {
-        name: "shares",
-        doc: "of an axle on the sleeper before it, under it and after it",
-        shape: Shape::List { of: &SHARE, min: 3, max: 3 },
-        need: Need::Default("[0.25, 0.5, 0.25]"),
-    },
-]);
 
 impl Track {
     /// How far the ballast widens a patch to each side \[m\].

@@ -5,48 +5,45 @@ use super::dispersion::Patch;
 use super::extrados::from_road;
 use super::load_kind::{LoadKind, Placed};
 use super::site::LoadSite;
-use super::track::{TRACK, Track, footprints, loaded_width};
+use super::track::{Track, footprints, loaded_width};
 use super::vehicle_axles::Axle;
-use serde::{Deserialize, Serialize};
-use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Quantity, Range, Shape};
+use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind};
 
 /// Which way the axles stand.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
 pub enum Direction {
     /// As in the vehicle's table.
-    #[default]
     Forward,
     /// Turned round.
     Backward,
 }
 
 /// How much of the bridge's width carries a wheel.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
 pub enum Across {
     /// All of it.
-    #[default]
     FullWidth,
     /// The wheel's width, spread on both sides like its length.
     Effective,
 }
 
 /// A vehicle on the road.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Keys)]
 pub struct VehicleLoad {
-    /// Entry of `[vehicles]`.
+    /// entry of \[vehicles\]
+    #[key(reference = "vehicles")]
     pub vehicle: String,
-    /// x of its origin \[m\].
+    /// x of the vehicle's origin, which is its first axle
+    #[key(unit = "m")]
     pub at: f64,
-    /// Which way it stands.
-    #[serde(default)]
+    /// forward: axles at x + their distances; backward: at x − their distances
+    #[key(default = "forward")]
     pub direction: Direction,
-    /// What carries it.
-    #[serde(default)]
+    /// full_width: the whole width carries an axle; effective: its wheel_width, spread like its length
+    #[key(default = "full_width")]
     pub across: Across,
-    /// Between its axles and the road.
+    /// rails, sleepers and ballast between the axles and the road, which is the level under the ballast
+    #[key(optional = "each axle presses on the road itself")]
     pub track: Option<Track>,
 }
 
@@ -113,33 +110,6 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::LoadKind,
         tag: "vehicle",
         summary: "the axles of a vehicle on the road of a bridge",
-        parameters: &[
-            Parameter {
-                name: "vehicle",
-                doc: "entry of [vehicles]",
-                shape: Shape::Reference("vehicles"),
-                need: Need::Required,
-            },
-            Parameter::number("at", Quantity::Length, Range::ANY, "x of the vehicle's origin, which is its first axle"),
-            Parameter {
-                name: "direction",
-                doc: "forward: axles at x + their distances; backward: at x − their distances",
-                shape: Shape::Choice(&["forward", "backward"]),
-                need: Need::Default("\"forward\""),
-            },
-            Parameter {
-                name: "across",
-                doc: "full_width: the whole width carries an axle; effective: its wheel_width, spread like its length",
-                shape: Shape::Choice(&["full_width", "effective"]),
-                need: Need::Default("\"full_width\""),
-            },
-            Parameter {
-                name: "track",
-                doc: "rails, sleepers and ballast between the axles and the road, which is the level under the ballast",
-                shape: TRACK,
-                need: Need::Optional("each axle presses on the road itself"),
-            },
-        ],
         sources: &[
             "National Highways 2020, CS 454 (effective width, lift-off)",
             "EN 1991-2:2003, 6.3.6.1 and 6.3.6.2 (25, 50 and 25 % on three sleepers; 4 : 1 in ballast)",
@@ -147,6 +117,6 @@ voussoir_core::inventory::submit! {
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("vehicle.md"),
-        ..Card::BLANK
+        ..Card::of::<VehicleLoad>()
     }
 }

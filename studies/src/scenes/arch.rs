@@ -1,54 +1,58 @@
 //! `arch`: a ring of voussoirs between two supports.
 #![doc = include_str!("arch.md")]
 
-use super::keys::{JOINT, MATERIAL, PLANE, PlaneState, WIDTH};
+use super::keys::{PlaneState, SceneKeys};
 use super::lookup::{from_root, law, material, out_of_range, pairs_of, take};
-use super::mesh::{MESH, Mesh, density, mesh_diagnostics};
-use super::profile::{PROFILE, Profile, Ring, SPRINGING, Springing};
-use super::thickness::{THICKNESS, Thickness};
-use serde::{Deserialize, Serialize};
+use super::mesh::{Mesh, density, mesh_diagnostics};
+use super::profile::{Profile, Ring, Springing};
+use super::thickness::Thickness;
 use voussoir_core::model::geometry::bounding_box;
 use voussoir_core::model::{ArchLayout, Assembly, Body, Bond, Catalogue, Gap, Joint, Scene, find_joints};
-use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Range, Shape, check_as};
+use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind, Range};
 
 /// How the ring meets its supports.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
 pub enum Ends {
     /// The springing faces move with the supports.
     Bonded,
     /// The springing joints follow the interface law.
-    #[default]
     Jointed,
 }
 
 const MAX_VOUSSOIRS: usize = 2_000_000;
 
 /// A ring of voussoirs between two supports.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq, Keys)]
+#[keys(check = Arch::validate)]
 pub struct Arch {
-    /// Shape of the intrados.
+    /// shape of the intrados
     pub profile: Profile,
-    /// Of the ring, along the joints; not for `points`.
+    /// thickness of the ring, along the joints; { crown, springing } grows with the arc length between them
+    #[key(optional = "the profile is a list of points")]
     pub thickness: Option<Thickness>,
     /// Out of plane \[m\].
+    #[key(like = SceneKeys)]
     pub width: f64,
     /// Stress state of deformable voussoirs.
-    #[serde(default)]
+    #[key(like = SceneKeys, default)]
     pub plane: PlaneState,
-    /// Their number; may be left out for `points`.
+    /// number of voussoirs
+    #[key(range = ">= 1, <= MAX_VOUSSOIRS", optional = "the profile is a list of points")]
     pub voussoirs: Option<usize>,
-    /// How the ring meets its supports.
-    #[serde(default)]
+    /// bonded: the springing faces move with the supports; jointed: they follow the interface law
+    #[key(default = "jointed")]
     pub ends: Ends,
-    /// Inclination of the support planes \[deg\].
+    /// inclination of the support plane above the horizontal, rising outwards; one number or \[left, right\]
+    #[key(optional = "the end joints are normal to the intrados")]
     pub springing: Option<Springing>,
     /// Material of the voussoirs.
+    #[key(like = SceneKeys)]
     pub material: String,
     /// Interface law of the joints.
+    #[key(like = SceneKeys)]
     pub joint: String,
     /// Mesh of deformable voussoirs.
+    #[key(like = SceneKeys)]
     pub mesh: Option<Mesh>,
 }
 
@@ -135,51 +139,16 @@ impl Scene for Arch {
     }
 }
 
-const PARAMETERS: &[Parameter] = &[
-    Parameter { name: "profile", doc: "shape of the intrados", shape: PROFILE, need: Need::Required },
-    Parameter {
-        name: "thickness",
-        doc: "thickness of the ring, along the joints; { crown, springing } grows with the arc length between them",
-        shape: THICKNESS,
-        need: Need::Optional("the profile is a list of points"),
-    },
-    WIDTH,
-    PLANE,
-    Parameter {
-        name: "voussoirs",
-        doc: "number of voussoirs",
-        shape: Shape::Integer { min: 1, max: MAX_VOUSSOIRS as i64 },
-        need: Need::Optional("the profile is a list of points"),
-    },
-    Parameter {
-        name: "ends",
-        doc: "bonded: the springing faces move with the supports; jointed: they follow the interface law",
-        shape: Shape::Choice(&["bonded", "jointed"]),
-        need: Need::Default("\"jointed\""),
-    },
-    Parameter {
-        name: "springing",
-        doc: "inclination of the support plane above the horizontal, rising outwards; one number or [left, right]",
-        shape: SPRINGING,
-        need: Need::Optional("the end joints are normal to the intrados"),
-    },
-    MATERIAL,
-    JOINT,
-    MESH,
-];
-
 voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::Scene,
         tag: "arch",
         summary: "a ring of voussoirs between two supports",
-        parameters: PARAMETERS,
         sources: &["Heyman 1982, The Masonry Arch"],
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("arch.md"),
-        check: |value| check_as::<Arch>(value, Arch::validate),
-        ..Card::BLANK
+        ..Card::of::<Arch>()
     }
 }
 

@@ -1,65 +1,71 @@
 //! `blocks`: a free assembly of polygonal blocks.
 #![doc = include_str!("blocks.md")]
 
-use super::keys::{JOINT, LENGTH, MATERIAL, PLANE, POINT, PlaneState, WIDTH};
+use super::keys::{PlaneState, SceneKeys};
 use super::lookup::{from_root, law, material, out_of_range, pairs_of, take, unknown};
-use super::mesh::{MESH, Mesh, density, mesh_diagnostics};
-use serde::{Deserialize, Serialize};
+use super::mesh::{Mesh, density, mesh_diagnostics};
 use voussoir_core::model::geometry::{Vec2, area_and_centroid, bounding_box, cross};
 use voussoir_core::model::{
     Assembly, Body, Bond, Catalogue, Gap, Interpenetration, Joint, Scene, crosses_itself, find_joints,
 };
-use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Quantity, Range, Shape, check_as};
+use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind, Range};
 
 /// One block.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq, Keys)]
 pub struct Block {
-    /// Unique.
+    /// unique
     pub name: String,
-    /// In either sense \[m\].
+    /// vertices, in either sense
+    #[key(names = ["x", "y"], unit = "m", len = ">= 3")]
     pub vertices: Vec<[f64; 2]>,
-    /// Held by the ground.
-    #[serde(default)]
+    /// held by the ground
+    #[key(default = false)]
     pub fixed: bool,
     /// Instead of the scene's.
+    #[key(like = SceneKeys, optional = "the scene's")]
     pub material: Option<String>,
     /// Law of its joints, instead of the scene's.
+    #[key(like = SceneKeys, optional = "the scene's")]
     pub joint: Option<String>,
 }
 
 /// What is special about the joints between two blocks.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq, Keys)]
 pub struct Pair {
-    /// Names of the two blocks, in either order.
+    /// names of two blocks
     pub between: [String; 2],
     /// Law of their joints.
+    #[key(like = SceneKeys, optional = "that of the blocks, or the scene's")]
     pub joint: Option<String>,
-    /// Initial opening, along s from each joint's end 0.
-    #[serde(default)]
+    /// initial opening: a number, or a table \[\[s, gap\], …\] along the joint, s from its end 0
+    #[key(default = 0.0)]
     pub gap: Gap,
 }
 
 /// A free assembly.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq, Keys)]
+#[keys(check = Blocks::validate)]
 pub struct Blocks {
     /// Out of plane \[m\].
+    #[key(like = SceneKeys)]
     pub width: f64,
     /// Stress state of deformable blocks.
-    #[serde(default)]
+    #[key(like = SceneKeys, default)]
     pub plane: PlaneState,
     /// Material of blocks that name none.
+    #[key(like = SceneKeys, optional = "every block names its own")]
     pub material: Option<String>,
     /// Law of joints for which none is named.
+    #[key(like = SceneKeys, optional = "every joint has a law from its blocks or its pair")]
     pub joint: Option<String>,
-    /// The blocks.
+    /// the blocks
+    #[key(len = ">= 1")]
     pub blocks: Vec<Block>,
-    /// Joints with a law or gap of their own.
-    #[serde(default)]
+    /// joints with a law or gap of their own
+    #[key(default = [])]
     pub pairs: Vec<Pair>,
     /// Mesh of deformable blocks.
+    #[key(like = SceneKeys)]
     pub mesh: Option<Mesh>,
 }
 
@@ -319,71 +325,16 @@ impl Scene for Blocks {
     }
 }
 
-const BLOCK: &[Parameter] = &[
-    Parameter { name: "name", doc: "unique", shape: Shape::Text, need: Need::Required },
-    Parameter {
-        name: "vertices",
-        doc: "vertices, in either sense",
-        shape: Shape::List { of: &POINT, min: 3, max: usize::MAX },
-        need: Need::Required,
-    },
-    Parameter { name: "fixed", doc: "held by the ground", shape: Shape::Boolean, need: Need::Default("false") },
-    MATERIAL.optional("the scene's"),
-    JOINT.optional("the scene's"),
-];
-
-const PAIR: &[Parameter] = &[
-    Parameter {
-        name: "between",
-        doc: "names of two blocks",
-        shape: Shape::List { of: &Shape::Text, min: 2, max: 2 },
-        need: Need::Required,
-    },
-    JOINT.optional("that of the blocks, or the scene's"),
-    Parameter {
-        name: "gap",
-        doc: "initial opening: a number, or a table [[s, gap], …] along the joint, s from its end 0",
-        shape: Shape::Either(&[OPENING, Shape::List { of: &GAP_ROW, min: 1, max: usize::MAX }]),
-        need: Need::Default("0.0"),
-    },
-];
-
-const OPENING: Shape = Shape::Number(Quantity::Length, Range::NON_NEGATIVE);
-/// \[s, gap\]: that the gap is not negative is said by the scene's own check.
-const GAP_ROW: Shape = Shape::Tuple(&[("position", LENGTH), ("gap", LENGTH)]);
-
-const PARAMETERS: &[Parameter] = &[
-    WIDTH,
-    PLANE,
-    MATERIAL.optional("every block names its own"),
-    JOINT.optional("every joint has a law from its blocks or its pair"),
-    Parameter {
-        name: "blocks",
-        doc: "the blocks",
-        shape: Shape::List { of: &Shape::Table(BLOCK), min: 1, max: usize::MAX },
-        need: Need::Required,
-    },
-    Parameter {
-        name: "pairs",
-        doc: "joints with a law or gap of their own",
-        shape: Shape::List { of: &Shape::Table(PAIR), min: 0, max: usize::MAX },
-        need: Need::Default("[]"),
-    },
-    MESH,
-];
-
 voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::Scene,
         tag: "blocks",
         summary: "any assembly of polygonal blocks",
-        parameters: PARAMETERS,
         sources: &["Livesley 1978, Int. J. Numer. Methods Eng. 12"],
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("blocks.md"),
-        check: |value| check_as::<Blocks>(value, Blocks::validate),
-        ..Card::BLANK
+        ..Card::of::<Blocks>()
     }
 }
 

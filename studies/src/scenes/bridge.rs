@@ -4,7 +4,6 @@
 mod builder;
 mod damage;
 mod fill;
-mod keys;
 mod piers;
 mod rings;
 
@@ -17,40 +16,47 @@ use self::builder::Builder;
 use self::piers::PierBlocks;
 use self::rings::SpanBlocks;
 use super::arch::Ends;
-use super::keys::PlaneState;
+use super::keys::{PlaneState, SceneKeys};
 use super::lookup::{from_root, law, material, out_of_range, pairs_of, take};
 use super::mesh::{Mesh, density, mesh_diagnostics};
-use serde::{Deserialize, Serialize};
 use voussoir_core::model::geometry::bounding_box;
 use voussoir_core::model::{ArchLayout, Assembly, Body, Bond, Bridge, Catalogue, Gap, Scene, find_joints};
-use voussoir_core::plugin::{Card, Diagnostic, PluginKind, Range, check_as};
+use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind, Range};
 
 /// Spans on abutments and piers, with fill.
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Keys)]
+#[keys(check = BridgeScene::validate)]
 pub struct BridgeScene {
     /// Out of plane \[m\].
+    #[key(like = SceneKeys)]
     pub width: f64,
     /// Stress state of deformable blocks.
-    #[serde(default)]
+    #[key(like = SceneKeys, default)]
     pub plane: PlaneState,
     /// Material of blocks that name none.
+    #[key(like = SceneKeys)]
     pub material: String,
     /// Interface law of all joints but those between rings.
+    #[key(like = SceneKeys)]
     pub joint: String,
-    /// Interface law of the joints between rings; as `joint` where it is not given.
+    /// interface law of the joints between rings
+    #[key(reference = "joints", optional = "that of joint")]
     pub ring_joint: Option<String>,
-    /// From left to right.
+    /// from left to right
+    #[key(len = ">= 1, <= 1000")]
     pub spans: Vec<Span>,
-    /// Between them, one fewer.
-    #[serde(default)]
+    /// one between two spans
+    #[key(len = "<= 1000", default = [])]
     pub piers: Vec<Pier>,
-    /// Its fill.
+    /// fill between the rings and the road
+    #[key(optional = "bare rings")]
     pub fill: Option<Fill>,
-    /// What time and water have taken.
-    #[serde(default)]
+    /// joints that have lost mortar or are repointed, lost voussoirs: { kind = "lost_mortar", depth = 0.05
+    /// }
+    #[key(default = [])]
     pub damage: Vec<Damage>,
     /// Mesh of deformable blocks.
+    #[key(like = SceneKeys)]
     pub mesh: Option<Mesh>,
 }
 
@@ -229,12 +235,10 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::Scene,
         tag: "bridge",
         summary: "spans of one or several rings on abutments and piers, with fill",
-        parameters: keys::PARAMETERS,
         sources: &["Heyman 1982, The Masonry Arch", "Melbourne, Gilbert & Wagstaff 1997, Struct. Eng. 75 (multi-span)"],
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("bridge.md"),
-        check: |value| check_as::<BridgeScene>(value, BridgeScene::validate),
-        ..Card::BLANK
+        ..Card::of::<BridgeScene>()
     }
 }

@@ -1,15 +1,13 @@
 //! Keys that scenes share.
 
-use serde::{Deserialize, Serialize};
+use super::mesh::Mesh;
 use voussoir_core::law::Plane;
-use voussoir_core::plugin::{Need, Parameter, Quantity, Range, Shape};
+use voussoir_core::plugin::Keys;
 
 /// `plane`: stress state of deformable bodies.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
 pub enum PlaneState {
     /// ε_z = 0.
-    #[default]
     Strain,
     /// σ_z = 0.
     Stress,
@@ -24,29 +22,22 @@ impl From<PlaneState> for Plane {
     }
 }
 
-pub(super) const WIDTH: Parameter = Parameter::number("width", Quantity::Length, Range::POSITIVE, "width out of plane");
-
-pub(super) const PLANE: Parameter = Parameter {
-    name: "plane",
-    doc: "stress state of deformable blocks: no strain, or no stress, out of plane",
-    shape: Shape::Choice(&["strain", "stress"]),
-    need: Need::Default("\"strain\""),
-};
-
-pub(super) const MATERIAL: Parameter = Parameter {
-    name: "material",
-    doc: "material of the blocks",
-    shape: Shape::Reference("materials"),
-    need: Need::Required,
-};
-
-pub(super) const JOINT: Parameter = Parameter {
-    name: "joint",
-    doc: "interface law of the joints",
-    shape: Shape::Reference("joints"),
-    need: Need::Required,
-};
-
-/// A point \[x, y\] in m.
-pub(crate) const POINT: Shape = Shape::Tuple(&[("x", LENGTH), ("y", LENGTH)]);
-pub(super) const LENGTH: Shape = Shape::Number(Quantity::Length, Range::ANY);
+/// Keys that scenes share.
+#[derive(Debug, Keys)]
+pub(super) struct SceneKeys {
+    /// width out of plane
+    #[key(unit = "m", range = "> 0")]
+    width: f64,
+    /// stress state of deformable blocks: no strain, or no stress, out of plane
+    #[key(default = "strain")]
+    plane: PlaneState,
+    /// material of the blocks
+    #[key(reference = "materials")]
+    material: String,
+    /// interface law of the joints
+    #[key(reference = "joints")]
+    joint: String,
+    /// mesh of deformable blocks
+    #[key(optional = "the defaults of its keys")]
+    mesh: Option<Mesh>,
+}

@@ -1,29 +1,33 @@
 //! `[scene.mesh]`: how deformable blocks are meshed, the same key in every scene.
 
 use super::lookup::out_of_range;
-use serde::{Deserialize, Serialize};
 use voussoir_core::elastic::MeshDensity;
-use voussoir_core::plugin::{Diagnostic, Need, Parameter, Quantity, Range, Shape};
+use voussoir_core::plugin::{Diagnostic, Keys, Range};
 
 /// Mesh of each deformable block.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Debug, Clone, Copy, PartialEq, Keys)]
 pub struct Mesh {
-    /// Elements along the ring, across it; of other blocks along edges 0 and 2, along 1 and 3.
+    /// elements along the ring, across it; of other blocks along edges 0 and 2, along 1 and 3
+    #[key(names = ["along", "across"], range = ">= 1, <= MAX_ELEMENTS", default = [4, 6])]
     pub elements: [usize; 2],
-    /// Order of the elements, 1 to 3.
+    /// order of the elements
+    #[key(range = ">= 1, <= MAX_ORDER", default = 2)]
     pub order: usize,
-    /// Greatest over least element size along an edge; more than 1 is finer towards the edge's ends.
+    /// greatest over least element size along an edge, one number or \[along the ring, across it\]: more than
+    /// 1 is finer towards the joint's ends
+    #[key(default = 1.0)]
     pub grading: Grading,
 }
 
 /// One grading for all edges, or one along the ring and one across it.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
+#[derive(Debug, Clone, Copy, PartialEq, Keys)]
+#[keys(untagged)]
 pub enum Grading {
     /// The same both ways.
+    #[key(unit = "-", range = GRADING)]
     Both(f64),
     /// Along, across; as `elements`.
+    #[key(names = ["along", "across"], unit = "-", range = GRADING)]
     Each([f64; 2]),
 }
 
@@ -38,12 +42,7 @@ impl Grading {
 
 impl Default for Mesh {
     fn default() -> Self {
-        let MeshDensity { elements, order, grading } = MeshDensity::default();
-        Mesh {
-            elements,
-            order,
-            grading: if grading[0] == grading[1] { Grading::Both(grading[0]) } else { Grading::Each(grading) },
-        }
+        Self::defaults()
     }
 }
 
@@ -58,8 +57,6 @@ const MAX_ORDER: usize = MeshDensity::MAX_ORDER;
 /// Greatest number of entries of the dense matrix that condenses a block.
 const MAX_CONDENSED_NUMBERS: f64 = 2.5e7;
 const GRADING: Range = Range::new(1.0, false, 10_000.0, false);
-const COUNT: Shape = Shape::Integer { min: 1, max: MAX_ELEMENTS as i64 };
-const GRADING_NUMBER: Shape = Shape::Number(Quantity::Ratio, GRADING);
 
 /// The density of a scene's mesh, where it gives none the default.
 pub(super) fn density(mesh: Option<Mesh>) -> MeshDensity {
@@ -109,31 +106,13 @@ pub(super) fn mesh_diagnostics(mesh: Option<&Mesh>) -> Vec<Diagnostic> {
     diagnostics
 }
 
-const KEYS: &[Parameter] = &[
-    Parameter {
-        name: "elements",
-        doc: "elements along the ring, across it; of other blocks along edges 0 and 2, along 1 and 3",
-        shape: Shape::Tuple(&[("along", COUNT), ("across", COUNT)]),
-        need: Need::Default("[4, 6]"),
-    },
-    Parameter {
-        name: "order",
-        doc: "order of the elements",
-        shape: Shape::Integer { min: 1, max: MAX_ORDER as i64 },
-        need: Need::Default("2"),
-    },
-    Parameter {
-        name: "grading",
-        doc: "greatest over least element size along an edge, one number or [along the ring, across it]: more than 1 is finer towards the joint's ends",
-        shape: Shape::Either(&[GRADING_NUMBER, Shape::Tuple(&[("along", GRADING_NUMBER), ("across", GRADING_NUMBER)])]),
-        need: Need::Default("1.0"),
-    },
-];
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// The key `mesh` of a scene.
-pub(super) const MESH: Parameter = Parameter {
-    name: "mesh",
-    doc: "mesh of deformable blocks",
-    shape: Shape::Table(KEYS),
-    need: Need::Optional("the defaults of its keys"),
-};
+    /// A study without a mesh and an assembly made in code have the same elements.
+    #[test]
+    fn the_defaults_are_those_of_the_core() {
+        assert_eq!(MeshDensity::from(Mesh::default()), MeshDensity::default());
+    }
+}

@@ -14,6 +14,5 @@ pub(crate) mod test_catalogue;
 pub mod thickness;
 pub mod wall;
 
-pub(crate) use keys::POINT;
 pub use keys::PlaneState;
 pub(crate) use lookup::unknown;

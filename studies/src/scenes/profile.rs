@@ -10,164 +10,125 @@ use super::curve::Curve;
 use super::lookup::out_of_range;
 use super::surveyed::cut;
 use super::thickness::Thickness;
-use serde::{Deserialize, Serialize};
 use voussoir_core::model::crosses_itself;
 use voussoir_core::model::geometry::{Vec2, area_and_centroid, bounding_box, is_convex};
-use voussoir_core::plugin::{Diagnostic, Need, Parameter, Quantity, Range, Shape, Variant};
+use voussoir_core::plugin::{Diagnostic, Keys, Range};
+
+/// Keys that profiles share.
+#[derive(Debug, Keys)]
+pub struct ProfileKeys {
+    /// clear span of the intrados
+    #[key(unit = "m", range = "> 0")]
+    span: f64,
+    /// rise of the intrados
+    #[key(unit = "m", range = "> 0")]
+    rise: f64,
+    /// a table of them beside the study: a line a point, columns curve, x, y, or a line a joint, columns intrados_x,
+    /// intrados_y, extrados_x, extrados_y; a unit may follow a name: x \[mm\]
+    #[key(optional = "intrados and extrados are given")]
+    file: Option<String>,
+}
 
 /// `profile = { shape = …, … }`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "shape", rename_all = "snake_case", deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq, Keys)]
+#[keys(tag = "shape")]
 pub enum Profile {
-    /// Circular arc; rise > span/2 is more than a half circle.
+    /// circular arc; rise > span/2 is more than a half circle
     Segmental {
         /// Clear span \[m\].
+        #[key(like = ProfileKeys)]
         span: f64,
         /// Rise of the intrados \[m\].
+        #[key(like = ProfileKeys)]
         rise: f64,
     },
-    /// Half ellipse.
+    /// half ellipse
     Elliptical {
         /// Clear span \[m\].
+        #[key(like = ProfileKeys)]
         span: f64,
         /// Rise of the intrados \[m\].
+        #[key(like = ProfileKeys)]
         rise: f64,
     },
-    /// Parabola.
+    /// parabola
     Parabolic {
         /// Clear span \[m\].
+        #[key(like = ProfileKeys)]
         span: f64,
         /// Rise of the intrados \[m\].
+        #[key(like = ProfileKeys)]
         rise: f64,
     },
-    /// Hanging chain, turned over.
+    /// hanging chain turned over
     Catenary {
         /// Clear span \[m\].
+        #[key(like = ProfileKeys)]
         span: f64,
         /// Rise of the intrados \[m\].
+        #[key(like = ProfileKeys)]
         rise: f64,
     },
-    /// Two arcs with centres on the springing line.
+    /// two arcs with centres on the springing line, rise ≥ span/2
     Pointed {
         /// Clear span \[m\].
+        #[key(like = ProfileKeys)]
         span: f64,
-        /// Rise of the intrados \[m\], at least span/2.
+        /// Rise of the intrados \[m\].
+        #[key(like = ProfileKeys)]
         rise: f64,
     },
-    /// A crown arc between two side arcs that are upright at the springings.
+    /// crown arc between two side arcs, upright at the springings, rise < span/2
     ThreeCentred {
         /// Clear span \[m\].
+        #[key(like = ProfileKeys)]
         span: f64,
-        /// Rise of the intrados \[m\], less than span/2.
+        /// Rise of the intrados \[m\].
+        #[key(like = ProfileKeys)]
         rise: f64,
-        /// Radius of the crown arc \[m\].
+        /// radius of the crown arc, more than that of the segmental arc of this span and rise
+        #[key(unit = "m", range = "> 0")]
         crown_radius: f64,
     },
-    /// Vertices joint by joint, from left to right.
+    /// vertices joint by joint, from left to right
     Points {
-        /// Intrados end of each joint \[m\].
-        #[serde(default)]
+        /// intrados end of each joint
+        #[key(names = ["x", "y"], unit = "m", len = ">= 2", optional = "file is given")]
         intrados: Vec<[f64; 2]>,
-        /// Extrados end of each joint \[m\].
-        #[serde(default)]
+        /// extrados end of each joint
+        #[key(names = ["x", "y"], unit = "m", len = ">= 2", optional = "file is given")]
         extrados: Vec<[f64; 2]>,
+        /// Read before, and replaced by the points.
+        #[key(like = ProfileKeys)]
+        file: Option<String>,
     },
-    /// Points along the faces of the ring, cut into voussoirs of equal length.
+    /// points along both faces, cut into `voussoirs` of equal length along the intrados
     Surveyed {
-        /// Points of the intrados from springing to springing \[m\].
-        #[serde(default)]
+        /// points of the intrados from springing to springing
+        #[key(names = ["x", "y"], unit = "m", len = ">= 2", optional = "file is given")]
         intrados: Vec<[f64; 2]>,
-        /// Points of the extrados \[m\].
-        #[serde(default)]
+        /// points of the extrados, beginning and ending at the springing faces
+        #[key(names = ["x", "y"], unit = "m", len = ">= 2", optional = "file is given")]
         extrados: Vec<[f64; 2]>,
+        /// Read before, and replaced by the points.
+        #[key(like = ProfileKeys)]
+        file: Option<String>,
     },
 }
-
-const SPAN: Parameter = Parameter::number("span", Quantity::Length, Range::POSITIVE, "clear span of the intrados");
-const RISE: Parameter = Parameter::number("rise", Quantity::Length, Range::POSITIVE, "rise of the intrados");
-const SPAN_RISE: &[Parameter] = &[SPAN, RISE];
-
-const VERTICES: Shape = Shape::List { of: &super::POINT, min: 2, max: usize::MAX };
-const SURVEY: Parameter = Parameter {
-    name: "file",
-    doc: "a table of them beside the study: a line a point, columns curve, x, y, or a line a joint, columns intrados_x, \
-          intrados_y, extrados_x, extrados_y; a unit may follow a name: x [mm]",
-    shape: Shape::Text,
-    need: Need::Optional("intrados and extrados are given"),
-};
-
-const fn vertices(name: &'static str, doc: &'static str) -> Parameter {
-    Parameter { name, doc, shape: VERTICES, need: Need::Optional("file is given") }
-}
-
-/// What a profile may hold.
-pub const PROFILE: Shape = Shape::Tagged {
-    key: "shape",
-    variants: &[
-        Variant {
-            tag: "segmental",
-            doc: "circular arc; rise > span/2 is more than a half circle",
-            parameters: SPAN_RISE,
-        },
-        Variant { tag: "elliptical", doc: "half ellipse", parameters: SPAN_RISE },
-        Variant { tag: "parabolic", doc: "parabola", parameters: SPAN_RISE },
-        Variant { tag: "catenary", doc: "hanging chain turned over", parameters: SPAN_RISE },
-        Variant {
-            tag: "pointed",
-            doc: "two arcs with centres on the springing line, rise ≥ span/2",
-            parameters: SPAN_RISE,
-        },
-        Variant {
-            tag: "three_centred",
-            doc: "crown arc between two side arcs, upright at the springings, rise < span/2",
-            parameters: &[
-                SPAN,
-                RISE,
-                Parameter::number(
-                    "crown_radius",
-                    Quantity::Length,
-                    Range::POSITIVE,
-                    "radius of the crown arc, more than that of the segmental arc of this span and rise",
-                ),
-            ],
-        },
-        Variant {
-            tag: "points",
-            doc: "vertices joint by joint, from left to right",
-            parameters: &[
-                vertices("intrados", "intrados end of each joint"),
-                vertices("extrados", "extrados end of each joint"),
-                SURVEY,
-            ],
-        },
-        Variant {
-            tag: "surveyed",
-            doc: "points along both faces, cut into `voussoirs` of equal length along the intrados",
-            parameters: &[
-                vertices("intrados", "points of the intrados from springing to springing"),
-                vertices("extrados", "points of the extrados, beginning and ending at the springing faces"),
-                SURVEY,
-            ],
-        },
-    ],
-};
 
 /// `springing`: inclination of the support planes above the horizontal, rising outwards \[deg\].
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
+#[derive(Debug, Clone, Copy, PartialEq, Keys)]
+#[keys(untagged)]
 pub enum Springing {
     /// The same on both sides.
+    #[key(unit = "deg", range = INCLINATION)]
     Both(f64),
     /// Left, right.
+    #[key(names = ["left", "right"], unit = "deg", range = INCLINATION)]
     Each([f64; 2]),
 }
 
 const INCLINATION: Range = Range::new(-90.0, true, 90.0, false);
-const DEGREES: Shape = Shape::Number(Quantity::Degrees, INCLINATION);
-
-/// What `springing` may hold.
-pub const SPRINGING: Shape = Shape::Either(&[DEGREES, Shape::Tuple(&[("left", DEGREES), ("right", DEGREES)])]);
-
 impl Springing {
     /// \[left, right\] \[deg\], each with its key.
     fn sides(self) -> [(f64, &'static str); 2] {
@@ -224,10 +185,10 @@ impl Profile {
         voussoirs: Option<usize>,
         springing: Option<Springing>,
     ) -> Result<Ring, Vec<Diagnostic>> {
-        if let Profile::Points { intrados, extrados } = self {
+        if let Profile::Points { intrados, extrados, .. } = self {
             return ring_of_points(intrados, extrados, thickness, voussoirs, springing);
         }
-        if let Profile::Surveyed { intrados, extrados } = self {
+        if let Profile::Surveyed { intrados, extrados, .. } = self {
             let Some(voussoirs) = voussoirs else {
                 return Err(vec![Diagnostic::new("voussoirs", "is missing: the number of voussoirs")]);
             };

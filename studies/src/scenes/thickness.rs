@@ -1,36 +1,29 @@
 //! Thickness of a ring: the same all along, or growing from the crown to the springings.
 
 use super::lookup::out_of_range;
-use serde::{Deserialize, Serialize};
-use voussoir_core::plugin::{Diagnostic, Parameter, Quantity, Range, Shape};
+use voussoir_core::plugin::{Diagnostic, Keys, Range};
 
 /// Of a ring, along its joints.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
+#[derive(Debug, Clone, Copy, PartialEq, Keys)]
+#[keys(untagged)]
 pub enum Thickness {
     /// The same all along \[m\].
+    #[key(unit = "m", range = "> 0")]
     Even(f64),
     /// Linear in the arc length of the intrados.
     Tapered(Taper),
 }
 
 /// A thickness at the crown and one at the springings.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Copy, PartialEq, Keys)]
 pub struct Taper {
-    /// \[m\].
+    /// thickness at the crown, the middle of the intrados
+    #[key(unit = "m", range = "> 0")]
     pub crown: f64,
-    /// \[m\].
+    /// thickness at both springings
+    #[key(unit = "m", range = "> 0")]
     pub springing: f64,
 }
-
-const NUMBER: Shape = Shape::Number(Quantity::Length, Range::POSITIVE);
-const TAPER: Shape = Shape::Table(&[
-    Parameter::number("crown", Quantity::Length, Range::POSITIVE, "thickness at the crown, the middle of the intrados"),
-    Parameter::number("springing", Quantity::Length, Range::POSITIVE, "thickness at both springings"),
-]);
-/// What `thickness` may hold.
-pub const THICKNESS: Shape = Shape::Either(&[NUMBER, TAPER]);
 
 impl Thickness {
     /// At a share of the way along the intrados from the middle (0) to a springing (1) \[m\].

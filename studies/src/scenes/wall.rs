@@ -1,64 +1,70 @@
 //! `wall`: bricks in running bond on the ground.
 #![doc = include_str!("wall.md")]
 
-use super::keys::{JOINT, MATERIAL, PLANE, POINT, PlaneState, WIDTH};
+use super::keys::{PlaneState, SceneKeys};
 use super::lookup::{from_root, law, material, out_of_range, pairs_of, take};
-use super::mesh::{MESH, Mesh, density, mesh_diagnostics};
-use serde::{Deserialize, Serialize};
+use super::mesh::{Mesh, density, mesh_diagnostics};
 use voussoir_core::model::geometry::{Vec2, bounding_box};
 use voussoir_core::model::{Assembly, Body, Bond, Catalogue, Gap, Scene, find_joints};
-use voussoir_core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Quantity, Range, Shape, check_as};
+use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind, Range};
 
 /// How courses are staggered.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
 pub enum BondPattern {
     /// By half a brick.
-    #[default]
     Running,
 }
 
 /// A rectangle without bricks.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Copy, PartialEq, Keys)]
 pub struct Opening {
-    /// Lower left corner \[m\].
+    /// lower left corner
+    #[key(names = ["x", "y"], unit = "m")]
     pub from: [f64; 2],
-    /// Upper right corner \[m\].
+    /// upper right corner
+    #[key(names = ["x", "y"], unit = "m")]
     pub to: [f64; 2],
 }
 
 /// A brick wall.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq, Keys)]
+#[keys(check = Wall::validate)]
 pub struct Wall {
     /// Out of plane \[m\].
+    #[key(like = SceneKeys)]
     pub width: f64,
     /// Stress state of deformable bricks.
-    #[serde(default)]
+    #[key(like = SceneKeys, default)]
     pub plane: PlaneState,
     /// Material of the bricks.
+    #[key(like = SceneKeys)]
     pub material: String,
     /// Law of all joints.
+    #[key(like = SceneKeys)]
     pub joint: String,
-    /// Length and height of a brick \[m\].
+    /// length and height of a brick
+    #[key(names = ["length", "height"], unit = "m", range = "> 0")]
     pub brick: [f64; 2],
-    /// How courses are staggered.
-    #[serde(default)]
+    /// how courses are staggered: running, by half a brick
+    #[key(default = "running")]
     pub bond: BondPattern,
-    /// Number of courses.
+    /// number of courses
+    #[key(range = ">= 1, <= MAX_BRICKS", optional = "rows is given")]
     pub courses: Option<usize>,
-    /// Whole bricks in an even course.
+    /// whole bricks in an even course, counted from 0 at the bottom; odd ones begin and end with a half
+    #[key(range = ">= 1, <= MAX_BRICKS", optional = "rows is given")]
     pub bricks: Option<usize>,
-    /// Instead of courses and bricks: widths in brick lengths, < 0 an opening, from the bottom.
+    /// from the bottom, widths in brick lengths from the left; a negative number is an opening
+    #[key(unit = "-", len = ">= 1, <= MAX_BRICKS", optional = "courses and bricks are given")]
     pub rows: Option<Vec<Vec<f64>>>,
-    /// Rectangles cut out.
-    #[serde(default)]
+    /// rectangles cut out, between bed joints
+    #[key(default = [])]
     pub openings: Vec<Opening>,
-    /// Places of the cuts between parts of the ground that may move on their own \[m\], ascending.
-    #[serde(default)]
+    /// x at which the ground is cut, ascending; its parts are supports "ground.0", "ground.1" and so on
+    #[key(unit = "m", range = "> 0", len = "<= 100", default = [])]
     pub ground_cuts: Vec<f64>,
     /// Mesh of deformable bricks.
+    #[key(like = SceneKeys)]
     pub mesh: Option<Mesh>,
 }
 
@@ -250,72 +256,16 @@ impl Scene for Wall {
     }
 }
 
-const SIDE: Shape = Shape::Number(Quantity::Length, Range::POSITIVE);
-const COUNT: Shape = Shape::Integer { min: 1, max: MAX_BRICKS as i64 };
-const ROW: Shape = Shape::List { of: &Shape::Number(Quantity::Ratio, Range::ANY), min: 1, max: MAX_BRICKS };
-
-const OPENING: &[Parameter] = &[
-    Parameter { name: "from", doc: "lower left corner", shape: POINT, need: Need::Required },
-    Parameter { name: "to", doc: "upper right corner", shape: POINT, need: Need::Required },
-];
-
-const PARAMETERS: &[Parameter] = &[
-    WIDTH,
-    PLANE,
-    MATERIAL,
-    JOINT,
-    Parameter {
-        name: "brick",
-        doc: "length and height of a brick",
-        shape: Shape::Tuple(&[("length", SIDE), ("height", SIDE)]),
-        need: Need::Required,
-    },
-    Parameter {
-        name: "bond",
-        doc: "how courses are staggered: running, by half a brick",
-        shape: Shape::Choice(&["running"]),
-        need: Need::Default("\"running\""),
-    },
-    Parameter { name: "courses", doc: "number of courses", shape: COUNT, need: Need::Optional("rows is given") },
-    Parameter {
-        name: "bricks",
-        doc: "whole bricks in an even course, counted from 0 at the bottom; odd ones begin and end with a half",
-        shape: COUNT,
-        need: Need::Optional("rows is given"),
-    },
-    Parameter {
-        name: "rows",
-        doc: "from the bottom, widths in brick lengths from the left; a negative number is an opening",
-        shape: Shape::List { of: &ROW, min: 1, max: MAX_BRICKS },
-        need: Need::Optional("courses and bricks are given"),
-    },
-    Parameter {
-        name: "openings",
-        doc: "rectangles cut out, between bed joints",
-        shape: Shape::List { of: &Shape::Table(OPENING), min: 0, max: usize::MAX },
-        need: Need::Default("[]"),
-    },
-    Parameter {
-        name: "ground_cuts",
-        doc: "x at which the ground is cut, ascending; its parts are supports \"ground.0\", \"ground.1\" and so on",
-        shape: Shape::List { of: &Shape::Number(Quantity::Length, Range::POSITIVE), min: 0, max: 100 },
-        need: Need::Default("[]"),
-    },
-    MESH,
-];
-
 voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::Scene,
         tag: "wall",
         summary: "bricks in running bond on the ground, with openings",
-        parameters: PARAMETERS,
         sources: &["Ferris & Tin-Loi 2001, Int. J. Mech. Sci. 43 (walls given by rows)"],
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("wall.md"),
-        check: |value| check_as::<Wall>(value, Wall::validate),
-        ..Card::BLANK
+        ..Card::of::<Wall>()
     }
 }
 

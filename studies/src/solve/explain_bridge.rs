@@ -1,7 +1,11 @@
 //! The parts of a bridge, in words.
 
+use crate::config::common_keys::own_keys;
+use crate::loads::VehicleAxles;
+use crate::scenes::bridge::BridgeScene;
 use crate::study::Case;
-use serde_json::Value as Json;
+use serde_json::{Value as Json, json};
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use voussoir_core::model::{Assembly, Bridge};
 
@@ -25,7 +29,7 @@ impl Named<'_> {
 /// One line for every ring, pier and piece of damage, and for road, fill, vehicles and factors.
 pub fn explain_bridge(case: &Case, bridge: &Bridge, text: &mut String) {
     let assembly = &case.assembly;
-    let scene = &case.resolved["scene"];
+    let scene: Option<BridgeScene> = case.resolved.get("scene").and_then(own_keys);
     let line = |text: &mut String, what: String, prefix: String| {
         let named = Named { assembly, prefix };
         if let Some((count, mass, first, last)) = named.sum() {
@@ -36,23 +40,24 @@ pub fn explain_bridge(case: &Case, bridge: &Bridge, text: &mut String) {
     if assembly.arch.is_some() {
         let _ = writeln!(text, "  span 0, ring 0: {} block(s) 0 … {}", bridge.radial - 1, bridge.radial - 2);
     }
-    for (i, span) in scene["spans"].as_array().into_iter().flatten().enumerate() {
-        let shape = span["profile"]["shape"].as_str().unwrap_or_default();
-        for ring in 0..span["rings"].as_u64().unwrap_or(1) {
+    for (i, span) in scene.iter().flat_map(|scene| &scene.spans).enumerate() {
+        let shape =
+            case.resolved.at(&format!("scene.spans.{i}.profile.shape")).and_then(Json::as_str).unwrap_or_default();
+        for ring in 0..span.rings {
             line(text, format!("span {i} ({shape}), ring {ring}"), format!("s{i}r{ring}v"));
         }
     }
-    for i in 0..scene["piers"].as_array().map_or(0, Vec::len) {
+    for i in 0..scene.as_ref().map_or(0, |scene| scene.piers.len()) {
         line(text, format!("pier {i}"), format!("p{i}c"));
     }
-    for (i, damage) in scene["damage"].as_array().into_iter().flatten().enumerate() {
-        let _ = writeln!(text, "  damage {i}: {}", words(damage));
+    for (i, damage) in scene.iter().flat_map(|scene| &scene.damage).enumerate() {
+        let _ = writeln!(text, "  damage {i}: {}", words(&json!(damage)));
     }
     if !bridge.road.is_empty() {
         let mass: f64 = bridge.masses.iter().map(|fill| fill.mass).sum();
         let levels: Vec<f64> = bridge.layers.iter().map(|layer| layer.0).filter(|level| level.is_finite()).collect();
         let layers = if levels.is_empty() { String::new() } else { format!(", layers up to {levels:?} m") };
-        let spread = scene["fill"]["dispersion"]["law"].as_str().unwrap_or("none");
+        let spread = case.resolved.at("scene.fill.dispersion.law").and_then(Json::as_str).unwrap_or("none");
         let _ = writeln!(
             text,
             "  fill: {:.3} t on {} faces{layers}; dispersion {spread}; {} horizontal reactions at chords of the extrados",
@@ -61,11 +66,10 @@ pub fn explain_bridge(case: &Case, bridge: &Bridge, text: &mut String) {
             bridge.reactions.len()
         );
     }
-    for (name, vehicle) in case.resolved["vehicles"].as_object().into_iter().flatten() {
-        let force = |axle: &Json| axle["force"].as_f64().unwrap_or(0.0) * axle["lift_off"].as_f64().unwrap_or(1.0);
-        let axles = vehicle["axles"].as_array();
-        let total: f64 = axles.into_iter().flatten().map(force).sum();
-        let _ = writeln!(text, "  vehicle \"{name}\": {} axle(s), {:.3} kN", axles.map_or(0, Vec::len), total / 1000.0);
+    let vehicles: BTreeMap<String, VehicleAxles> = case.resolved.read("vehicles").unwrap_or_default();
+    for (name, VehicleAxles { axles }) in &vehicles {
+        let total: f64 = axles.iter().map(|axle| axle.force * axle.lift_off).sum();
+        let _ = writeln!(text, "  vehicle \"{name}\": {} axle(s), {:.3} kN", axles.len(), total / 1000.0);
     }
     if let Some(factors) = case.resolved.get("factors") {
         let _ = writeln!(text, "  partial factors: {}", words(factors));

@@ -1,9 +1,11 @@
 //! What makes an answer more or less accurate: keys of a case's mesh and of the steps of its path, as overrides.
 
+use crate::config::common_keys::tag_of;
 use crate::config::default_table::default_table;
-use crate::study::Case;
+use crate::scenes::mesh::Mesh;
+use crate::study::{Case, stage_tables};
+use serde::Deserialize;
 use serde_json::{Map, Value as Json, json};
-use voussoir_core::elastic::MeshDensity;
 use voussoir_core::plugin::{Capability, Card, PluginKind, card};
 use voussoir_solvers::path::continuation::LARGEST_FINITE_STEP;
 
@@ -14,34 +16,25 @@ pub type Sets = Vec<(String, Json)>;
 const STRATEGY: &str = "arc_length";
 
 /// The mesh of the scene, where it can have one: its table, elements filled in.
-fn mesh_of(case: &Case) -> Option<Map<String, Json>> {
-    let scene = &case.resolved["scene"];
-    card(PluginKind::Scene, scene["scene"].as_str()?).filter(|card| has(card, "mesh"))?;
-    let mut mesh = scene["mesh"].as_object().cloned().unwrap_or_default();
-    let usual = MeshDensity::default();
-    mesh.entry("elements").or_insert(json!(usual.elements));
-    mesh.entry("order").or_insert(json!(usual.order));
-    Some(mesh)
+fn mesh_of(case: &Case) -> Option<Mesh> {
+    card(PluginKind::Scene, tag_of(PluginKind::Scene, case.resolved.get("scene")?)).filter(|card| has(card, "mesh"))?;
+    let mesh = case.resolved.at("scene.mesh").and_then(|mesh| Mesh::deserialize(mesh).ok());
+    Some(mesh.unwrap_or_default())
 }
 
 /// So many times the elements along and across each block, one at least; nothing where the scene has no mesh.
 pub fn finer_mesh(case: &Case, times: f64) -> Sets {
-    let finer = mesh_of(case).map(|mut mesh| {
-        let own = |i: usize| mesh["elements"][i].as_f64().unwrap_or(1.0);
-        let elements = [0, 1].map(|i| (times * own(i)).round().max(1.0) as u64);
-        mesh.insert("elements".into(), json!(elements));
-        ("scene.mesh".to_string(), Json::Object(mesh))
+    let finer = mesh_of(case).map(|mesh| {
+        let elements = mesh.elements.map(|own| (times * own as f64).round().max(1.0) as usize);
+        ("scene.mesh".to_string(), json!(Mesh { elements, ..mesh }))
     });
     finer.into_iter().collect()
 }
 
 /// Elements of another order; nothing where the scene has no mesh or has this order already.
-pub fn other_order(case: &Case, order: u64) -> Sets {
-    let other = mesh_of(case).filter(|mesh| mesh["order"] != json!(order)).map(|mut mesh| {
-        mesh.insert("order".into(), json!(order));
-        ("scene.mesh".to_string(), Json::Object(mesh))
-    });
-    other.into_iter().collect()
+pub fn other_order(case: &Case, order: usize) -> Sets {
+    let other = mesh_of(case).filter(|mesh| mesh.order != order);
+    other.map(|mesh| ("scene.mesh".to_string(), json!(Mesh { order, ..mesh }))).into_iter().collect()
 }
 
 /// This share of the steps of every strategy that has any; nothing where the solver goes from event to event.
@@ -51,12 +44,13 @@ pub fn smaller_steps(case: &Case, solver: &Card, share: f64) -> Sets {
     }
     let finite = case.solver.settings.finite;
     let mut sets = Vec::new();
-    let own = case.resolved["solver"]["continuation"].as_object().cloned();
+    let own = case.resolved.at("solver.continuation").and_then(Json::as_object).cloned();
     let usual = || Map::from_iter([("strategy".to_string(), json!(STRATEGY))]);
     let table = shortened(own.unwrap_or_else(usual), finite, share);
     sets.extend(table.map(|table| ("solver.continuation".to_string(), table)));
-    for (index, stage) in case.resolved["stages"].as_array().into_iter().flatten().enumerate() {
-        let own = stage["continuation"].as_object().cloned().and_then(|table| shortened(table, finite, share));
+    for (index, stage) in stage_tables(&case.resolved).iter().enumerate() {
+        let own = stage.continuation.as_ref().and_then(Json::as_object).cloned();
+        let own = own.and_then(|table| shortened(table, finite, share));
         sets.extend(own.map(|table| (format!("stages.{index}.continuation"), table)));
     }
     sets

@@ -10,8 +10,10 @@ use super::plausibility::warnings;
 use super::resolved::Resolved;
 use super::solver::{choose_solver, unused_by_limit_analysis};
 use super::stages::build_stages;
+use super::tables::{OutputKeys, stage_tables};
 use crate::config::check::{Checker, Unused};
 use crate::config::checked_keys::{CheckedKey, CheckedKeys};
+use crate::config::common_keys::own_keys;
 use crate::config::diagnostic::{LocatedDiagnostic, suggest};
 use crate::config::document::Node;
 use crate::config::expand::{Expanded, Expansion};
@@ -39,40 +41,38 @@ pub(super) fn build_case(id: usize, expanded: Expanded, known: &KnownKeys<'_>) -
         unused.into_iter().map(|unused| format!("{} is not used by {}", unused.key, unused.by)).collect();
     check_kind(&mut diagnostics, &resolved);
     let tables = design(&resolved, &mut notes);
-    check(&mut diagnostics, &resolved, &tables);
+    let written = stage_tables(&resolved);
+    check(&mut diagnostics, &resolved, &tables, &written);
     let catalogue = catalogue(&mut diagnostics, &tables);
     let assembly = catalogue.and_then(|catalogue| assembly(&mut diagnostics, &tables, &catalogue));
-    let mut stages = build_stages(&mut diagnostics, &tables, assembly.as_ref(), &mut notes);
+    let mut stages = build_stages(&mut diagnostics, &tables, &written, assembly.as_ref(), &mut notes);
     multiply_loads(stages.as_deref_mut().unwrap_or_default(), &resolved);
-    let solver =
-        resolved.get("solver").and_then(|solver| choose_solver(&mut diagnostics, solver, &resolved, assembly.as_ref()));
+    let solver = resolved
+        .get("solver")
+        .and_then(|solver| choose_solver(&mut diagnostics, solver, &resolved, &written, assembly.as_ref()));
     let limit = solver.as_ref().is_some_and(|choice| matches!(choice.solver, SelectedSolver::Limit(..)));
     let rigid = assembly.as_ref().is_some_and(|assembly| !assembly.deforms());
     if limit || rigid {
-        notes.extend(unused_by_limit_analysis(&resolved));
+        notes.extend(unused_by_limit_analysis(&resolved, &written));
     }
-    match (assembly, stages, solver) {
-        (Some(assembly), Some(stages), Some(solver)) if diagnostics.found.is_empty() => {
-            let output = &resolved["output"];
-            let output_curve = output["curve"] == true;
-            let output_states = output["states"].as_u64().unwrap_or(0) as usize;
-            let differentiated = output["sensitivities"] == true;
-            let output_accuracy = output["accuracy"] == "estimate";
-            let output_fields = output["fields"] != false;
-            let output_joints = output["joints"] != false;
-            let output_zone = match output["thrust_zone"].as_bool() {
+    let output = resolved.get("output").and_then(own_keys::<OutputKeys>);
+    if output.is_none() && resolved.get("output").is_some() {
+        diagnostics.wrong("output", "cannot be read", "correct this table");
+    }
+    match (assembly, stages, solver, output) {
+        (Some(assembly), Some(stages), Some(solver), Some(output)) if diagnostics.found.is_empty() => {
+            if !output.fields && output.vtu {
+                notes.push("output.vtu is not used: output.fields = false leaves nothing to write there".into());
+            }
+            let output_zone = match output.thrust_zone {
                 Some(true) => ZoneOfThrust::Always,
                 None if parameters.is_empty() => ZoneOfThrust::Cheap,
                 _ => ZoneOfThrust::Never,
             };
-            let output_path_proofs = if output["path_proofs"] == true { usize::MAX } else { 0 };
-            if !output_fields && output["vtu"] == true {
-                notes.push("output.vtu is not used: output.fields = false leaves nothing to write there".into());
-            }
             notes.extend(warnings(&resolved, &assembly, &stages));
             note_of_yielding(&assembly, &resolved, &mut notes);
             let numbers = || numeric_keys(study_keys(), &resolved.to_json(), LONGEST);
-            let output_sensitivities = if differentiated { numbers() } else { Vec::new() };
+            let output_sensitivities = if output.sensitivities { numbers() } else { Vec::new() };
             let brief = false;
             Ok(Case {
                 id,
@@ -82,14 +82,14 @@ pub(super) fn build_case(id: usize, expanded: Expanded, known: &KnownKeys<'_>) -
                 assembly,
                 stages,
                 solver,
-                output_curve,
-                output_states,
+                output_curve: output.curve,
+                output_states: output.states.unwrap_or(0),
                 output_sensitivities,
-                output_accuracy,
-                output_joints,
+                output_accuracy: output.accuracy.is_some(),
+                output_joints: output.joints,
                 output_zone,
-                output_fields,
-                output_path_proofs,
+                output_fields: output.fields,
+                output_path_proofs: if output.path_proofs == Some(true) { usize::MAX } else { 0 },
                 notes,
                 brief,
                 resolved,

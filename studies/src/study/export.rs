@@ -2,6 +2,8 @@
 
 use super::model::Case;
 use super::partial_factors::design;
+use crate::scenes::bridge::Damage;
+use serde::Deserialize;
 use serde_json::{Map, Value as Json, json};
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::model::{Assembly, Bond, Joint, PointForce, Stage, fill_weights};
@@ -12,8 +14,8 @@ const GROUND: f64 = 0.5;
 /// The study in TOML. An error says what has no counterpart there.
 pub fn as_blocks(case: &Case, name: &str) -> Result<String, String> {
     let assembly = &case.assembly;
-    let damage = case.resolved["scene"]["damage"].as_array();
-    if damage.is_some_and(|list| list.iter().any(|entry| entry["kind"] != "lost_voussoir")) {
+    let damage = case.resolved.at("scene.damage").and_then(|list| Vec::<Damage>::deserialize(list).ok());
+    if damage.is_some_and(|list| !list.iter().all(|entry| matches!(entry, Damage::LostVoussoir { .. }))) {
         return Err("joints that touch over a part of their edges only have no counterpart there".into());
     }
     let mut study = Map::new();
@@ -23,7 +25,7 @@ pub fn as_blocks(case: &Case, name: &str) -> Result<String, String> {
     for table in ["materials", "joints", "solver"] {
         study.extend(tables.get(table).map(|value| (table.to_string(), value.clone())));
     }
-    let written = case.resolved["stages"].as_array().map(Vec::as_slice).unwrap_or_default();
+    let written = case.resolved.get("stages").and_then(Json::as_array).map(Vec::as_slice).unwrap_or_default();
     let mut gravity = Vec2::zeros();
     let mut stages = Vec::new();
     for (stage, table) in case.stages.iter().zip(written) {
@@ -111,9 +113,8 @@ fn scene(case: &Case) -> Result<Json, String> {
     }
     pairs.retain(|pair| pair["joint"].as_str() != first.as_deref());
     pairs.dedup();
-    let resolved = &case.resolved["scene"];
     Ok(json!({
-        "scene": "blocks", "width": assembly.width, "plane": resolved["plane"], "mesh": resolved["mesh"],
+        "scene": "blocks", "width": assembly.width, "plane": case.resolved.at("scene.plane"), "mesh": case.resolved.at("scene.mesh"),
         "joint": first, "blocks": blocks, "pairs": pairs,
     }))
 }

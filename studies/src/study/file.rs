@@ -3,13 +3,15 @@
 use super::case::{build_case, shared_key};
 use super::diagnostics::located;
 use super::error::StudyError;
-use super::keys::{VARIANT, kind_tables, study_keys};
+use super::keys::{kind_tables, study_keys};
 use super::model::{Case, Drawn, Output, Study};
 use super::outline::Outline;
 use super::source::{FILE_NAME, StudySource, kind_of, no_file_name};
 use super::sweep::Sweep;
+use super::tables::{OutputKeys, VariantTable, WriterKeys};
 use crate::config::check::Checker;
 use crate::config::checked_keys::CheckedKeys;
+use crate::config::common_keys::own_keys;
 use crate::config::diagnostic::{LocatedDiagnostic, sort};
 use crate::config::document::Node;
 use crate::config::expand::{Expanded, Expansion};
@@ -18,7 +20,7 @@ use crate::kinds::kind;
 use crate::side_by_side::in_order;
 use serde_json::{Map, Value as Json};
 use std::collections::HashMap;
-use voussoir_core::plugin::{Parameter, Shape};
+use voussoir_core::plugin::{KeyValue, Parameter, Shape};
 
 /// Greatest number of cases of a study whose path proofs are written unless it asks for them or refuses them.
 const MOST_WITH_PATH_PROOFS: usize = 20;
@@ -84,7 +86,8 @@ impl StudyFile {
         let mut cases = Vec::new();
         let few = self.expansion.count() <= MOST_WITH_PATH_PROOFS;
         make_cases(&self.expansion, &self.checked, &mut self.diagnostics, |mut case| {
-            if few && case.output_fields && case.resolved["output"]["path_proofs"].is_null() {
+            let unasked = case.resolved.at("output.path_proofs").is_none_or(Json::is_null);
+            if few && case.output_fields && unasked {
                 case.output_path_proofs = SMALL_PATH_PROOF;
             }
             cases.push(case);
@@ -122,15 +125,15 @@ impl StudyFile {
         }
         let first = first.map(|case| &case.resolved);
         // A sweep or a variant may have changed it.
-        if let Some(why) = first.and_then(|case| case["name"].as_str()).and_then(no_file_name) {
+        if let Some(why) = first.and_then(|case| case.read::<String>("name")).as_deref().and_then(no_file_name) {
             return Err(vec![LocatedDiagnostic::new(&self.root.place("name"), "name", why).help(FILE_NAME)].into());
         }
-        let text_of = |name: &str| first.and_then(|case| case[name].as_str()).unwrap_or_default().to_string();
+        let text_of = |name: &str| first.and_then(|case| case.read::<String>(name)).unwrap_or_default();
         Ok(Sweep {
             name: text_of("name"),
             kind: text_of("kind"),
             outline: self.outline,
-            output: first.map(|case| output(&case["output"], self.expansion.count())).unwrap_or_default(),
+            output: first.and_then(|case| output(case.get("output")?, self.expansion.count())).unwrap_or_default(),
             notes: Vec::new(),
             resolved: self.root.to_toml(),
             expansion: self.expansion,
@@ -140,18 +143,10 @@ impl StudyFile {
 }
 
 /// What is written besides the results, from the checked table `[output]`.
-fn output(table: &Json, cases: usize) -> Output {
-    let flag = |name: &str| table[name].as_bool().unwrap_or(false);
-    let tags = |list: &Vec<Json>| list.iter().filter_map(|tag| tag.as_str().map(str::to_string)).collect();
-    Output {
-        curve: flag("curve"),
-        figures: Drawn::read(&table["figures"], cases),
-        animation: flag("animation"),
-        vtu: flag("vtu"),
-        path_proofs: table["path_proofs"].as_bool(),
-        writers: table["writers"].as_array().map(tags),
-        options: table["options"].as_object().cloned().unwrap_or_default(),
-    }
+fn output(table: &Json, cases: usize) -> Option<Output> {
+    let OutputKeys { curve, figures, animation, vtu, path_proofs, .. } = own_keys(table)?;
+    let WriterKeys { writers, options } = own_keys(table)?;
+    Some(Output { curve, figures: Drawn::of(figures, cases), animation, vtu, path_proofs, writers, options })
 }
 
 /// Makes every case, side by side where the caller works so, and hands them over in order; a mistake that several cases
@@ -201,7 +196,7 @@ fn check_variants(root: &Node, diagnostics: &mut Vec<LocatedDiagnostic>) {
         return;
     };
     let mut checker = Checker::new(root);
-    checker.check(variants, &Shape::List { of: &VARIANT, min: 0, max: usize::MAX }, "variants");
+    checker.check(variants, &Shape::List { of: &VariantTable::SHAPE, min: 0, max: usize::MAX }, "variants");
     diagnostics.append(&mut checker.diagnostics);
 }
 

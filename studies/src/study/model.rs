@@ -5,6 +5,7 @@ use super::fnv::Fnv;
 use super::numeric_keys::NumericKey;
 use super::outline::Outline;
 use super::resolved::Resolved;
+use super::tables::{DrawnWord, Figures};
 use crate::config::checked_keys::CheckedKeys;
 use crate::config::expand::Expansion;
 use crate::results::{Origin, this_program};
@@ -122,14 +123,14 @@ impl Drawn {
     /// Cases up to which all are drawn where a study does not say.
     const MOST: usize = 50;
 
-    /// As the checked key `figures` says of a study of so many cases.
-    pub fn read(key: &Json, cases: usize) -> Drawn {
-        match (key.as_bool(), key.as_str()) {
-            (Some(false), _) | (_, Some("none")) => Drawn::Nothing,
-            (_, Some("all")) => Drawn::All,
-            (_, Some("worst")) => Drawn::Worst,
-            _ if cases > Drawn::MOST => Drawn::Worst,
-            _ => Drawn::All,
+    /// The value of the key `figures` in a study with this number of cases.
+    pub(crate) fn of(key: Figures, cases: usize) -> Drawn {
+        match key {
+            Figures::Any(false) | Figures::These(DrawnWord::None) => Drawn::Nothing,
+            Figures::These(DrawnWord::All) => Drawn::All,
+            Figures::These(DrawnWord::Worst) => Drawn::Worst,
+            Figures::Any(true) if cases > Drawn::MOST => Drawn::Worst,
+            Figures::Any(true) => Drawn::All,
         }
     }
 

@@ -1,6 +1,7 @@
 //! The axes of a study and the table of its kind: all that a kind is told before cases are made.
 
 use serde_json::{Map, Value as Json};
+use voussoir_core::plugin::Keys;
 
 /// The axes of a study, outermost first, and what its kind is told.
 #[derive(Debug, Clone, Default)]
@@ -16,9 +17,13 @@ pub struct Outline {
 }
 
 impl Outline {
-    /// The index of the variant that `key` of the kind's table names.
-    pub fn variant(&self, key: &str) -> Option<usize> {
-        let name = self.table.get(key)?.as_str()?;
-        self.variants.iter().position(|variant| variant == name)
+    /// The table of the study's kind; `None` if a key is missing in it.
+    pub fn read<T: Keys>(&self) -> Option<T> {
+        serde_json::from_value(Json::Object(self.table.clone())).ok()
+    }
+
+    /// The index of the variant with this name.
+    pub fn variant(&self, name: Option<&String>) -> Option<usize> {
+        self.variants.iter().position(|variant| Some(variant) == name)
     }
 }

@@ -5,42 +5,61 @@
 
 use super::diagnostics::DiagnosticList;
 use super::resolved::Resolved;
+use super::tables::StageTable;
+use crate::config::common_keys::tag_of;
 use crate::config::dotted_key::join;
 use serde_json::{Map, Value as Json};
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 use voussoir_core::model::{Assembly, Stage};
-use voussoir_core::plugin::{Need, Parameter, PluginKind, Quantity, Range, Shape, card, nearest};
+use voussoir_core::plugin::{Keys, PluginKind, card, nearest};
 
-const fn factor(name: &'static str, doc: &'static str) -> Parameter {
-    Parameter::number(name, Quantity::Ratio, Range::POSITIVE, doc).optional("1")
+/// Factors on loads.
+#[derive(Debug, Clone, Keys)]
+#[keys(untagged)]
+pub enum LoadFactors {
+    /// One for all stages.
+    #[key(unit = "-", range = "> 0")]
+    All(f64),
+    /// By the names of stages.
+    #[key(unit = "-", range = "> 0")]
+    Stages(BTreeMap<String, f64>),
 }
 
-const LOAD: Shape = Shape::Number(Quantity::Ratio, Range::POSITIVE);
-
-/// What `[factors]` may hold.
-pub(super) const FACTORS: Shape = Shape::Table(&[
-    factor("masonry_weight", "partial factor on the density of every material, which is multiplied"),
-    factor(
-        "fill_weight",
-        "partial factor on the weight of the fill, which multiplies the densities of fill, layers and backing",
-    ),
-    Parameter {
-        name: "loads",
-        doc: "partial factor on loads, for all stages or for the stages named: { live = 1.5 }",
-        shape: Shape::Either(&[LOAD, Shape::Map(&LOAD)]),
-        need: Need::Optional("1"),
-    },
-    factor("friction", "partial factor on the friction of joints, whose coefficients are divided"),
-    factor("cohesion", "partial factor on the cohesion of joints, which is divided"),
-    factor("tensile_strength", "partial factor on the tensile strength of joints, which is divided"),
-    factor("compressive_strength", "partial factor on the crushing strength of joints, which is divided"),
-    factor(
-        "fill_friction",
-        "partial factor on the friction of the fill, which divides the tangents of its angles of friction",
-    ),
-    factor("fill_cohesion", "partial factor on the cohesion of the fill, which is divided"),
-    factor("backing_strength", "partial factor on the strength of the backing, which is divided"),
-]);
+/// `[factors]`.
+#[derive(Debug, Clone, Keys)]
+pub struct Factors {
+    /// partial factor on the density of every material, which is multiplied
+    #[key(unit = "-", range = "> 0", optional = "1")]
+    masonry_weight: Option<f64>,
+    /// partial factor on the weight of the fill, which multiplies the densities of fill, layers and backing
+    #[key(unit = "-", range = "> 0", optional = "1")]
+    fill_weight: Option<f64>,
+    /// partial factor on loads, for all stages or for the stages named: { live = 1.5 }
+    #[key(optional = "1")]
+    loads: Option<LoadFactors>,
+    /// partial factor on the friction of joints, whose coefficients are divided
+    #[key(unit = "-", range = "> 0", optional = "1")]
+    friction: Option<f64>,
+    /// partial factor on the cohesion of joints, which is divided
+    #[key(unit = "-", range = "> 0", optional = "1")]
+    cohesion: Option<f64>,
+    /// partial factor on the tensile strength of joints, which is divided
+    #[key(unit = "-", range = "> 0", optional = "1")]
+    tensile_strength: Option<f64>,
+    /// partial factor on the crushing strength of joints, which is divided
+    #[key(unit = "-", range = "> 0", optional = "1")]
+    compressive_strength: Option<f64>,
+    /// partial factor on the friction of the fill, which divides the tangents of its angles of friction
+    #[key(unit = "-", range = "> 0", optional = "1")]
+    fill_friction: Option<f64>,
+    /// partial factor on the cohesion of the fill, which is divided
+    #[key(unit = "-", range = "> 0", optional = "1")]
+    fill_cohesion: Option<f64>,
+    /// partial factor on the strength of the backing, which is divided
+    #[key(unit = "-", range = "> 0", optional = "1")]
+    backing_strength: Option<f64>,
+}
 
 /// Which numbers of a table a factor changes.
 enum Change {
@@ -118,8 +137,7 @@ pub fn design<'a>(resolved: &'a Resolved, notes: &mut Vec<String>) -> Cow<'a, Re
         }
     }
     let heavier = factors.get("fill_weight").and_then(Json::as_f64).filter(|factor| *factor > 1.0);
-    if let (Some(factor), true) = (heavier, resolved.get("scene").is_some_and(|s| s["fill"]["resistance"].is_object()))
-    {
+    if let (Some(factor), true) = (heavier, resolved.at("scene.fill.resistance").is_some_and(Json::is_object)) {
         notes.push(format!(
             "factors.fill_weight = {factor} raises the resistance of the fill too (one source, one factor); where weight helps, \
              its favourable value decides: solve with fill_weight = 1 besides"
@@ -130,12 +148,17 @@ pub fn design<'a>(resolved: &'a Resolved, notes: &mut Vec<String>) -> Cow<'a, Re
 }
 
 /// Joint laws that cannot be with their design values, and stages that do not exist.
-pub(super) fn check(diagnostics: &mut DiagnosticList<'_>, resolved: &Resolved, design: &Resolved) {
-    let Some(factors) = resolved.get("factors") else { return };
+pub(super) fn check(
+    diagnostics: &mut DiagnosticList<'_>,
+    resolved: &Resolved,
+    design: &Resolved,
+    stages: &[StageTable],
+) {
+    let Some(factors) = resolved.read::<Factors>("factors") else { return };
     let tables = |of: &Resolved| of.get("joints").and_then(Json::as_object).cloned().unwrap_or_default();
     let written = tables(resolved);
     for (name, table) in tables(design).iter().filter(|(name, table)| written.get(*name) != Some(*table)) {
-        let card = table["law"].as_str().and_then(|tag| card(PluginKind::InterfaceLaw, tag));
+        let card = card(PluginKind::InterfaceLaw, tag_of(PluginKind::InterfaceLaw, table));
         let Some((card, table)) = card.zip(table.as_object()) else { continue };
         let known = |name: &str| card.parameters.iter().any(|parameter| parameter.name == name);
         let own: Map<_, _> = table.clone().into_iter().filter(|(name, _)| known(name)).collect();
@@ -144,14 +167,9 @@ pub(super) fn check(diagnostics: &mut DiagnosticList<'_>, resolved: &Resolved, d
             diagnostics.wrong("factors", format!("{path}, with its design values: {message}"), "change these factors");
         }
     }
-    let names: Vec<&str> = resolved
-        .get("stages")
-        .and_then(Json::as_array)
-        .into_iter()
-        .flatten()
-        .filter_map(|stage| stage["name"].as_str())
-        .collect();
-    for name in factors["loads"].as_object().into_iter().flatten().map(|(name, _)| name) {
+    let names: Vec<&str> = stages.iter().map(|stage| stage.name.as_str()).collect();
+    let Some(LoadFactors::Stages(of_stages)) = factors.loads else { return };
+    for name in of_stages.keys() {
         if !names.contains(&name.as_str()) {
             let help = nearest(name, names.iter().copied())
                 .map_or(format!("stages here: {}", names.join(", ")), |near| format!("did you mean \"{near}\"?"));
@@ -162,9 +180,12 @@ pub(super) fn check(diagnostics: &mut DiagnosticList<'_>, resolved: &Resolved, d
 
 /// Multiplies the loads of stages.
 pub(super) fn multiply_loads(stages: &mut [Stage], resolved: &Resolved) {
-    let Some(loads) = resolved.get("factors").map(|factors| &factors["loads"]) else { return };
+    let Some(loads) = resolved.read::<Factors>("factors").and_then(|factors| factors.loads) else { return };
     for stage in stages {
-        let factor = loads.as_f64().or_else(|| loads[stage.name.as_str()].as_f64()).unwrap_or(1.0);
+        let factor = match &loads {
+            LoadFactors::All(factor) => *factor,
+            LoadFactors::Stages(of) => of.get(&stage.name).copied().unwrap_or(1.0),
+        };
         stage.forces.iter_mut().for_each(|force| force.force *= factor);
         stage.accelerations.iter_mut().for_each(|acceleration| *acceleration *= factor);
     }
@@ -172,8 +193,9 @@ pub(super) fn multiply_loads(stages: &mut [Stage], resolved: &Resolved) {
 
 /// What a user should know of factors on strengths where blocks yield by laws of their own.
 pub(super) fn note_of_yielding(assembly: &Assembly, resolved: &Resolved, notes: &mut Vec<String>) {
-    let strengths = ["friction", "cohesion", "tensile_strength", "compressive_strength"];
-    let given = strengths.iter().any(|name| resolved.get("factors").is_some_and(|factors| !factors[name].is_null()));
+    let given = resolved.read::<Factors>("factors").is_some_and(|own| {
+        [own.friction, own.cohesion, own.tensile_strength, own.compressive_strength].iter().any(Option::is_some)
+    });
     if given && (0..assembly.bodies.len()).any(|body| assembly.yields(body)) {
         notes.push(
             "factors on strengths are those of joints: blocks that yield keep the strengths of their materials".into(),

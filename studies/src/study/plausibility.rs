@@ -1,9 +1,13 @@
 //! Warnings: what can be computed and is hardly meant. They become notes of the case, not mistakes.
 
 use super::resolved::Resolved;
+use crate::config::common_keys::tag_of;
+use crate::scenes::bridge::Fill;
+use serde::Deserialize;
 use serde_json::Value as Json;
 use voussoir_core::model::geometry::{Vec2, bounding_box};
 use voussoir_core::model::{Assembly, Body, Joint, Stage, Target, root};
+use voussoir_core::plugin::PluginKind;
 
 /// Densities of masonry and its fills \[kg/m³\].
 const DENSITIES: [f64; 2] = [1000.0, 3500.0];
@@ -22,13 +26,13 @@ const LISTED: usize = 3;
 pub(super) fn warnings(resolved: &Resolved, assembly: &Assembly, stages: &[Stage]) -> Vec<String> {
     let mut found = Vec::new();
     densities(assembly, &mut found);
-    if let Some(fill) = resolved.get("scene").map(|scene| &scene["fill"]) {
-        densities_of_fill(fill, &mut found);
-        frictions_of_fill(fill, &mut found);
+    if let Some(fill) = resolved.at("scene.fill").and_then(|fill| Fill::deserialize(fill).ok()) {
+        densities_of_fill(&fill, &mut found);
+        frictions_of_fill(&fill, &mut found);
     }
     stages.iter().enumerate().for_each(|(index, stage)| doubted_stage(index, stage, assembly, &mut found));
     for (name, law) in resolved.get("joints").and_then(Json::as_object).into_iter().flatten() {
-        if let Some(friction) = law["friction"].as_f64().filter(|friction| *friction > FRICTION) {
+        if let Some(friction) = law.get("friction").and_then(Json::as_f64).filter(|friction| *friction > FRICTION) {
             found.push(format!(
                 "joints.{name}.friction = {} is an angle of {:.0}°; stone on stone has 0.5 to 0.8",
                 if friction < 1e6 { friction.to_string() } else { format!("{friction:e}") },
@@ -36,14 +40,14 @@ pub(super) fn warnings(resolved: &Resolved, assembly: &Assembly, stages: &[Stage
             ));
         }
     }
-    if let Some(scene) = resolved.get("scene")
-        && let (Some(thickness), Some(span)) = (scene["thickness"].as_f64(), scene["profile"]["span"].as_f64())
+    let number = |key: &str| resolved.at(key).and_then(Json::as_f64);
+    if let (Some(thickness), Some(span)) = (number("scene.thickness"), number("scene.profile.span"))
         && thickness > span
     {
         found.push(format!("scene.thickness = {thickness} m is more than the span of {span} m"));
     }
     // Other scenes make their joints themselves.
-    if resolved.get("scene").is_some_and(|scene| scene["scene"] == "blocks") {
+    if resolved.get("scene").is_some_and(|scene| tag_of(PluginKind::Scene, scene) == "blocks") {
         small_gaps(assembly, &mut found);
         floating(assembly, &mut found);
     }
@@ -59,20 +63,21 @@ fn densities(assembly: &Assembly, found: &mut Vec<String>) {
     }
 }
 
-fn densities_of_fill(fill: &Json, found: &mut Vec<String>) {
-    let own = [("density".to_string(), &fill["density"]), ("haunching.density".into(), &fill["haunching"]["density"])];
-    let layers = fill["layers"].as_array().into_iter().flatten().enumerate();
-    let layers = layers.map(|(i, layer)| (format!("layers.{i}.density"), &layer["density"]));
-    let given = own.into_iter().chain(layers).filter_map(|(key, value)| Some((key, value.as_f64()?)));
+fn densities_of_fill(fill: &Fill, found: &mut Vec<String>) {
+    let backing = fill.haunching.and_then(|backing| backing.density);
+    let own = [("density".to_string(), Some(fill.density)), ("haunching.density".into(), backing)];
+    let layers = fill.layers.iter().enumerate();
+    let layers = layers.map(|(i, layer)| (format!("layers.{i}.density"), Some(layer.density)));
+    let given = own.into_iter().chain(layers).filter_map(|(key, value)| Some((key, value?)));
     found.extend(given.filter_map(|(key, density)| doubted(&format!("scene.fill.{key}"), density)));
 }
 
 /// Angles of friction of a fill that are so small that they may be radians or coefficients.
-fn frictions_of_fill(fill: &Json, found: &mut Vec<String>) {
-    let layers = fill["layers"].as_array().into_iter().flatten().enumerate();
-    let layers = layers.map(|(i, layer)| (format!("layers.{i}.friction_angle"), &layer["friction_angle"]));
-    let all = [("friction_angle".to_string(), &fill["friction_angle"])].into_iter().chain(layers);
-    for (key, angle) in all.filter_map(|(key, value)| Some((key, value.as_f64()?))) {
+fn frictions_of_fill(fill: &Fill, found: &mut Vec<String>) {
+    let layers = fill.layers.iter().enumerate();
+    let layers = layers.map(|(i, layer)| (format!("layers.{i}.friction_angle"), layer.friction_angle));
+    let all = [("friction_angle".to_string(), fill.friction_angle)].into_iter().chain(layers);
+    for (key, angle) in all.filter_map(|(key, value)| Some((key, value?))) {
         if (0.0..FILL_FRICTION).contains(&angle) && angle > 0.0 {
             found.push(format!(
                 "scene.fill.{key} = {angle}° is less than {FILL_FRICTION}°; the angle of a fill is given in degrees"

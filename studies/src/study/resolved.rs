@@ -1,6 +1,7 @@
 //! The tables of a checked case by name. Those that cases of a study have in common are held, and hashed, once.
 
 use super::fnv::Fnv;
+use serde::de::DeserializeOwned;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use serde_json::{Map, Value as Json};
 use std::ops::Index;
@@ -53,6 +54,11 @@ impl Resolved {
     /// The value of a top-level key.
     pub fn get(&self, name: &str) -> Option<&Json> {
         self.0.iter().find(|(own, _)| *own == name).map(|(_, checked)| &checked.value)
+    }
+
+    /// The value of a top-level key as a type; `None` if it is absent or no such value.
+    pub fn read<T: DeserializeOwned>(&self, name: &str) -> Option<T> {
+        T::deserialize(self.get(name)?).ok()
     }
 
     /// The value at a dotted path; entries of lists by index.

@@ -2,9 +2,10 @@
 //! built. A table that cannot be read is a mistake, never silently another solver.
 
 use super::diagnostics::DiagnosticList;
-use super::keys::FIRST_LIMIT_POINT;
 use super::model::{SelectedSolver, SolverChoice};
 use super::resolved::Resolved;
+use super::tables::{StageTable, Until};
+use crate::config::common_keys::{Kinematics, SolverKeys, Stop, own_keys, tag_of};
 use crate::config::default_table::default_table;
 use crate::config::diagnostic::suggest;
 use crate::config::dotted_key::join;
@@ -30,18 +31,23 @@ pub(super) fn choose_solver(
     diagnostics: &mut DiagnosticList<'_>,
     solver: &Json,
     resolved: &Resolved,
+    stages: &[StageTable],
     assembly: Option<&Assembly>,
 ) -> Option<SolverChoice> {
-    let tag = solver["solver"].as_str()?;
+    let tag = tag_of(PluginKind::LimitSolver, solver);
+    let Some(common) = own_keys::<SolverKeys>(solver) else {
+        diagnostics.wrong("solver", "cannot be read", "correct this table");
+        return None;
+    };
     let chosen = candidate(PluginKind::LimitSolver, tag);
-    let finite = solver["kinematics"] == "finite";
+    let finite = common.kinematics == Kinematics::Finite;
     if finite {
         needs_finite_displacements(diagnostics, tag, chosen);
     }
     if let Some(assembly) = assembly {
         needs_capabilities(diagnostics, tag, chosen, resolved, assembly);
     }
-    needs_deformation(diagnostics, resolved, assembly, chosen, finite);
+    needs_deformation(diagnostics, stages, assembly, chosen, finite);
     if let Some(assembly) = assembly.filter(|_| chosen.is_none_or(|card| card.kind == PluginKind::PathSolver)) {
         let free = (0..assembly.bodies.len()).filter(|body| !assembly.bodies[*body].fixed);
         if let Some(why) = free.map(|body| assembly.fine_enough(body)).find_map(Result::err) {
@@ -49,8 +55,7 @@ pub(super) fn choose_solver(
         }
     }
     let built = build_solver(diagnostics, solver, chosen);
-    let settings = build_settings(diagnostics, solver, resolved, finite);
-    let stages = resolved.get("stages").and_then(Json::as_array).map(Vec::as_slice).unwrap_or_default();
+    let settings = build_settings(diagnostics, &common, stages);
     let own = stages.iter().enumerate().map(|(index, stage)| stage_solver(diagnostics, stage, index, chosen)).collect();
     Some(SolverChoice { solver: built?, settings: settings?, of_stages: own })
 }
@@ -58,11 +63,11 @@ pub(super) fn choose_solver(
 /// The solver of a stage that names its own. A path is followed by one solver from its first stage to its last.
 fn stage_solver(
     diagnostics: &mut DiagnosticList<'_>,
-    stage: &Json,
+    stage: &StageTable,
     index: usize,
     chosen: Option<&Card>,
 ) -> Option<SelectedSolver> {
-    let tag = stage.get("solver")?.as_str()?;
+    let tag = stage.solver.as_deref()?;
     let at = format!("stages.{index}.solver");
     let Some(card) = candidate(PluginKind::LimitSolver, tag) else {
         let tags: Vec<_> = candidates(PluginKind::LimitSolver).into_iter().map(|card| card.tag).collect();
@@ -86,12 +91,12 @@ fn stage_solver(
 }
 
 /// What each stage asks a path solver for besides.
-fn stage_settings(diagnostics: &mut DiagnosticList<'_>, stages: &[Json]) -> Option<Vec<StageSettings>> {
-    let one = |(index, stage): (usize, &Json)| -> Option<StageSettings> {
-        let stop = stage.get("stop").map(|stop| ["displacement", "factor"].map(|key| stop[key].as_f64()));
+fn stage_settings(diagnostics: &mut DiagnosticList<'_>, stages: &[StageTable]) -> Option<Vec<StageSettings>> {
+    let one = |(index, stage): (usize, &StageTable)| -> Option<StageSettings> {
+        let stop = stage.stop.map(|Stop { displacement, factor }| [displacement, factor]);
         let at = format!("stages.{index}.continuation");
-        let continuation = strategy(diagnostics, stage.get("continuation"), &at)?;
-        let first_limit_point = stage["until"] == FIRST_LIMIT_POINT;
+        let continuation = strategy(diagnostics, stage.continuation.as_ref(), &at)?;
+        let first_limit_point = stage.until == Some(Until::FirstLimitPoint);
         Some(StageSettings { continuation, stop, first_limit_point })
     };
     stages.iter().enumerate().map(one).collect()
@@ -104,7 +109,7 @@ fn strategy(
     at: &str,
 ) -> Option<Option<Arc<dyn Continuation>>> {
     let Some(table) = table else { return Some(None) };
-    let card = card(PluginKind::Continuation, table["strategy"].as_str().unwrap_or_default())?;
+    let card = card(PluginKind::Continuation, tag_of(PluginKind::Continuation, table))?;
     let strategy: Box<dyn Continuation> = read_solver(diagnostics, at, table, card)?;
     Some(Some(Arc::from(strategy)))
 }
@@ -127,18 +132,16 @@ fn build_solver(diagnostics: &mut DiagnosticList<'_>, solver: &Json, chosen: Opt
 /// What a path solver is told.
 fn build_settings(
     diagnostics: &mut DiagnosticList<'_>,
-    solver: &Json,
-    resolved: &Resolved,
-    finite: bool,
+    common: &SolverKeys,
+    stages: &[StageTable],
 ) -> Option<PathSettings> {
-    let continuation = strategy(diagnostics, solver.get("continuation"), "solver.continuation");
-    let stages = resolved.get("stages").and_then(Json::as_array).map(Vec::as_slice).unwrap_or_default();
+    let continuation = strategy(diagnostics, common.continuation.as_ref(), "solver.continuation");
     let stages = stage_settings(diagnostics, stages);
     Some(PathSettings {
-        finite,
-        tolerance: solver["tolerance"].as_f64().unwrap_or(1e-9),
-        stop_displacement: solver["stop"]["displacement"].as_f64(),
-        stop_factor: solver["stop"]["factor"].as_f64(),
+        finite: common.kinematics == Kinematics::Finite,
+        tolerance: common.tolerance,
+        stop_displacement: common.stop.and_then(|stop| stop.displacement),
+        stop_factor: common.stop.and_then(|stop| stop.factor),
         continuation: continuation?,
         stages: stages?,
     })
@@ -206,7 +209,7 @@ fn needs_capabilities(
     let laws = laws.map(|(_, (name, _))| ("joints", name, PluginKind::InterfaceLaw));
     let materials = assembly.catalogue.materials.iter().map(|(name, _)| ("materials", name, PluginKind::BulkMaterial));
     for (table, name, kind) in laws.chain(materials) {
-        let law = resolved[table][name]["law"].as_str().unwrap_or_default();
+        let law = tag_of(kind, &resolved[table][name]);
         let Some(card) = card(kind, law) else {
             continue;
         };
@@ -226,7 +229,7 @@ fn needs_capabilities(
 /// What only a path answers needs something that deforms, and no limit analysis.
 fn needs_deformation(
     diagnostics: &mut DiagnosticList<'_>,
-    resolved: &Resolved,
+    stages: &[StageTable],
     assembly: Option<&Assembly>,
     chosen: Option<&Card>,
     finite: bool,
@@ -236,16 +239,15 @@ fn needs_deformation(
     let rigid = assembly.is_some_and(|assembly| !assembly.deforms());
     let help = "give a material a young_modulus (law = \"elastic\") or a joint law a normal_stiffness";
     let reason = "all blocks are rigid and no joint is compliant: there is no path before the collapse";
-    let stages = resolved.get("stages").and_then(Json::as_array).map(Vec::as_slice).unwrap_or_default();
     for (index, stage) in stages.iter().enumerate() {
-        if stage["settlement"].as_array().is_none_or(Vec::is_empty) {
+        if stage.settlement.is_empty() {
             continue;
         }
         if rigid && !limit && (finite || path) {
             diagnostics.wrong(&format!("stages.{index}.settlement"), reason, help);
         }
     }
-    for (index, _) in stages.iter().enumerate().filter(|(_, stage)| stage["until"] == FIRST_LIMIT_POINT) {
+    for (index, _) in stages.iter().enumerate().filter(|(_, stage)| stage.until == Some(Until::FirstLimitPoint)) {
         let at = format!("stages.{index}.until");
         if limit {
             let message = "limit analysis follows no path, so it finds no first limit point";
@@ -266,22 +268,21 @@ fn needs_deformation(
 }
 
 /// Keys that no limit analysis reads.
-pub(super) fn unused_by_limit_analysis(resolved: &Resolved) -> Vec<String> {
+pub(super) fn unused_by_limit_analysis(resolved: &Resolved, stages: &[StageTable]) -> Vec<String> {
     let mut notes = Vec::new();
     for (name, law) in resolved.get("joints").and_then(Json::as_object).into_iter().flatten() {
         for stiffness in ["normal_stiffness", "shear_stiffness"].iter().filter(|key| law.get(**key).is_some()) {
             notes.push(format!("joints.{name}.{stiffness} has no influence on a limit load"));
         }
     }
-    for key in ["continuation", "stop"] {
-        if resolved.get("solver").is_some_and(|solver| solver.get(key).is_some()) {
-            notes.push(format!("solver.{key} is not used by limit analysis"));
-        }
-        for (index, stage) in resolved.get("stages").and_then(Json::as_array).into_iter().flatten().enumerate() {
-            if stage.get(key).is_some() {
-                notes.push(format!("stages.{index}.{key} is not used by limit analysis"));
-            }
-        }
-    }
+    let common: Option<SolverKeys> = resolved.get("solver").and_then(own_keys);
+    let of_solver = common.map(|common| ("solver".to_string(), common.continuation.is_some(), common.stop.is_some()));
+    let of_stage = |(index, stage): (usize, &StageTable)| {
+        (format!("stages.{index}"), stage.continuation.is_some(), stage.stop.is_some())
+    };
+    let tables: Vec<_> = of_solver.into_iter().chain(stages.iter().enumerate().map(of_stage)).collect();
+    let note = |at: &String, key: &str| format!("{at}.{key} is not used by limit analysis");
+    notes.extend(tables.iter().filter(|(_, continuation, _)| *continuation).map(|(at, ..)| note(at, "continuation")));
+    notes.extend(tables.iter().filter(|(.., stop)| *stop).map(|(at, ..)| note(at, "stop")));
     notes
 }

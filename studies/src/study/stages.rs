@@ -1,8 +1,8 @@
 //! The stages of a case: what its loads, gravity and settlements do to the blocks.
 
 use super::diagnostics::DiagnosticList;
-use super::keys::FIRST_LIMIT_POINT;
 use super::resolved::Resolved;
+use super::tables::{Gravity, SettlementTable, StageTable, Until};
 use crate::config::diagnostic::suggest;
 use crate::config::dotted_key::join;
 use crate::loads::{LoadKind, LoadSite, LoadTables, Placed};
@@ -15,24 +15,30 @@ use voussoir_core::model::{Assembly, Joint, Settlement, Stage, Target};
 pub(super) fn build_stages(
     diagnostics: &mut DiagnosticList<'_>,
     resolved: &Resolved,
+    written: &[StageTable],
     assembly: Option<&Assembly>,
     notes: &mut Vec<String>,
 ) -> Option<Vec<Stage>> {
-    let stages = resolved.get("stages")?;
+    if written.len() != resolved.get("stages")?.as_array().map_or(0, Vec::len) {
+        diagnostics.wrong("stages", "cannot be read", "correct this list");
+        return None;
+    }
     let tables = load_tables(resolved);
-    let stages = stages.as_array()?;
     let before = diagnostics.found.len();
     let mut out: Vec<Stage> = Vec::new();
-    for (index, raw) in stages.iter().enumerate() {
+    for (index, raw) in written.iter().enumerate() {
         let at = format!("stages.{index}");
-        let (target, factors) = build_target(diagnostics, stages, index, &at);
-        let settlements = assembly.map(|assembly| build_settlements(diagnostics, &raw["settlement"], assembly, &at));
+        let (target, factors) = build_target(diagnostics, written, index, &at);
+        let settlements = assembly.map(|assembly| build_settlements(diagnostics, &raw.settlement, assembly, &at));
         let settlements = settlements.unwrap_or_default();
-        let (placed, whole) = build_loads(diagnostics, raw, assembly, &tables, &at);
+        let (placed, whole) = build_loads(diagnostics, &raw.loads, assembly, &tables, &at);
         let Placed { forces, accelerations, spreads, notes: own } = placed;
         let stage = Stage {
-            name: raw["name"].as_str().unwrap_or_default().to_string(),
-            gravity: gravity(&raw["gravity"]),
+            name: raw.name.clone(),
+            gravity: raw.gravity.map(|gravity| match gravity {
+                Gravity::Down(down) => Vec2::new(0.0, -down),
+                Gravity::Vector(vector) => Vec2::from(vector),
+            }),
             forces,
             accelerations,
             spreads,
@@ -46,7 +52,7 @@ pub(super) fn build_stages(
         notes.extend(own);
         if whole && assembly.is_some() && diagnostics.found.len() == before && !stands_off && raises_nothing(&stage) {
             let help = "give this stage a load that is not zero; gravity is not multiplied by the factor";
-            let until = raw["until"].as_str().unwrap_or_default();
+            let until = raw.until.map_or("", Until::word);
             let message = format!("\"{until}\" needs a load to raise, but this stage has none");
             diagnostics.wrong(&join(&at, "until"), message, help);
         }
@@ -65,21 +71,25 @@ fn raises_nothing(stage: &Stage) -> bool {
 
 /// What loads need besides their own keys: vehicles, and how the fill spreads loads. The tables have passed their check.
 fn load_tables(resolved: &Resolved) -> LoadTables {
-    let vehicles = resolved.get("vehicles").cloned().and_then(|vehicles| serde_json::from_value(vehicles).ok());
-    let dispersion = resolved.get("scene").and_then(|scene| scene.get("fill")?.get("dispersion"));
-    let dispersion = dispersion.cloned().and_then(|law| serde_json::from_value(law).ok());
+    let vehicles = resolved.read("vehicles");
+    let dispersion = resolved.at("scene.fill.dispersion").and_then(|law| Deserialize::deserialize(law).ok());
     LoadTables { vehicles: vehicles.unwrap_or_default(), dispersion }
 }
 
 /// Where a stage goes, and the least and greatest factor searched; its name is checked too.
-fn build_target(diagnostics: &mut DiagnosticList<'_>, stages: &[Json], index: usize, at: &str) -> (Target, [f64; 2]) {
+fn build_target(
+    diagnostics: &mut DiagnosticList<'_>,
+    stages: &[StageTable],
+    index: usize,
+    at: &str,
+) -> (Target, [f64; 2]) {
     let stage = &stages[index];
-    if stages[..index].iter().any(|earlier| earlier["name"] == stage["name"]) {
-        let message = format!("two stages are called \"{}\"", stage["name"].as_str().unwrap_or_default());
+    if stages[..index].iter().any(|earlier| earlier.name == stage.name) {
+        let message = format!("two stages are called \"{}\"", stage.name);
         diagnostics.wrong(&join(at, "name"), message, "give each stage a name of its own");
     }
-    let until = stage["until"].as_str();
-    if let Some(until) = until.filter(|_| stage.get("factor").is_some()) {
+    let until = stage.until.map(Until::word);
+    if let Some(until) = until.filter(|_| stage.factor.is_some()) {
         let help = format!("keep until to raise the loads to {}, or factor to stop at that factor", until_words(until));
         diagnostics.wrong(&join(at, "factor"), format!("is given besides until = \"{until}\""), help);
     }
@@ -87,40 +97,31 @@ fn build_target(diagnostics: &mut DiagnosticList<'_>, stages: &[Json], index: us
         let message = format!("\"{until}\" is only possible in the last stage: nothing can be loaded after it");
         diagnostics.wrong(&join(at, "until"), message, "make it the last stage, or give this stage a factor");
     }
-    let factor = |key: &str| stage.get(key).and_then(Json::as_f64);
-    let (least, greatest) = (factor("factor_min").unwrap_or(0.0), factor("factor_max").unwrap_or(f64::INFINITY));
+    let (least, greatest) = (stage.factor_min.unwrap_or(0.0), stage.factor_max.unwrap_or(f64::INFINITY));
     if least > greatest {
-        let named = if factor("factor_max").is_some() { "factor_max" } else { "factor_min" };
+        let named = if stage.factor_max.is_some() { "factor_max" } else { "factor_min" };
         let message = format!("the search would go from factor_min = {least} to factor_max = {greatest}");
         diagnostics.wrong(&join(at, named), message, "factor_min must be at most factor_max");
     }
-    let target = if until.is_some() { Target::Collapse } else { Target::Factor(factor("factor").unwrap_or(1.0)) };
+    let target = if until.is_some() { Target::Collapse } else { Target::Factor(stage.factor.unwrap_or(1.0)) };
     (target, [least, greatest])
 }
 
 /// A value of `until` in a sentence.
 fn until_words(until: &str) -> &str {
-    if until == FIRST_LIMIT_POINT { "the first limit point" } else { until }
-}
-
-/// Gravity from a stage on: downwards, or a vector.
-fn gravity(value: &Json) -> Option<Vec2> {
-    match value {
-        Json::Array(vector) => Some(Vec2::new(vector[0].as_f64().unwrap_or(0.0), vector[1].as_f64().unwrap_or(0.0))),
-        number => number.as_f64().map(|down| Vec2::new(0.0, -down)),
-    }
+    if until == Until::FirstLimitPoint.word() { "the first limit point" } else { until }
 }
 
 /// Forces on blocks and accelerations of all of them, load by load; whether all loads are among them.
 fn build_loads(
     diagnostics: &mut DiagnosticList<'_>,
-    stage: &Json,
+    loads: &[Json],
     assembly: Option<&Assembly>,
     tables: &LoadTables,
     at: &str,
 ) -> (Placed, bool) {
     let (mut all, mut whole) = (Placed::default(), true);
-    for (number, table) in stage["loads"].as_array().into_iter().flatten().enumerate() {
+    for (number, table) in loads.iter().enumerate() {
         let path = format!("{at}.loads.{number}");
         let load: Option<Box<dyn LoadKind>> = match Deserialize::deserialize(table) {
             Ok(load) => Some(load),
@@ -159,13 +160,13 @@ fn build_loads(
 /// The movements of supports of a stage.
 fn build_settlements(
     diagnostics: &mut DiagnosticList<'_>,
-    list: &Json,
+    list: &[SettlementTable],
     assembly: &Assembly,
     at: &str,
 ) -> Vec<Settlement> {
     let mut out = Vec::new();
-    for (number, entry) in list.as_array().into_iter().flatten().enumerate() {
-        let support = entry["support"].as_str().unwrap_or_default();
+    for (number, entry) in list.iter().enumerate() {
+        let support = entry.support.as_str();
         let fixed: Vec<&str> = assembly.bodies.iter().filter(|b| b.fixed).map(|b| b.name.as_str()).collect();
         let block = assembly.body(support);
         let Some(body) = block.filter(|body| assembly.bodies[*body].fixed) else {
@@ -178,11 +179,10 @@ fn build_settlements(
             continue;
         };
         let joint = assembly.joints.iter().find(|joint| joint.minus == body || joint.plus == body);
-        let number = |key: &str, i: usize| entry[key][i].as_f64().unwrap_or(0.0);
         out.push(Settlement {
             body,
-            displacement: Vec2::new(number("displacement", 0), number("displacement", 1)),
-            rotation: entry["rotation"].as_f64().unwrap_or(0.0),
+            displacement: Vec2::from(entry.displacement),
+            rotation: entry.rotation,
             about: joint.map_or(Vec2::zeros(), Joint::middle),
         });
     }

@@ -1,13 +1,20 @@
 //! What a calculation takes for granted, and from where: the plug-ins of a case in the words of their cards.
 
-use crate::study::Case;
+use crate::config::common_keys::tag_of;
+use crate::study::{Case, SelectedSolver, stage_tables};
 use serde_json::Value as Json;
 use voussoir_core::plugin::{Card, PluginKind, card};
+
+/// The laws of a fill: in words, their keys, their kinds.
+const OF_FILL: [(&str, &str, PluginKind); 2] = [
+    ("spread of live loads", "scene.fill.dispersion", PluginKind::Dispersion),
+    ("resistance of the fill", "scene.fill.resistance", PluginKind::FillResistance),
+];
 
 /// The plug-ins that a case uses, each with what it is used for.
 fn used(case: &Case) -> Vec<(String, &'static Card)> {
     let resolved = &case.resolved;
-    let tag = |value: &Json, kind: PluginKind| card(kind, value[kind.tag_key()].as_str()?);
+    let tag = |value: &Json, kind: PluginKind| card(kind, tag_of(kind, value));
     let mut out = Vec::new();
     let mut add = |what: String, value: &Json, kind: PluginKind| {
         out.extend(tag(value, kind).map(|card| (what, card)));
@@ -18,19 +25,16 @@ fn used(case: &Case) -> Vec<(String, &'static Card)> {
             add(format!("{table}: {name}"), value, kind);
         }
     }
-    let fill = &resolved["scene"]["fill"];
-    add("spread of live loads".into(), &fill["dispersion"], PluginKind::Dispersion);
-    add("resistance of the fill".into(), &fill["resistance"], PluginKind::FillResistance);
-    let mut kinds: Vec<&Json> = Vec::new();
-    for load in
-        resolved["stages"].as_array().into_iter().flatten().flat_map(|stage| stage["loads"].as_array()).flatten()
-    {
-        if !kinds.iter().any(|other| other["kind"] == load["kind"]) {
-            kinds.push(load);
-        }
+    for (what, key, kind) in OF_FILL {
+        resolved.at(key).into_iter().for_each(|table| add(what.into(), table, kind));
     }
-    for load in kinds {
-        add("load".into(), load, PluginKind::LoadKind);
+    let mut kinds: Vec<String> = Vec::new();
+    for load in stage_tables(resolved).iter().flat_map(|stage| &stage.loads) {
+        let kind = tag_of(PluginKind::LoadKind, load);
+        if !kinds.iter().any(|other| other == kind) {
+            kinds.push(kind.into());
+            add("load".into(), load, PluginKind::LoadKind);
+        }
     }
     for kind in [PluginKind::LimitSolver, PluginKind::PathSolver] {
         add("solver".into(), &resolved["solver"], kind);
@@ -44,7 +48,7 @@ pub fn assumptions(case: &Case) -> Vec<(String, String)> {
     let row = |words: &str, value: &str| (words.to_string(), value.to_string());
     let mut rows = vec![row("dimensions", "a plane model, the same over the width; static loads")];
     rows.extend(used(case).into_iter().map(|(what, card)| (what, format!("{} ({})", card.summary, card.tag))));
-    if case.resolved["solver"]["solver"] == "auto" {
+    if matches!(case.solver.solver, SelectedSolver::Auto) {
         rows.push(row("solver", "the cheapest that answers the question, named beside each answer (auto)"));
     }
     let finite = case.solver.settings.finite;
@@ -53,14 +57,10 @@ pub fn assumptions(case: &Case) -> Vec<(String, String)> {
     rows.push(row("blocks", if deforms { "some deform" } else { "rigid" }));
     if assembly.bridge.as_ref().is_some_and(|bridge| !bridge.road.is_empty()) {
         rows.push(row("fill", "weighs in vertical columns and presses with horizontal forces; it is no continuum"));
-        if case.resolved["scene"]["fill"]["dispersion"].is_null() {
-            rows.push(row("spread of live loads", "none"));
-        }
-        if case.resolved["scene"]["fill"]["resistance"].is_null() {
-            rows.push(row("resistance of the fill", "none"));
-        }
+        let absent = |key: &str| case.resolved.at(key).is_none_or(Json::is_null);
+        rows.extend(OF_FILL.iter().filter(|(_, key, _)| absent(key)).map(|(what, ..)| row(what, "none")));
     }
-    if case.resolved["factors"].is_null() {
+    if case.resolved.get("factors").is_none() {
         rows.push(row("partial factors", "none: all are 1"));
     } else {
         rows.push(row("load factor", "multiplies loads that are multiplied by their partial factors: 1 is adequate"));

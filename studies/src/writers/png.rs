@@ -5,13 +5,34 @@ use super::figures::Figures;
 use super::register::register;
 use super::study_output::StudyOutput;
 use super::writer::Writer;
+use crate::config::common_keys::own_keys;
 use rayon::prelude::*;
 use resvg::tiny_skia::{Color, Pixmap, Transform};
 use resvg::usvg::fontdb::Database;
 use resvg::usvg::{Options, Tree};
 use serde_json::Value as Json;
 use std::sync::Arc;
-use voussoir_core::plugin::{Need, Parameter, Shape};
+use voussoir_core::plugin::Keys;
+
+/// The background of a figure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
+pub enum Background {
+    /// It is white.
+    White,
+    /// It has no colour.
+    Transparent,
+}
+
+/// `[output.options.png]`.
+#[derive(Debug, Clone, Keys)]
+pub struct PngOptions {
+    /// width of each figure in pixels
+    #[key(range = ">= 16, <= 20_000", default = 1600)]
+    width: u32,
+    /// what lies behind the figure
+    #[key(default = "white")]
+    background: Background,
+}
 
 /// Writes `figures/*.png`.
 #[derive(Debug)]
@@ -23,8 +44,8 @@ impl Writer for Png {
         if !study.output.writers.iter().flatten().any(|tag| tag == "png") {
             return Vec::new();
         }
-        let width = options["width"].as_u64().unwrap_or(1600) as u32;
-        let background = (options["background"] != "transparent").then_some(Color::WHITE);
+        let PngOptions { width, background } = own_keys(options).unwrap_or_else(PngOptions::defaults);
+        let background = (background == Background::White).then_some(Color::WHITE);
         let reading = reading();
         let pixels = |(name, svg): (String, Vec<u8>)| {
             let bytes = png(&svg, width, background, &reading)?;
@@ -60,20 +81,7 @@ register!(
     "png",
     Png,
     "figures/*.png: the figures as pixels, where it is asked for by name",
-    &[
-        Parameter {
-            name: "width",
-            doc: "width of each figure in pixels",
-            shape: Shape::Integer { min: 16, max: 20_000 },
-            need: Need::Default("1600"),
-        },
-        Parameter {
-            name: "background",
-            doc: "what lies behind the figure",
-            shape: Shape::Choice(&["white", "transparent"]),
-            need: Need::Default("\"white\""),
-        },
-    ],
+    PngOptions,
     "# `png`\n\nWrites every figure of `figures` as `figures/*.png`, with text in DejaVu Sans, which is part of the program: the same \
      pixels on every machine. It writes only where it is named:\n\n```toml\n[output]\nwriters = [\"figures\", \"png\"]\n\
      [output.options.png]\nwidth = 2400\nbackground = \"transparent\"\n```\n\nIt is there in a program that is compiled with \

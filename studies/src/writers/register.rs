@@ -1,21 +1,26 @@
 //! One line that registers a writer: its card and its entry in the registry.
 
+use voussoir_core::plugin::Keys;
+
+/// Keys of a writer that has none.
+#[derive(Debug, Keys)]
+pub struct NoOptions {}
+
 /// The card of a writer and its entry in the registry.
 macro_rules! register {
     ($tag:literal, $writer:expr, $summary:literal, $page:literal) => {
-        register!($tag, $writer, $summary, &[], $page);
+        register!($tag, $writer, $summary, $crate::writers::register::NoOptions, $page);
     };
-    ($tag:literal, $writer:expr, $summary:literal, $options:expr, $page:literal) => {
+    ($tag:literal, $writer:expr, $summary:literal, $options:ty, $page:literal) => {
         voussoir_core::inventory::submit! {
             voussoir_core::plugin::Card {
                 kind: voussoir_core::plugin::PluginKind::Writer,
                 tag: $tag,
                 summary: $summary,
-                parameters: $options,
                 file: file!(),
                 package: voussoir_core::package!(),
                 page: $page,
-                ..voussoir_core::plugin::Card::BLANK
+                ..voussoir_core::plugin::Card::of::<$options>()
             }
         }
         voussoir_core::inventory::submit! {

@@ -10,6 +10,7 @@ use super::study_output::StudyOutput;
 use super::table::{distinct_notes, id_list};
 use super::writer::Writer;
 use super::{joints_csv, sensitivities_csv};
+use crate::config::common_keys::own_keys;
 use crate::figures::envelope::envelope_chart;
 use crate::figures::format::{
     escape, format_force, format_number, format_seconds, format_short, format_value, headline, hinge_list, kind_words,
@@ -23,10 +24,15 @@ use crate::results::{CaseResult, least_of};
 use serde_json::Value as Json;
 use voussoir_core::limit::Status;
 use voussoir_core::model::Assembly;
-use voussoir_core::plugin::{Need, Parameter, Shape};
+use voussoir_core::plugin::Keys;
 
-/// More cases than this are not drawn, unless the option `drawn` says so.
-const DRAWN: usize = 40;
+/// `[output.options.report]`.
+#[derive(Debug, Clone, Keys)]
+pub struct ReportOptions {
+    /// at most so many cases are drawn
+    #[key(range = "<= 100_000", default = 40)]
+    drawn: usize,
+}
 
 /// Writes `report.html`.
 #[derive(Debug)]
@@ -34,10 +40,8 @@ pub struct Report;
 
 impl Writer for Report {
     fn files(&self, study: &StudyOutput, options: &Json) -> Vec<(String, Vec<u8>)> {
-        vec![(
-            "report.html".into(),
-            report_html(study, options["drawn"].as_u64().map_or(DRAWN, |drawn| drawn as usize)).into_bytes(),
-        )]
+        let ReportOptions { drawn } = own_keys(options).unwrap_or_else(ReportOptions::defaults);
+        vec![("report.html".into(), report_html(study, drawn).into_bytes())]
     }
 }
 
@@ -433,11 +437,6 @@ register!(
     "report",
     Report,
     "report.html: one self-contained page with tables, figures and certificates",
-    &[Parameter {
-        name: "drawn",
-        doc: "at most so many cases are drawn",
-        shape: Shape::Integer { min: 0, max: 100_000 },
-        need: Need::Default("40"),
-    }],
+    ReportOptions,
     "# `report`\n\nWrites `report.html`, one page without external resources. At most `drawn` cases are drawn in it: \n\n```toml\n[output.options.report]\ndrawn = 10\n```\n"
 );

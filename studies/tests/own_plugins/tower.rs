@@ -1,24 +1,26 @@
 //! A scene, a kind of load, a limit solver and a continuation strategy of one's own.
 
-use serde::{Deserialize, Serialize};
 use serde_json::json;
 use voussoir::core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver};
 use voussoir::core::model::geometry::Vec2;
 use voussoir::core::model::{Assembly, Catalogue, Scene};
 use voussoir::core::path::{Constraint, Continuation, Increment};
-use voussoir::core::plugin::{
-    Capability, Card, Diagnostic, Need, Parameter, PluginKind, Quantity, Range, STANDARD_GRAVITY, Shape,
-};
+use voussoir::core::plugin::{Capability, Card, Diagnostic, Keys, PluginKind, STANDARD_GRAVITY};
 use voussoir::core::{inventory, typetag};
 use voussoir::loads::{LoadKind, LoadSite, Placed};
 use voussoir::solvers::limit::conic::LimitConic;
 
 /// `scene = "tower"`: equal blocks on each other, each `lean` further to the right than the one below.
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Keys)]
 pub struct Tower {
+    /// number of blocks
+    #[key(range = ">= 1, <= 1000")]
     blocks: usize,
+    /// size of a block
+    #[key(names = ["length", "height"], unit = "m", range = "> 0")]
     block: [f64; 2],
+    /// step to the right from block to block
+    #[key(unit = "m", default = 0.0)]
     lean: f64,
 }
 
@@ -43,29 +45,23 @@ impl Scene for Tower {
     }
 }
 
-const SIDE: Shape = Shape::Number(Quantity::Length, Range::POSITIVE);
-
 inventory::submit! {
     Card {
         kind: PluginKind::Scene,
         tag: "tower",
         summary: "equal blocks on each other, each further to the right",
-        parameters: &[
-            Parameter { name: "blocks", doc: "how many", shape: Shape::Integer { min: 1, max: 1000 }, need: Need::Required },
-            Parameter { name: "block", doc: "length, height", shape: Shape::List { of: &SIDE, min: 2, max: 2 }, need: Need::Required },
-            Parameter::number("lean", Quantity::Length, Range::ANY, "step to the right from block to block").default("0.0"),
-        ],
         file: file!(),
         package: voussoir_core::package!(),
         page: "# `tower`\n\nA stack that leans.\n",
-        ..Card::BLANK
+        ..Card::of::<Tower>()
     }
 }
 
 /// `kind = "quake"`: this share of their weight pushes all blocks to the right.
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Keys)]
 pub struct Quake {
+    /// share of the weight, to the right
+    #[key(unit = "-")]
     share: f64,
 }
 
@@ -81,18 +77,16 @@ inventory::submit! {
         kind: PluginKind::LoadKind,
         tag: "quake",
         summary: "a share of all weights, to the right",
-        parameters: &[Parameter::number("share", Quantity::Ratio, Range::ANY, "of the weight")],
         file: file!(),
         package: voussoir_core::package!(),
         page: "# `quake`\n\nA share of all weights, to the right.\n",
-        ..Card::BLANK
+        ..Card::of::<Quake>()
     }
 }
 
 /// `solver = "counted_conic"`: the conic program, which counts how often it is asked. `auto` takes the cheapest that does not
 /// refuse, which this is.
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Keys)]
 pub struct CountedConic {}
 
 #[typetag::serde(name = "counted_conic")]
@@ -118,14 +112,15 @@ inventory::submit! {
         file: file!(),
         package: voussoir_core::package!(),
         page: "# `counted_conic`\n\nAs `limit_conic`.\n",
-        ..Card::BLANK
+        ..Card::of::<CountedConic>()
     }
 }
 
 /// `strategy = "taxicab"`: movement and load factor of a step add up to its length.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Keys)]
 pub struct Taxicab {
+    /// first step of a load step
+    #[key(unit = "-", range = "> 0", default = 0.1)]
     first_step: f64,
 }
 
@@ -151,10 +146,9 @@ inventory::submit! {
         kind: PluginKind::Continuation,
         tag: "taxicab",
         summary: "movement plus load factor",
-        parameters: &[Parameter::number("first_step", Quantity::Ratio, Range::POSITIVE, "first step").default("0.1")],
         file: file!(),
         package: voussoir_core::package!(),
         page: "# `taxicab`\n\nMovement plus load factor.\n",
-        ..Card::BLANK
+        ..Card::of::<Taxicab>()
     }
 }

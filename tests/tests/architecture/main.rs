@@ -3,6 +3,7 @@
 mod arrows;
 mod graph;
 mod house;
+mod keys;
 mod links;
 mod measures;
 mod packages;

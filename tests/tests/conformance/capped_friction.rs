@@ -1,18 +1,19 @@
 //! `capped_friction`: associated friction with a crushing strength.
 
-use serde::{Deserialize, Serialize};
 use voussoir_core::law::{Facet, InterfaceLaw};
-use voussoir_core::plugin::{Capability, Card, KnownPath, Parameter, PluginKind, Property, Quantity, Range, Sample};
+use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, PluginKind, Property, Sample};
 
 /// Associated friction with a crushing strength.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Keys)]
 pub struct CappedFriction {
-    /// μ.
+    /// coefficient of friction μ
+    #[key(unit = "-", range = ">= 0")]
     pub friction: f64,
-    /// f_c \[Pa\].
+    /// crushing strength f_c
+    #[key(unit = "Pa", range = "> 0")]
     pub compressive_strength: f64,
-    /// k \[Pa/m\], the same against closing and slip; without it the joint itself is stiff.
+    /// stiffness k of the joint itself
+    #[key(unit = "Pa/m", range = "> 0", optional = "the joint itself is stiff")]
     pub stiffness: Option<f64>,
 }
 
@@ -33,12 +34,6 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::InterfaceLaw,
         tag: "capped_friction",
         summary: "associated friction that crushes",
-        parameters: &[
-            Parameter::number("friction", Quantity::Ratio, Range::NON_NEGATIVE, "coefficient of friction μ"),
-            Parameter::number("compressive_strength", Quantity::Stress, Range::POSITIVE, "crushing strength f_c"),
-            Parameter::number("stiffness", Quantity::Stiffness, Range::POSITIVE, "stiffness k of the joint itself")
-                .optional("the joint itself is stiff"),
-        ],
         provides: &[Capability::FACETS, Capability::RESPONSE],
         claims: &[Property::ASSOCIATED, Property::DISSIPATIVE],
         samples: &[Sample::new("friction = 0.6\ncompressive_strength = 5e6\nstiffness = 1e10", 1e-3, &["elastic", "sliding"])],
@@ -52,6 +47,6 @@ voussoir_core::inventory::submit! {
         file: file!(),
         package: voussoir_core::package!(),
         page: "# `capped_friction`\n\nPurpose, equations, regimes, state, validity, sources.\n",
-        ..Card::BLANK
+        ..Card::of::<CappedFriction>()
     }
 }

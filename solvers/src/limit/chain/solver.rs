@@ -5,15 +5,13 @@ use super::layout::trees;
 use crate::limit::conic::LimitConic;
 use crate::limit::question::answer_by;
 use crate::limit::settlement::settle;
-use serde::{Deserialize, Serialize};
 use voussoir_core::law::FlowRule;
 use voussoir_core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, SettlementAnswer};
 use voussoir_core::model::Wrenches;
-use voussoir_core::plugin::{Capability, Card, PluginKind};
+use voussoir_core::plugin::{Capability, Card, Keys, PluginKind};
 
 /// Limit analysis in few redundants.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Default, Keys)]
 pub struct LimitChain {}
 
 #[typetag::serde(name = "limit_chain")]
@@ -41,13 +39,12 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::LimitSolver,
         tag: "limit_chain",
         summary: "limit analysis of arches, viaducts and whatever few joints close to rings, in its redundants and λ, by simplex, to rounding",
-        parameters: &[],
         requires: &[&[Capability::FACETS], &[Capability::RIGID_LIMIT]],
         cost: Some(20),
         sources: &["Livesley 1978, Int. J. Numer. Meth. Engng 12", "Dantzig 1963, Linear Programming and Extensions"],
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("limit_chain.md"),
-        ..Card::BLANK
+        ..Card::of::<LimitChain>()
     }
 }

@@ -12,20 +12,18 @@ use crate::limit::question::answer_by;
 use crate::limit::scale::{combined, force_scale, force_unit, with_unit_power};
 use crate::limit::settings::SETTINGS;
 use crate::limit::settlement::settle;
-use serde::{Deserialize, Serialize};
 use voussoir_core::law::FlowRule;
 use voussoir_core::limit::{
     Counters, JointForce, LimitAnswer, LimitJoint, LimitProblem, LimitQuestion, LimitSolver, SettlementAnswer,
 };
 use voussoir_core::model::Wrenches;
-use voussoir_core::plugin::{Capability, Card, PluginKind};
+use voussoir_core::plugin::{Capability, Card, Keys, PluginKind};
 
 /// Units of force that are tried besides, where the polish does not settle, on scenes of so many bodies at the most.
 const MOST_IN_UNITS: usize = 500;
 
 /// Limit analysis of any scene.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Default, Keys)]
 pub struct LimitConic {}
 
 #[typetag::serde(name = "limit_conic")]
@@ -48,14 +46,13 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::LimitSolver,
         tag: "limit_conic",
         summary: "limit analysis of any scene by sparse conic programming, polished to rounding",
-        parameters: &[],
         requires: &[&[Capability::FACETS], &[Capability::RIGID_LIMIT]],
         cost: Some(30),
         sources: &["Goulart & Chen 2024, Clarabel", "Stellato et al. 2020, OSQP (polishing)"],
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("limit_conic.md"),
-        ..Card::BLANK
+        ..Card::of::<LimitConic>()
     }
 }
 

@@ -12,50 +12,38 @@ use crate::limit::settings::SETTINGS;
 use crate::limit::settlement::settle;
 use crate::limit::systems::{LARGEST, Systems, greatest_shares};
 use crate::optimise::dense_simplex::Feasibility;
-use serde::{Deserialize, Serialize};
 use voussoir_core::law::FlowRule;
 use voussoir_core::limit::{
     BracketWork, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, LowerProof, LowerProofKind, NonAssociated,
     SettlementAnswer, Status,
 };
 use voussoir_core::model::Wrenches;
-use voussoir_core::plugin::{Capability, Card, Need, Parameter, PluginKind, Quantity, Range, Shape};
+use voussoir_core::plugin::{Capability, Card, Keys, PluginKind};
 
-/// Work of the search where it is not given.
-const SEARCH_LIMIT: f64 = 4.0;
-/// Rows of the program of products where they are not given.
-const PRODUCT_ROWS: usize = 12_000;
 /// Rows of products that are solved only so that what the search proved can be checked.
 const CHECKED_ROWS: usize = 5_000;
 /// Starts of the local search.
 const STARTS: usize = 24;
 
 /// The least load with the laws' own flow.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Keys)]
 pub struct LimitNonassociated {
-    /// Work that the proof may take, in 10⁹ matrix entries swept.
-    #[serde(default = "search_limit")]
+    /// work that the proof of the lower bound may take, in 10⁹ matrix entries swept (about a second each)
+    #[key(unit = "-", range = ">= 0", default = 4.0)]
     pub search_limit: f64,
-    /// Greatest number of rows of the program of products.
-    #[serde(default = "product_rows")]
+    /// greatest number of rows of the linear program of products, which bounds the least load from below
+    /// where the search does not; 0 for none (10 000: seconds, 40 000: minutes)
+    #[key(range = "<= 1_000_000", default = 12000)]
     pub product_rows: usize,
-    /// Work that the program of all products may take, in 10⁹ multiplications.
-    #[serde(default)]
+    /// work that the program of all products may take where that of `product_rows` leaves the bracket open,
+    /// in 10⁹ multiplications (about 0.1 s each); 0 for none
+    #[key(unit = "-", range = ">= 0", default = 0.0)]
     pub product_limit: f64,
-}
-
-fn search_limit() -> f64 {
-    SEARCH_LIMIT
-}
-
-fn product_rows() -> usize {
-    PRODUCT_ROWS
 }
 
 impl Default for LimitNonassociated {
     fn default() -> Self {
-        LimitNonassociated { search_limit: SEARCH_LIMIT, product_rows: PRODUCT_ROWS, product_limit: 0.0 }
+        Self::defaults()
     }
 }
 
@@ -64,28 +52,6 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::LimitSolver,
         tag: "limit_least",
         summary: "the least load factor with the laws' own flow, with a proved lower bound",
-        parameters: &[
-            Parameter::number(
-                "search_limit",
-                Quantity::Ratio,
-                Range::NON_NEGATIVE,
-                "work that the proof of the lower bound may take, in 10⁹ matrix entries swept (about a second each)",
-            )
-            .default("4.0"),
-            Parameter {
-                name: "product_rows",
-                doc: "greatest number of rows of the linear program of products, which bounds the least load from below where the search does not; 0 for none (10 000: seconds, 40 000: minutes)",
-                shape: Shape::Integer { min: 0, max: 1_000_000 },
-                need: Need::Default("12000"),
-            },
-            Parameter::number(
-                "product_limit",
-                Quantity::Ratio,
-                Range::NON_NEGATIVE,
-                "work that the program of all products may take where that of `product_rows` leaves the bracket open, in 10⁹ multiplications (about 0.1 s each); 0 for none",
-            )
-            .default("0.0"),
-        ],
         provides: &[Capability::NON_ASSOCIATED],
         requires: &[&[Capability::FACETS], &[Capability::RIGID_LIMIT]],
         cost: Some(10),
@@ -98,7 +64,7 @@ voussoir_core::inventory::submit! {
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("limit_least.md"),
-        ..Card::BLANK
+        ..Card::of::<LimitNonassociated>()
     }
 }
 

@@ -4,15 +4,13 @@ use super::sequence::{Sequence, sequence};
 use crate::limit::associated::{associated, associated_bound, settled_by_association};
 use crate::limit::scale::combined;
 use crate::limit::settlement::settle;
-use serde::{Deserialize, Serialize};
 use voussoir_core::law::FlowRule;
 use voussoir_core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, SettlementAnswer, Status};
 use voussoir_core::model::Wrenches;
-use voussoir_core::plugin::{Capability, Card, PluginKind};
+use voussoir_core::plugin::{Capability, Card, Keys, PluginKind};
 
 /// Sequential linear programming.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Default, Keys)]
 pub struct LimitSequential {}
 
 voussoir_core::inventory::submit! {
@@ -20,13 +18,12 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::LimitSolver,
         tag: "limit_sequential",
         summary: "a load factor with the laws' own flow, by sequential linear programs with fictitious cohesion",
-        parameters: &[],
         requires: &[&[Capability::FACETS], &[Capability::RIGID_LIMIT]],
         sources: &["Gilbert, Casapulla & Ahmed 2006, Computers & Structures 84"],
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("limit_sequential.md"),
-        ..Card::BLANK
+        ..Card::of::<LimitSequential>()
     }
 }
 

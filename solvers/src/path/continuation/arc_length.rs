@@ -1,33 +1,27 @@
 //! `arc_length`: spherical arc length in motion and factor.
 #![doc = include_str!("arc_length.md")]
 
-use super::{FIRST_STEP, LARGEST_STEP, first_step};
-use serde::{Deserialize, Serialize};
+use super::StepKeys;
 use voussoir_core::path::{Constraint, Continuation, Increment};
-use voussoir_core::plugin::{Card, Parameter, PluginKind, Quantity, Range};
+use voussoir_core::plugin::{Card, Keys, PluginKind};
 
 /// c = √(motion² + ψ² Δλ²).
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Keys)]
 pub struct ArcLength {
-    /// ψ.
-    #[serde(default = "psi")]
+    /// weight of the factor; 0 is cylindrical
+    #[key(unit = "-", range = ">= 0", default = 1.0)]
     pub psi: f64,
     /// First step.
-    #[serde(default = "first_step")]
+    #[key(like = StepKeys, default)]
     pub first_step: f64,
     /// Largest step.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[key(like = StepKeys)]
     pub largest_step: Option<f64>,
-}
-
-fn psi() -> f64 {
-    1.0
 }
 
 impl Default for ArcLength {
     fn default() -> Self {
-        ArcLength { psi: psi(), first_step: first_step(), largest_step: None }
+        Self::defaults()
     }
 }
 
@@ -67,15 +61,10 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::Continuation,
         tag: "arc_length",
         summary: "spherical arc length in motion and load factor; passes limit points and snap-back",
-        parameters: &[
-            Parameter::number("psi", Quantity::Ratio, Range::NON_NEGATIVE, "weight of the factor; 0 is cylindrical").default("1.0"),
-            FIRST_STEP,
-            LARGEST_STEP,
-        ],
         sources: &["Riks 1979, Int. J. Solids Struct. 15, 529-551", "Crisfield 1981, Computers & Structures 13, 55-62"],
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("arc_length.md"),
-        ..Card::BLANK
+        ..Card::of::<ArcLength>()
     }
 }

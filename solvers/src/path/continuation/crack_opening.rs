@@ -1,40 +1,41 @@
 //! `crack_opening`: control of the opening of one joint, arc length while it does not open.
 #![doc = include_str!("crack_opening.md")]
 
+use super::StepKeys;
 use super::arc_length::sphere;
-use super::{FIRST_STEP, LARGEST_STEP, first_step};
-use serde::{Deserialize, Serialize};
 use voussoir_core::path::{Constraint, Continuation, Increment, MOST_MONITORS, Monitor};
-use voussoir_core::plugin::{Card, Need, Parameter, PluginKind, Quantity, Range, Shape};
+use voussoir_core::plugin::{Card, Keys, PluginKind};
 
 /// c = Δg_n of the joint where it opened enough in the last step, else the arc length.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Keys)]
 pub struct CrackOpening {
-    /// Index of the joint.
+    /// index of the joint, as in results
+    #[key(range = "<= 1_000_000")]
     pub joint: usize,
-    /// Share of its length from its first end; its mean opening otherwise.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// where, as a share of the joint's length from its first end
+    #[key(unit = "-", range = ">= 0, <= 1", optional = "its mean opening")]
     pub at: Option<f64>,
-    /// Opening per motion of the last step from which the opening is controlled.
-    #[serde(default = "switch")]
+    /// opening per motion of the last step from which the opening is controlled
+    #[key(unit = "-", range = "> 0", default = 0.1)]
     pub switch: f64,
     /// First step.
-    #[serde(default = "first_step")]
+    #[key(like = StepKeys, default)]
     pub first_step: f64,
     /// Largest step.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[key(like = StepKeys)]
     pub largest_step: Option<f64>,
-}
-
-fn switch() -> f64 {
-    0.1
 }
 
 impl CrackOpening {
     /// Of a joint, with all else by default.
     pub fn of(joint: usize) -> Self {
-        CrackOpening { joint, at: None, switch: switch(), first_step: first_step(), largest_step: None }
+        CrackOpening {
+            joint,
+            at: None,
+            switch: Self::default_of("switch"),
+            first_step: Self::default_of("first_step"),
+            largest_step: None,
+        }
     }
 }
 
@@ -74,29 +75,10 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::Continuation,
         tag: "crack_opening",
         summary: "steps of the opening of one joint; passes limit points and snap-back while that joint opens",
-        parameters: &[
-            Parameter {
-                name: "joint",
-                doc: "index of the joint, as in results",
-                shape: Shape::Integer { min: 0, max: 1_000_000 },
-                need: Need::Required,
-            },
-            Parameter::number("at", Quantity::Ratio, Range::new(0.0, false, 1.0, false), "where, as a share of the joint's length from its first end")
-                .optional("its mean opening"),
-            Parameter::number(
-                "switch",
-                Quantity::Ratio,
-                Range::POSITIVE,
-                "opening per motion of the last step from which the opening is controlled",
-            )
-            .default("0.1"),
-            FIRST_STEP,
-            LARGEST_STEP,
-        ],
         sources: &["de Borst 1987, Computers & Structures 25, 211-224", "Rots & de Borst 1987, J. Engng Mech. 113, 1739-1758"],
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("crack_opening.md"),
-        ..Card::BLANK
+        ..Card::of::<CrackOpening>()
     }
 }

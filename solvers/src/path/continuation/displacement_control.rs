@@ -1,26 +1,24 @@
 //! `displacement_control`: the displacement of the load is given at each step.
 #![doc = include_str!("displacement_control.md")]
 
-use super::{FIRST_STEP, LARGEST_STEP, first_step};
-use serde::{Deserialize, Serialize};
+use super::StepKeys;
 use voussoir_core::path::{Constraint, Continuation, Increment};
-use voussoir_core::plugin::{Card, PluginKind};
+use voussoir_core::plugin::{Card, Keys, PluginKind};
 
 /// c = |Δu|, u the work-conjugate displacement of the load that grows.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Keys)]
 pub struct DisplacementControl {
     /// First step.
-    #[serde(default = "first_step")]
+    #[key(like = StepKeys, default)]
     pub first_step: f64,
     /// Largest step.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[key(like = StepKeys)]
     pub largest_step: Option<f64>,
 }
 
 impl Default for DisplacementControl {
     fn default() -> Self {
-        DisplacementControl { first_step: first_step(), largest_step: None }
+        Self::defaults()
     }
 }
 
@@ -52,11 +50,10 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::Continuation,
         tag: "displacement_control",
         summary: "steps of the load's own displacement; passes limit points, not snap-back",
-        parameters: &[FIRST_STEP, LARGEST_STEP],
         sources: &["Batoz & Dhatt 1979, Int. J. Numer. Meth. Engng 14, 1262-1267"],
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("displacement_control.md"),
-        ..Card::BLANK
+        ..Card::of::<DisplacementControl>()
     }
 }

@@ -1,26 +1,24 @@
 //! `load_control`: the factor is given at each step.
 #![doc = include_str!("load_control.md")]
 
-use super::{FIRST_STEP, LARGEST_STEP, first_step};
-use serde::{Deserialize, Serialize};
+use super::StepKeys;
 use voussoir_core::path::{Constraint, Continuation, Increment};
-use voussoir_core::plugin::{Card, PluginKind};
+use voussoir_core::plugin::{Card, Keys, PluginKind};
 
 /// c = |Δλ|.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Keys)]
 pub struct LoadControl {
     /// First step.
-    #[serde(default = "first_step")]
+    #[key(like = StepKeys, default)]
     pub first_step: f64,
     /// Largest step.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[key(like = StepKeys)]
     pub largest_step: Option<f64>,
 }
 
 impl Default for LoadControl {
     fn default() -> Self {
-        LoadControl { first_step: first_step(), largest_step: None }
+        Self::defaults()
     }
 }
 
@@ -49,11 +47,10 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::Continuation,
         tag: "load_control",
         summary: "steps of the load factor; stops at the first limit point and says so",
-        parameters: &[FIRST_STEP, LARGEST_STEP],
         sources: &["Crisfield 1991, Non-linear Finite Element Analysis of Solids and Structures 1, section 1.2"],
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("load_control.md"),
-        ..Card::BLANK
+        ..Card::of::<LoadControl>()
     }
 }

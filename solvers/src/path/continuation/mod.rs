@@ -10,30 +10,21 @@ pub mod displacement_control;
 pub mod dissipation;
 pub mod load_control;
 
-use voussoir_core::plugin::{Parameter, Quantity, Range};
+use voussoir_core::plugin::Keys;
 
-const FIRST_STEP: Parameter = Parameter::number(
-    "first_step",
-    Quantity::Ratio,
-    Range::POSITIVE,
-    "first step of a load step, as a share of the load's own size taken up elastically",
-)
-.default("0.1");
-
-const LARGEST_STEP: Parameter = Parameter::number(
-    "largest_step",
-    Quantity::Ratio,
-    Range::POSITIVE,
-    "greatest movement in a step, as a share of the scene's size",
-)
-.optional("without bound with small displacements, 0.002 with finite ones");
+/// Keys that strategies share.
+#[derive(Debug, Keys)]
+pub struct StepKeys {
+    /// first step of a load step, as a share of the load's own size taken up elastically
+    #[key(unit = "-", range = "> 0", default = 0.1)]
+    first_step: f64,
+    /// greatest movement in a step, as a share of the scene's size
+    #[key(unit = "-", range = "> 0", optional = "without bound with small displacements, 0.002 with finite ones")]
+    largest_step: Option<f64>,
+}
 
 /// Movement in a step with finite displacements if the strategy sets no bound, as a share of the size of the scene.
 pub const LARGEST_FINITE_STEP: f64 = crate::settings::SETTINGS.largest_finite_step;
-
-fn first_step() -> f64 {
-    0.1
-}
 
 #[cfg(test)]
 mod tests;

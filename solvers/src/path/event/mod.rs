@@ -19,9 +19,8 @@ mod witness;
 
 pub(super) use self::first_modes::first_modes;
 pub(super) use self::follow::follow;
-use serde::{Deserialize, Serialize};
 use voussoir_core::path::{PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver};
-use voussoir_core::plugin::{Capability, Card, PluginKind};
+use voussoir_core::plugin::{Capability, Card, Keys, PluginKind};
 
 /// Returns true if the path consists of linear pieces: small displacements, facet laws and linear blocks.
 pub(super) fn is_piecewise_linear(problem: &PathProblem, settings: &PathSettings) -> bool {
@@ -30,8 +29,7 @@ pub(super) fn is_piecewise_linear(problem: &PathProblem, settings: &PathSettings
 }
 
 /// The exact path of piecewise linear problems.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Default, Keys)]
 pub struct EventPath {}
 
 #[typetag::serde(name = "event_path")]
@@ -68,7 +66,6 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::PathSolver,
         tag: "event_path",
         summary: "exact path of elastic blocks and facet laws, small displacements, from event to event, to rounding",
-        parameters: &[],
         provides: &[Capability::SETTLEMENT],
         requires: &[&[Capability::FACETS], &[Capability::LINEAR]],
         cost: Some(10),
@@ -81,7 +78,7 @@ voussoir_core::inventory::submit! {
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("event_path.md"),
-        ..Card::BLANK
+        ..Card::of::<EventPath>()
     }
 }
 

@@ -12,13 +12,11 @@ mod tracing;
 use super::event::{self, is_piecewise_linear};
 use super::outcome::stalled;
 use crate::path::newton::quantities::monitors::resolve;
-use serde::{Deserialize, Serialize};
 use voussoir_core::path::{PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver};
-use voussoir_core::plugin::{Capability, Card, PluginKind};
+use voussoir_core::plugin::{Capability, Card, Keys, PluginKind};
 
 /// Steps with Newton's method.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Default, Keys)]
 pub struct NewtonPath {}
 
 #[typetag::serde(name = "newton_path")]
@@ -51,7 +49,6 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::PathSolver,
         tag: "newton_path",
         summary: "pieces between located events, or load steps by semismooth Newton: any law of joints, blocks that yield, small or finite displacements",
-        parameters: &[],
         provides: &[Capability::FINITE_DISPLACEMENTS, Capability::SETTLEMENT],
         requires: &[&[Capability::FACETS, Capability::RESPONSE]],
         cost: Some(20),
@@ -69,7 +66,7 @@ voussoir_core::inventory::submit! {
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("newton_path.md"),
-        ..Card::BLANK
+        ..Card::of::<NewtonPath>()
     }
 }
 

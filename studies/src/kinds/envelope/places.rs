@@ -20,7 +20,7 @@ pub(super) struct Places {
 
 /// The places of a run.
 pub(super) fn places(case: &Case, request: &Request, run: &Run) -> Places {
-    let [from, to] = request.range;
+    let [from, to] = request.range();
     let last = (request.scan - 1) as f64;
     let even = (0..request.scan).map(|i| if i + 1 == request.scan { to } else { from + (to - from) * i as f64 / last });
     let load = request.parameter.rsplit_once('.').and_then(|(table, _)| case.resolved.at(table));

@@ -1,38 +1,63 @@
 //! What an envelope is asked: the table of its study, and what is tried on a case.
 
-use crate::study::{Case, Outline};
+use crate::study::Case;
 use serde_json::Value as Json;
+use voussoir_core::plugin::Keys;
 
-/// `[envelope]`, read.
-#[derive(Debug, Clone)]
+/// Greatest number of places on the even scan.
+const MAX_SCAN: usize = 100_000;
+
+/// The directions of vehicles that are tried.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
+pub enum Directions {
+    /// One after the other.
+    Both,
+    /// As in the vehicle's table.
+    Forward,
+    /// Turned round.
+    Backward,
+}
+
+impl Directions {
+    /// Values of the key `direction` of a load.
+    fn words(self) -> &'static [&'static str] {
+        match self {
+            Directions::Both => &["forward", "backward"],
+            Directions::Forward => &["forward"],
+            Directions::Backward => &["backward"],
+        }
+    }
+}
+
+/// `[envelope]`.
+#[derive(Debug, Clone, Keys)]
 pub(super) struct Request {
-    /// Path of the key that moves the load.
+    /// path of the key that moves the load, such as "stages.1.loads.0.at"
     pub parameter: String,
-    /// Its least and greatest value.
-    pub range: [f64; 2],
-    /// Of the worst value, as a share of the range.
+    /// least value, in the unit of the key
+    #[key(unit = "-")]
+    pub from: f64,
+    /// greatest value, in the unit of the key
+    #[key(unit = "-")]
+    pub to: f64,
+    /// of the worst value, as a share of the range from `from` to `to`
+    #[key(unit = "-", range = "> 0, <= 1", default = 1e-3)]
     pub tolerance: f64,
-    /// Number of even places.
+    /// number of places on an even scan; places where axles enter or edges of patches meet joints are added
+    #[key(range = ">= 2, <= MAX_SCAN", default = 41)]
     pub scan: usize,
-    /// Which way vehicles stand.
-    pub directions: Option<String>,
-    /// Entries of `[vehicles]`.
+    /// which way vehicles stand
+    #[key(optional = "both for a load of kind \"vehicle\", forward for others")]
+    pub directions: Option<Directions>,
+    /// entries of \[vehicles\] that are tried in turn
+    #[key(reference = "vehicles", len = ">= 1, <= 1000", optional = "the load's own vehicle")]
     pub vehicles: Option<Vec<String>>,
 }
 
 impl Request {
-    /// From the table of the study's kind; `None` where something is missing.
-    pub fn of(outline: &Outline) -> Option<Self> {
-        let table = &outline.table;
-        let number = |key: &str| table.get(key)?.as_f64();
-        Some(Request {
-            parameter: table.get("parameter")?.as_str()?.to_string(),
-            range: [number("from")?, number("to")?],
-            tolerance: number("tolerance").unwrap_or(1e-3),
-            scan: table.get("scan").and_then(Json::as_u64).map_or(41, |scan| scan as usize),
-            directions: table.get("directions").and_then(|word| Some(word.as_str()?.to_string())),
-            vehicles: table.get("vehicles").and_then(|list| serde_json::from_value(list.clone()).ok()),
-        })
+    /// Least and greatest value.
+    pub fn range(&self) -> [f64; 2] {
+        [self.from, self.to]
     }
 
     /// A key beside the parameter, in the same table.
@@ -52,11 +77,7 @@ impl Request {
         let own = load.and_then(|load| Some(load.get("vehicle")?.as_str()?.to_string()));
         let Some(own) = own else { return vec![Run { vehicle: None, direction: None }] };
         let vehicles = self.vehicles.clone().unwrap_or_else(|| vec![own]);
-        let directions: &[&str] = match self.directions.as_deref() {
-            Some("forward") => &["forward"],
-            Some("backward") => &["backward"],
-            _ => &["forward", "backward"],
-        };
+        let directions = self.directions.unwrap_or(Directions::Both).words();
         let each = |vehicle: &String| {
             let run = |direction: &&str| Run { vehicle: Some(vehicle.clone()), direction: Some(direction.to_string()) };
             directions.iter().map(run).collect::<Vec<_>>()

@@ -27,7 +27,7 @@ pub(super) fn worst_place(
     tried.extend(more);
     let mut next = places.scan.len() + joints.len();
     let mut found = Vec::new();
-    let width = request.tolerance * (request.range[1] - request.range[0]);
+    let width = request.tolerance * (request.range()[1] - request.range()[0]);
     for bracket in valleys(&values) {
         golden_section(bracket, width, |x| {
             let result = solve(next, x)?;
@@ -76,8 +76,8 @@ mod tests {
     }
 
     fn request(tolerance: f64) -> Request {
-        let (parameter, range) = ("x".to_string(), [0.0, 10.0]);
-        Request { parameter, range, tolerance, scan: 11, directions: None, vehicles: None }
+        let parameter = "x".to_string();
+        Request { parameter, from: 0.0, to: 10.0, tolerance, scan: 11, directions: None, vehicles: None }
     }
 
     /// Two valleys of nearly the same depth, one smooth and one with a kink: the deeper is found to the tolerance.

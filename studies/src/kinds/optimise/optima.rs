@@ -35,13 +35,13 @@ pub(super) fn entries(study: &Study, request: &Request, cases: &[CaseResult]) ->
 }
 
 fn of_case<'a>(request: &Request, base: &Case, result: &'a CaseResult) -> Option<Tried<'a>> {
-    let value = result.label.parameters.get(request.keys.first()?)?.as_f64()?;
+    let value = result.label.parameters.get(request.keys().first()?)?.as_f64()?;
     Some(Tried { value, found: Some((result, request.result_of(base, result))) })
 }
 
 /// Adds the values of the scan that make no scene, and sorts.
 fn add_impossible(request: &Request, tried: &mut Vec<Tried>) {
-    let [from, to] = request.range;
+    let [from, to] = request.range();
     let spacing = (to - from) / (request.scan - 1) as f64;
     let scanned = (0..request.scan).map(|i| from + spacing * i as f64);
     let near = |value: f64| tried.iter().any(|tried| (tried.value - value).abs() <= 1e-9 * (to - from));
@@ -53,7 +53,7 @@ fn add_impossible(request: &Request, tried: &mut Vec<Tried>) {
 fn entry(request: &Request, base: &Case, tried: &[Tried]) -> Json {
     let finite = tried.iter().filter_map(|t| t.found.and_then(|(result, own)| Some((t.value, result, own?))));
     // Of equal results the first: as many as there are mirrored scenes.
-    let better = |a: f64, b: f64| request.sense * a > request.sense * b;
+    let better = |a: f64, b: f64| request.sense() * a > request.sense() * b;
     let best = finite.reduce(|best, other| if better(other.2, best.2) { other } else { best });
     let best_finite =
         best.map(|(value, result, own)| json!({ "value": value, "result": own, "case": result.label.id }));
@@ -67,13 +67,13 @@ fn entry(request: &Request, base: &Case, tried: &[Tried]) -> Json {
     json!({
         "variant": base.variant,
         "parameters": base.parameters,
-        "parameter": request.keys.first(),
+        "parameter": request.keys().first(),
         "value": value,
         "result": own,
         "status": shown.map(|result| result.status),
         "case": shown.map(|result| result.label.id),
         "best_finite": best_finite,
         "intervals": intervals(&statuses),
-        "scan_spacing": (request.range[1] - request.range[0]) / (request.scan - 1) as f64,
+        "scan_spacing": (request.range()[1] - request.range()[0]) / (request.scan - 1) as f64,
     })
 }

@@ -1,56 +1,94 @@
 //! What `[optimise]` asks for.
 
 use crate::results::CaseResult;
-use crate::study::{Case, Outline};
+use crate::study::Case;
 use serde_json::Value as Json;
 use voussoir_core::limit::Status;
+use voussoir_core::plugin::Keys;
 
 /// Cases made from one case of the study have ids from a multiple of this on, after those of the study.
 pub(super) const STRIDE: usize = 1_000_000;
 
-/// `[optimise]`, read.
-#[derive(Debug, Clone)]
+/// Greatest number of values on the scan.
+const MAX_SCAN: usize = 100_000;
+
+/// The sense of the search.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
+pub enum Goal {
+    /// Greater is better.
+    Maximise,
+    /// Less is better.
+    Minimise,
+}
+
+/// A result that is optimised.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
+pub enum Optimised {
+    /// The load factor of the case.
+    LoadFactor,
+    /// The factor of its first limit point.
+    FirstLimitPoint,
+}
+
+/// `[optimise]`.
+#[derive(Debug, Clone, Keys)]
 pub(super) struct Request {
-    pub keys: Vec<String>,
-    pub range: [f64; 2],
+    /// path of the numeric key that varies, such as "scene.springing"
+    #[key(optional = "parameters is given")]
+    pub parameter: Option<String>,
+    /// paths of several keys that vary in lockstep
+    #[key(len = ">= 1, <= 100", optional = "parameter is given")]
+    pub parameters: Option<Vec<String>>,
+    /// least value, in the unit of the key
+    #[key(unit = "-")]
+    pub from: f64,
+    /// greatest value, in the unit of the key
+    #[key(unit = "-")]
+    pub to: f64,
+    /// which way is better
+    #[key(default = "maximise")]
+    pub goal: Goal,
+    /// what is optimised
+    #[key(optional = "load_factor for small displacements, first_limit_point for finite ones")]
+    pub result: Option<Optimised>,
+    /// number of even values that are tried first
+    #[key(range = ">= 2, <= MAX_SCAN", default = 41)]
     pub scan: usize,
+    /// of the best value, as a share of the range from `from` to `to`
+    #[key(unit = "-", range = "> 0, <= 1", default = 1e-3)]
     pub tolerance: f64,
-    /// 1 to maximise, −1 to minimise.
-    pub sense: f64,
-    /// `load_factor` or `first_limit_point`; as the displacements say where there is none.
-    pub result: Option<String>,
 }
 
 impl Request {
-    pub fn of(outline: &Outline) -> Option<Self> {
-        let table = &outline.table;
-        let number = |key: &str| table.get(key)?.as_f64();
-        let text = |key: &str| Some(table.get(key)?.as_str()?.to_string());
-        let several = table.get("parameters").and_then(|list| serde_json::from_value(list.clone()).ok());
-        Some(Request {
-            keys: several.or_else(|| Some(vec![text("parameter")?]))?,
-            range: [number("from")?, number("to")?],
-            scan: table.get("scan").and_then(Json::as_u64).map_or(41, |scan| scan as usize),
-            tolerance: number("tolerance").unwrap_or(1e-3),
-            sense: if text("goal").as_deref() == Some("minimise") { -1.0 } else { 1.0 },
-            result: text("result"),
-        })
+    /// Least and greatest value.
+    pub fn range(&self) -> [f64; 2] {
+        [self.from, self.to]
+    }
+
+    /// The keys that vary.
+    pub fn keys(&self) -> Vec<String> {
+        self.parameters.iter().flatten().chain(&self.parameter).cloned().collect()
+    }
+
+    /// 1 to maximise, −1 to minimise.
+    pub fn sense(&self) -> f64 {
+        if self.goal == Goal::Minimise { -1.0 } else { 1.0 }
     }
 
     /// The keys, all at one value.
     pub fn values(&self, value: f64) -> Vec<(String, Json)> {
-        self.keys.iter().map(|key| (key.clone(), value.into())).collect()
+        self.keys().into_iter().map(|key| (key, value.into())).collect()
     }
 
     /// What an answer counts in the sense of the goal: better is greater. `None` where there is no finite result.
     pub fn merit(&self, case: &Case, result: &CaseResult) -> Option<f64> {
-        Some(self.sense * self.result_of(case, result)?)
+        Some(self.sense() * self.result_of(case, result)?)
     }
 
     /// The result that is optimised; `None` where it is not finite.
     pub fn result_of(&self, case: &Case, result: &CaseResult) -> Option<f64> {
-        let first = match self.result.as_deref() {
-            Some(word) => word == "first_limit_point",
+        let first = match self.result {
+            Some(result) => result == Optimised::FirstLimitPoint,
             None => case.solver.settings.finite,
         };
         let answer = result.load_factor.filter(|_| matches!(result.status, Status::Collapse | Status::LimitPoint));
@@ -61,7 +99,7 @@ impl Request {
 
     /// The statuses for which there is no optimum.
     pub fn without_bound(&self, status: Status) -> bool {
-        match self.sense > 0.0 {
+        match self.sense() > 0.0 {
             true => matches!(status, Status::Unbounded | Status::Stands),
             false => status == Status::NoEquilibrium,
         }

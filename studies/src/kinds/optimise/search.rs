@@ -20,7 +20,7 @@ type Tried = (f64, Option<f64>);
 
 /// Results at all values that were tried, in order of id.
 pub(super) fn best_value(request: &Request, solve: &(dyn Fn(usize, f64) -> Answer + Sync)) -> Vec<CaseResult> {
-    let [from, to] = request.range;
+    let [from, to] = request.range();
     let last = request.scan - 1;
     let place = |i: usize| if i == last { to } else { from + (to - from) * i as f64 / last as f64 };
     let scanned: Vec<(f64, Answer)> =
@@ -86,11 +86,21 @@ impl Search<'_> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::request::Goal;
     use super::*;
 
     fn request(tolerance: f64) -> Request {
         let keys = vec!["x".to_string()];
-        Request { keys, range: [0.0, 10.0], scan: 11, tolerance, sense: 1.0, result: None }
+        Request {
+            parameter: None,
+            parameters: Some(keys),
+            from: 0.0,
+            to: 10.0,
+            goal: Goal::Maximise,
+            result: None,
+            scan: 11,
+            tolerance,
+        }
     }
 
     fn best(f: impl Fn(f64) -> Option<f64> + Sync) -> (f64, Vec<usize>) {

@@ -2,112 +2,165 @@
 
 use super::result::columns;
 use crate::config::check::Checker;
+use crate::config::common_keys::tag_of;
 use crate::config::diagnostic::{LocatedDiagnostic, sort, suggest};
 use crate::config::dotted_key::join;
 use crate::config::expand::{Expanded, Expansion};
-use crate::study::{DiagnosticList, Drawn, OUTPUT, StudyError, StudySource, SweptKeys, read_plugin};
+use crate::scenes::PlaneState;
+use crate::study::{DiagnosticList, Drawn, OutputKeys, StudyError, StudySource, SweptKeys, read_plugin};
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
-use voussoir_core::law::{BulkMaterial, InterfaceLaw, PlanarUpdate, Plane};
-use voussoir_core::plugin::{Need, Parameter, PluginKind, Quantity, Range, Shape};
+use std::collections::BTreeMap;
+use voussoir_core::law::{BulkMaterial, InterfaceLaw, PlanarUpdate};
+use voussoir_core::plugin::{KeyValue, Keys, PluginKind, Shape};
 use voussoir_solvers::point::{Control, PointLaw};
 
-const fn key(name: &'static str, shape: Shape, need: Need, doc: &'static str) -> Parameter {
-    Parameter { name, doc, shape, need }
+/// Strains at the end of a segment.
+#[derive(Debug, Clone, Keys)]
+pub struct StrainKeys {
+    /// strain at the end of the segment
+    #[key(unit = "-", optional = "it keeps its value")]
+    xx: Option<f64>,
+    /// strain at the end of the segment
+    #[key(unit = "-", optional = "it keeps its value")]
+    yy: Option<f64>,
+    /// strain at the end of the segment
+    #[key(unit = "-", optional = "it keeps its value")]
+    zz: Option<f64>,
+    /// strain at the end of the segment
+    #[key(unit = "-", optional = "it keeps its value")]
+    xy: Option<f64>,
+    /// strain at the end of the segment
+    #[key(unit = "-", optional = "it keeps its value")]
+    yz: Option<f64>,
+    /// strain at the end of the segment
+    #[key(unit = "-", optional = "it keeps its value")]
+    zx: Option<f64>,
 }
 
-const fn component(name: &'static str, quantity: Quantity, doc: &'static str) -> Parameter {
-    Parameter { name, doc, shape: Shape::Number(quantity, Range::ANY), need: Need::Optional("it keeps its value") }
+/// Stresses at the end of a segment.
+#[derive(Debug, Clone, Keys)]
+pub struct StressKeys {
+    /// stress at the end of the segment
+    #[key(unit = "Pa", optional = "it keeps its value")]
+    xx: Option<f64>,
+    /// stress at the end of the segment
+    #[key(unit = "Pa", optional = "it keeps its value")]
+    yy: Option<f64>,
+    /// stress at the end of the segment
+    #[key(unit = "Pa", optional = "it keeps its value")]
+    zz: Option<f64>,
+    /// stress at the end of the segment
+    #[key(unit = "Pa", optional = "it keeps its value")]
+    xy: Option<f64>,
+    /// stress at the end of the segment
+    #[key(unit = "Pa", optional = "it keeps its value")]
+    yz: Option<f64>,
+    /// stress at the end of the segment
+    #[key(unit = "Pa", optional = "it keeps its value")]
+    zx: Option<f64>,
 }
 
-const STRAIN_DOC: &str = "strain at the end of the segment";
-const STRESS_DOC: &str = "stress at the end of the segment";
-const GAP_DOC: &str = "gap at the end of the segment";
-const TRACTION_DOC: &str = "traction at the end of the segment";
+/// Gaps of a joint at the end of a segment.
+#[derive(Debug, Clone, Keys)]
+pub struct GapKeys {
+    /// gap at the end of the segment
+    #[key(unit = "m", optional = "it keeps its value")]
+    n: Option<f64>,
+    /// gap at the end of the segment
+    #[key(unit = "m", optional = "it keeps its value")]
+    t: Option<f64>,
+}
 
-static STRAIN: Shape = Shape::Table(&[
-    component("xx", Quantity::Ratio, STRAIN_DOC),
-    component("yy", Quantity::Ratio, STRAIN_DOC),
-    component("zz", Quantity::Ratio, STRAIN_DOC),
-    component("xy", Quantity::Ratio, STRAIN_DOC),
-    component("yz", Quantity::Ratio, STRAIN_DOC),
-    component("zx", Quantity::Ratio, STRAIN_DOC),
-]);
-static STRESS: Shape = Shape::Table(&[
-    component("xx", Quantity::Stress, STRESS_DOC),
-    component("yy", Quantity::Stress, STRESS_DOC),
-    component("zz", Quantity::Stress, STRESS_DOC),
-    component("xy", Quantity::Stress, STRESS_DOC),
-    component("yz", Quantity::Stress, STRESS_DOC),
-    component("zx", Quantity::Stress, STRESS_DOC),
-]);
-static GAP: Shape =
-    Shape::Table(&[component("n", Quantity::Length, GAP_DOC), component("t", Quantity::Length, GAP_DOC)]);
-static TRACTION: Shape =
-    Shape::Table(&[component("n", Quantity::Stress, TRACTION_DOC), component("t", Quantity::Stress, TRACTION_DOC)]);
+/// Tractions of a joint at the end of a segment.
+#[derive(Debug, Clone, Keys)]
+pub struct TractionKeys {
+    /// traction at the end of the segment
+    #[key(unit = "Pa", optional = "it keeps its value")]
+    n: Option<f64>,
+    /// traction at the end of the segment
+    #[key(unit = "Pa", optional = "it keeps its value")]
+    t: Option<f64>,
+}
 
-static SEGMENT: Shape = Shape::Table(&[
-    key("steps", Shape::Integer { min: 1, max: 100_000 }, Need::Default("20"), "equal steps of the segment"),
-    key(
-        "strain",
-        STRAIN,
-        Need::Default("{}"),
-        "strains at the end of the segment, tension positive, engineering shears",
-    ),
-    key("stress", STRESS, Need::Default("{}"), "stresses at the end of the segment, tension positive"),
-    key("gap", GAP, Need::Default("{}"), "gaps of a joint at the end of the segment, n > 0 open"),
-    key(
-        "traction",
-        TRACTION,
-        Need::Default("{}"),
-        "tractions of a joint at the end of the segment, n > 0 in compression",
-    ),
-]);
+/// `[[point.path]]`.
+#[derive(Debug, Clone, Keys)]
+pub struct SegmentTable {
+    /// equal steps of the segment
+    #[key(range = ">= 1, <= 100_000", default = 20)]
+    steps: usize,
+    /// strains at the end of the segment, tension positive, engineering shears
+    #[key(default = {})]
+    strain: StrainKeys,
+    /// stresses at the end of the segment, tension positive
+    #[key(default = {})]
+    stress: StressKeys,
+    /// gaps of a joint at the end of the segment, n > 0 open
+    #[key(default = {})]
+    gap: GapKeys,
+    /// tractions of a joint at the end of the segment, n > 0 in compression
+    #[key(default = {})]
+    traction: TractionKeys,
+}
 
-/// Keys of `[point]`.
-pub static POINT: &[Parameter] = &[
-    key("material", Shape::Reference("materials"), Need::Optional("joint is given"), "the material that is driven"),
-    key("joint", Shape::Reference("joints"), Need::Optional("material is given"), "the joint law that is driven"),
-    key(
-        "plane",
-        Shape::Choice(&["strain", "stress"]),
-        Need::Optional("a material is driven in space"),
-        "plane strain or plane stress",
-    ),
-    Parameter::number(
-        "length",
-        Quantity::Length,
-        Range::POSITIVE,
-        "characteristic length over which the material localises",
-    )
-    .optional("1 m; only softening materials read it"),
-    key(
-        "path",
-        Shape::List { of: &SEGMENT, min: 1, max: 1000 },
-        Need::Required,
-        "segments of the path, [[point.path]], in order",
-    ),
-    key(
-        "plot",
-        Shape::List { of: &Shape::Text, min: 2, max: 2 },
-        Need::Optional("the first component that moves"),
-        "columns of the figure, abscissa and ordinate, such as [\"strain_xx\", \"stress_xx\"]",
-    ),
-];
+/// `[point]`.
+#[derive(Debug, Clone, Keys)]
+pub struct PointTable {
+    /// the material that is driven
+    #[key(reference = "materials", optional = "joint is given")]
+    material: Option<String>,
+    /// the joint law that is driven
+    #[key(reference = "joints", optional = "material is given")]
+    joint: Option<String>,
+    /// plane strain or plane stress
+    #[key(optional = "a material is driven in space")]
+    plane: Option<PlaneState>,
+    /// characteristic length over which the material localises
+    #[key(unit = "m", range = "> 0", optional = "1 m; only softening materials read it")]
+    length: Option<f64>,
+    /// segments of the path, \[\[point.path\]\], in order
+    #[key(len = ">= 1, <= 1000")]
+    path: Vec<SegmentTable>,
+    /// columns of the figure, abscissa and ordinate, such as \["strain_xx", "stress_xx"\]
+    #[key(optional = "the first component that moves")]
+    plot: Option<[String; 2]>,
+}
 
-static MATERIAL: Shape = Shape::Plugin(PluginKind::BulkMaterial);
-static LAW: Shape = Shape::Plugin(PluginKind::InterfaceLaw);
+/// The value of `kind` of such a study.
+#[derive(Debug, Clone, Copy, Keys)]
+pub enum PointKind {
+    /// A point is driven.
+    Point,
+}
 
-/// The keys of such a study.
-pub static STUDY: &[Parameter] = &[
-    key("name", Shape::Text, Need::Required, "name of the study"),
-    key("kind", Shape::Choice(&["point"]), Need::Required, "what is done"),
-    key("point", Shape::Table(POINT), Need::Required, "what is driven, and how"),
-    key("materials", Shape::Map(&MATERIAL), Need::Default("{}"), "materials by name"),
-    key("joints", Shape::Map(&LAW), Need::Default("{}"), "laws of joints by name"),
-    key("sweep", Shape::Free, Need::Optional("one case"), "as in other studies"),
-    key("variants", Shape::Free, Need::Optional("no variants"), "as in other studies"),
-    key("output", OUTPUT, Need::Default("{}"), "what is written besides the results"),
-];
+/// A study file of this kind. Its laws are read one by one, so that a mistake is reported at its key.
+#[derive(Debug, Clone, Keys)]
+pub struct PointFile {
+    /// name of the study
+    name: String,
+    /// what is done
+    kind: PointKind,
+    /// what is driven, and how
+    point: PointTable,
+    /// materials by name
+    #[key(of = MATERIAL, default = {})]
+    materials: BTreeMap<String, Json>,
+    /// laws of joints by name
+    #[key(of = LAW, default = {})]
+    joints: BTreeMap<String, Json>,
+    /// as in other studies
+    #[key(optional = "one case")]
+    sweep: Option<Json>,
+    /// as in other studies
+    #[key(optional = "no variants")]
+    variants: Option<Json>,
+    /// what is written besides the results
+    #[key(default = {})]
+    output: OutputKeys,
+}
+
+const MATERIAL: Shape = Shape::Plugin(PluginKind::BulkMaterial);
+const LAW: Shape = Shape::Plugin(PluginKind::InterfaceLaw);
 
 /// One segment of the path.
 #[derive(Debug, Clone)]
@@ -163,7 +216,7 @@ impl PointStudy {
     /// The study that a source describes.
     pub fn from_source(source: StudySource) -> Result<Self, StudyError> {
         let StudySource { root, mut diagnostics, .. } = source;
-        let expansion = match Expansion::new(&root, &[], STUDY) {
+        let expansion = match Expansion::new(&root, &[], PointFile::PARAMETERS) {
             Ok(expansion) => expansion,
             Err(wrong) => {
                 diagnostics.extend(wrong);
@@ -195,7 +248,7 @@ impl PointStudy {
             return Err(diagnostics.into());
         }
         let name = root.table().and_then(|table| table.get("name")?.text()).unwrap_or_default().to_string();
-        let keys = SweptKeys::of_expansion(STUDY, &expansion);
+        let keys = SweptKeys::of_expansion(PointFile::PARAMETERS, &expansion);
         Ok(PointStudy { name, figures, cases, keys, resolved: root.to_toml() })
     }
 }
@@ -203,41 +256,45 @@ impl PointStudy {
 fn build(id: usize, expanded: Expanded) -> Result<(PointCase, bool), Vec<LocatedDiagnostic>> {
     let Expanded { variant, parameters, root, .. } = expanded;
     let mut checker = Checker::new(&root);
-    let checked = checker.check(&root, &Shape::Table(STUDY), "");
+    let checked = checker.check(&root, &PointFile::SHAPE, "");
     let (found, unused) = (std::mem::take(&mut checker.diagnostics), std::mem::take(&mut checker.unused));
     let (Some(resolved), true) = (checked, found.is_empty()) else {
         return Err(found);
     };
     let mut diagnostics = DiagnosticList::new(&root, found);
-    let point = &resolved["point"];
-    let Some((tag, law)) = read_law(&mut diagnostics, &resolved, point) else {
+    let file = PointFile::deserialize(&resolved)
+        .map_err(|error| vec![LocatedDiagnostic::new(&root.origin, "", format!("cannot be read: {error}"))])?;
+    let point = &file.point;
+    let Some((tag, law)) = read_law(&mut diagnostics, &file) else {
         return Err(diagnostics.found);
     };
-    let path: Vec<Segment> = (0..point["path"].as_array().map_or(0, Vec::len))
-        .map(|number| read_segment(&mut diagnostics, &law, &point["path"][number], &format!("point.path.{number}")))
-        .collect();
+    let segment = |(number, segment): (usize, &SegmentTable)| {
+        read_segment(&mut diagnostics, &law, segment, &format!("point.path.{number}"))
+    };
+    let path: Vec<Segment> = point.path.iter().enumerate().map(segment).collect();
     let plot = read_plot(&mut diagnostics, &law, point, &path);
     if !diagnostics.found.is_empty() {
         return Err(diagnostics.found);
     }
     let notes = unused.into_iter().map(|unused| format!("{} is not used by {}", unused.key, unused.by)).collect();
-    let drawn = Drawn::read(&resolved["output"]["figures"], 1).anything();
+    let drawn = Drawn::of(file.output.figures, 1).anything();
     Ok((PointCase { id, variant, parameters, tag, law, path, plot, notes }, drawn))
 }
 
 /// The tag of the law that is driven, and the law.
-fn read_law(diagnostics: &mut DiagnosticList<'_>, resolved: &Json, point: &Json) -> Option<(String, PointLaw)> {
-    let tag = |table: &Json| table["law"].as_str().unwrap_or_default().to_string();
-    match (point["material"].as_str(), point["joint"].as_str()) {
+fn read_law(diagnostics: &mut DiagnosticList<'_>, file: &PointFile) -> Option<(String, PointLaw)> {
+    let PointFile { point, materials, joints, .. } = file;
+    let tag = |table: &Json| tag_of(PluginKind::InterfaceLaw, table).to_string();
+    match (&point.material, &point.joint) {
         (Some(name), None) => {
-            let table = &resolved["materials"][name];
+            let table = materials.get(name)?;
             let material = read_plugin(diagnostics, &join("materials", name), table)?;
             Some((tag(table), material_law(diagnostics, material, &tag(table), point)?))
         }
         (None, Some(name)) => {
-            let table = &resolved["joints"][name];
+            let table = joints.get(name)?;
             let law = read_plugin(diagnostics, &join("joints", name), table)?;
-            if point["plane"].is_string() {
+            if point.plane.is_some() {
                 diagnostics.wrong("point.plane", "is for materials; a joint is driven in its own plane", "remove it");
             }
             Some((tag(table), joint_law(diagnostics, law, &tag(table))?))
@@ -254,9 +311,9 @@ fn material_law(
     diagnostics: &mut DiagnosticList<'_>,
     material: Box<dyn BulkMaterial>,
     tag: &str,
-    point: &Json,
+    point: &PointTable,
 ) -> Option<PointLaw> {
-    let length = point["length"].as_f64().unwrap_or(1.0);
+    let length = point.length.unwrap_or(1.0);
     let Some(update) = material.stress_update() else {
         let message = format!("bulk material \"{tag}\" gives no stresses from strains at a point");
         diagnostics.wrong("point.material", message, "drive a material that deforms");
@@ -271,12 +328,8 @@ fn material_law(
         diagnostics.wrong("point.length", message, help);
         return None;
     }
-    let plane = match point["plane"].as_str() {
-        None => return Some(PointLaw::Space(update, length)),
-        Some("stress") => Plane::Stress,
-        Some(_) => Plane::Strain,
-    };
-    match PlanarUpdate::new(update, plane) {
+    let Some(plane) = point.plane else { return Some(PointLaw::Space(update, length)) };
+    match PlanarUpdate::new(update, plane.into()) {
         Ok(planar) => Some(PointLaw::Plane(planar, length)),
         Err(failure) => {
             diagnostics.wrong("point.material", failure.to_string(), "check the parameters of the material");
@@ -295,22 +348,32 @@ fn joint_law(diagnostics: &mut DiagnosticList<'_>, law: Box<dyn InterfaceLaw>, t
     None
 }
 
-fn read_segment(diagnostics: &mut DiagnosticList<'_>, law: &PointLaw, segment: &Json, at: &str) -> Segment {
+/// The numbers of a table by their keys.
+fn numbers(table: &impl Serialize) -> BTreeMap<String, f64> {
+    serde_json::to_value(table).and_then(serde_json::from_value).unwrap_or_default()
+}
+
+fn read_segment(diagnostics: &mut DiagnosticList<'_>, law: &PointLaw, segment: &SegmentTable, at: &str) -> Segment {
     let names = law.names();
     let mut targets: Vec<Option<Control>> = vec![None; names.len()];
     let joint = matches!(law, PointLaw::Joint(_));
-    let tables = [("strain", false, true), ("stress", false, false), ("gap", true, true), ("traction", true, false)];
-    for (table, of_joint, strain) in tables {
-        for (name, value) in segment[table].as_object().into_iter().flatten() {
-            let place = join(&join(at, table), name);
-            let Some(value) = value.as_f64() else { continue };
+    let SegmentTable { steps, strain, stress, gap, traction } = segment;
+    let tables = [
+        ("strain", numbers(strain), false, true),
+        ("stress", numbers(stress), false, false),
+        ("gap", numbers(gap), true, true),
+        ("traction", numbers(traction), true, false),
+    ];
+    for (table, given, of_joint, strain) in tables {
+        for (name, value) in given {
+            let place = join(&join(at, table), &name);
             if of_joint != joint {
                 let help = if joint { "a joint has gap and traction" } else { "a material has strain and stress" };
                 diagnostics.wrong(&place, "does not belong to what is driven", help);
                 continue;
             }
-            let Some(index) = names.iter().position(|known| known == name) else {
-                diagnostics.wrong(&place, "is not a component in a plane", suggest(name, names, "components"));
+            let Some(index) = names.iter().position(|known| *known == name) else {
+                diagnostics.wrong(&place, "is not a component in a plane", suggest(&name, names, "components"));
                 continue;
             };
             if targets[index].is_some() {
@@ -322,14 +385,18 @@ fn read_segment(diagnostics: &mut DiagnosticList<'_>, law: &PointLaw, segment: &
     if targets.iter().all(Option::is_none) {
         diagnostics.wrong(at, "moves nothing", "name at least one component");
     }
-    Segment { steps: segment["steps"].as_u64().unwrap_or(1) as usize, targets }
+    Segment { steps: *steps, targets }
 }
 
-fn read_plot(diagnostics: &mut DiagnosticList<'_>, law: &PointLaw, point: &Json, path: &[Segment]) -> [String; 2] {
+fn read_plot(
+    diagnostics: &mut DiagnosticList<'_>,
+    law: &PointLaw,
+    point: &PointTable,
+    path: &[Segment],
+) -> [String; 2] {
     let columns = columns(law);
     let bare: Vec<&str> = columns.iter().filter_map(|column| column.split(' ').next()).collect();
-    if let Some([x, y]) = point["plot"].as_array().map(Vec::as_slice) {
-        let words = [x, y].map(|word| word.as_str().unwrap_or_default().to_string());
+    if let Some(words) = point.plot.clone() {
         for (index, word) in words.iter().enumerate() {
             if !bare.contains(&word.as_str()) {
                 let help = suggest(word, &bare, "columns");

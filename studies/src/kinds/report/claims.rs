@@ -3,37 +3,42 @@
 use super::evaluate::evaluate;
 use super::expression::Expression;
 use super::value::Value;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use serde_json::{Value as Json, json};
+use voussoir_core::plugin::Keys;
 
 /// `[[report.claims]]`, read.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Keys)]
 pub struct Claim {
-    /// Its number or name.
+    /// number or name of the claim
     pub id: String,
-    /// What is claimed.
+    /// what is claimed
     pub claim: String,
-    /// Where it stands.
+    /// where it stands
+    #[key(default = "")]
     pub source: String,
-    /// What the tests differ in.
-    #[serde(default)]
+    /// what the tests differ in, named where some hold and some do not
+    #[key(optional = "one test")]
     pub depends_on: Option<String>,
-    /// What a reader should know besides.
+    /// what a reader should know besides, in Markdown
+    #[key(default = "")]
     pub remark: String,
-    /// What decides.
+    /// what decides, test by test
+    #[key(len = ">= 1, <= 100")]
     pub tests: Vec<Test>,
 }
 
 /// A test of a claim.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Keys)]
 pub struct Test {
-    /// What is tested.
+    /// what is tested: a model, a rise, a settlement
     pub of: String,
-    /// Expression of the number behind it.
+    /// expression of series: the number behind the test
     pub value: String,
-    /// Its unit.
+    /// its unit
+    #[key(default = "")]
     pub unit: String,
-    /// Condition under which the claim is true here.
+    /// condition of `value` and series under which what is claimed is true here
     pub holds: String,
 }
 

@@ -9,34 +9,38 @@ use super::types::Type;
 use super::typing::type_of;
 use crate::config::diagnostic::suggest;
 use crate::kinds::kind::Part;
-use crate::study::DiagnosticList;
+use crate::study::{DiagnosticList, OutputKeys};
 use crate::writers::markdown::images;
-use serde::Deserialize;
 use std::collections::BTreeMap;
+use voussoir_core::plugin::Keys;
 
 /// `[report]`, read.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Keys)]
 pub struct Contents {
-    /// Heading of the page.
-    #[serde(default)]
+    /// heading of the page
+    #[key(optional = "the study's name")]
     pub title: Option<String>,
-    /// Study files.
+    /// study files, relative to this one
+    #[key(len = ">= 1, <= 200")]
     pub studies: Vec<String>,
-    /// Markdown before each study, and after the last.
+    /// Markdown before each study; one more stands at the end
+    #[key(len = "<= 201", default = [])]
     pub text: Vec<String>,
-    /// Markdown at the head.
+    /// Markdown at the head of the page
+    #[key(default = "")]
     pub introduction: String,
-    /// Results by name.
+    /// results that claims, charts and tables speak of, by name
+    #[key(default = {})]
     pub series: BTreeMap<String, Selection>,
-    /// What is claimed.
+    /// \[\[report.claims\]\], in order
+    #[key(len = "<= 1000", default = [])]
     pub claims: Vec<Claim>,
-    /// Charts of series.
+    /// \[\[report.charts\]\]
+    #[key(len = "<= 1000", default = [])]
     pub charts: Vec<Chart>,
-    /// Tables of series.
+    /// \[\[report.tables\]\]
+    #[key(len = "<= 1000", default = [])]
     pub tables: Vec<Table>,
-    /// Whether figures are drawn.
-    #[serde(skip)]
-    pub figures: bool,
 }
 
 impl Contents {
@@ -186,4 +190,25 @@ fn check_names(diagnostics: &mut DiagnosticList<'_>, key: &str, expression: &Exp
         },
         None => {}
     });
+}
+
+/// The value of `kind` of such a study.
+#[derive(Debug, Clone, Copy, Keys)]
+pub enum ReportKind {
+    /// Studies are run and reported on.
+    Report,
+}
+
+/// A study file of this kind.
+#[derive(Debug, Clone, Keys)]
+pub struct ReportFile {
+    /// name of the study
+    pub name: String,
+    /// what is done
+    pub kind: ReportKind,
+    /// which studies, and what is said of them
+    pub report: Contents,
+    /// what is written besides the results
+    #[key(default = {})]
+    pub output: OutputKeys,
 }

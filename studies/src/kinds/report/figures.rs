@@ -9,40 +9,46 @@ use crate::figures::chart::chart;
 use crate::figures::format::format_short;
 use crate::figures::series::{ChartStyle, Marker, Series, Spot};
 use crate::writers::page;
-use serde::Deserialize;
 use std::collections::BTreeMap;
+use voussoir_core::plugin::Keys;
 
 /// `[[report.charts]]`, read.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Keys)]
 pub struct Chart {
-    /// Its name in texts.
+    /// name: in texts the chart stands where !\[caption\](chart:NAME) is written
     pub name: String,
-    /// Its heading.
+    /// its heading
     pub title: String,
-    /// Words and unit of the abscissa.
+    /// words and unit of the abscissa
     pub x_label: String,
-    /// Words and unit of the ordinate.
+    /// words and unit of the ordinate
     pub y_label: String,
-    /// Names of series.
+    /// names of series, one line each
+    #[key(len = ">= 1, <= 20")]
     pub series: Vec<String>,
-    /// Logarithmic abscissa.
+    /// logarithmic abscissa
+    #[key(default = false)]
     pub x_log: bool,
-    /// Logarithmic ordinate.
+    /// logarithmic ordinate
+    #[key(default = false)]
     pub y_log: bool,
-    /// Whether changes of mechanism are marked.
+    /// mark where the kind of mechanism changes along a line
+    #[key(default = false)]
     pub modes: bool,
-    /// Whether the greatest value of each line is marked.
+    /// mark the greatest value of each line
+    #[key(default = false)]
     pub peaks: bool,
 }
 
 /// `[[report.tables]]`, read.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Keys)]
 pub struct Table {
-    /// Its name in texts.
+    /// name: in texts the table stands where !\[caption\](table:NAME) is written
     pub name: String,
-    /// Words and unit of the first column.
+    /// words and unit of the abscissa, the first column
     pub x_label: String,
-    /// Names of series, a column each.
+    /// names of series, a column each
+    #[key(len = ">= 1, <= 20")]
     pub series: Vec<String>,
 }
 

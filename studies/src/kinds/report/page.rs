@@ -153,7 +153,7 @@ fn image(contents: &Contents, parts: &Parts, place: &str) -> Option<String> {
         Image::Table(name) => {
             contents.tables.iter().find(|table| table.name == name).map(|table| table.html(&contents.series, parts))
         }
-        _ if !contents.figures => Some(String::new()),
+        _ if !parts.figures => Some(String::new()),
         Image::Chart(name) => {
             contents.charts.iter().find(|chart| chart.name == name).map(|chart| chart.svg(&contents.series, parts))
         }

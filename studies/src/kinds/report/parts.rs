@@ -10,13 +10,15 @@ pub struct Parts<'a> {
     parts: &'a [Part],
     texts: &'a [String],
     json: Vec<Json>,
+    /// True if figures are drawn.
+    pub figures: bool,
 }
 
 impl<'a> Parts<'a> {
     /// Parts with the text of the results.json of each.
-    pub fn new(parts: &'a [Part], texts: &'a [String]) -> Self {
+    pub fn new(parts: &'a [Part], texts: &'a [String], figures: bool) -> Self {
         let json = texts.iter().map(|text| serde_json::from_str(text).unwrap_or_default()).collect();
-        Parts { parts, texts, json }
+        Parts { parts, texts, json, figures }
     }
 
     /// The parts, in order.

@@ -6,41 +6,46 @@ use crate::figures::hinges::{DrawnHinge, named_hinges};
 use serde::Deserialize;
 use serde_json::{Map, Value as Json};
 use voussoir_core::certificate::{Hinge, Side};
+use voussoir_core::plugin::Keys;
 
 /// `[report.series.NAME]`, read.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Keys)]
 pub struct Selection {
-    /// Name of the study.
-    #[serde(default)]
+    /// name of one of the studies
+    #[key(optional = "points are given")]
     pub study: Option<String>,
-    /// Name of its variant.
-    #[serde(default)]
+    /// name of its variant
+    #[key(optional = "entries of every variant")]
     pub variant: Option<String>,
-    /// Swept keys with the value that is meant.
-    #[serde(default, rename = "where")]
+    /// swept keys, whole or by their last name, with the value that is meant
+    #[key(default = {}, name = "where")]
     pub fixed: Map<String, Json>,
-    /// The key that makes the abscissa.
-    #[serde(default)]
+    /// the key that makes the abscissa
+    #[key(optional = "the first swept key that `where` leaves free")]
     pub over: Option<String>,
-    /// Least abscissa.
-    #[serde(default)]
+    /// least abscissa
+    #[key(unit = "-", optional = "no bound")]
     pub from: Option<f64>,
-    /// Greatest abscissa.
-    #[serde(default)]
+    /// greatest abscissa
+    #[key(unit = "-", optional = "no bound")]
     pub to: Option<f64>,
-    /// Path of the result in an entry.
+    /// path of a result in an entry: "mechanism.hinges.*.joint"
+    #[key(default = "load_factor")]
     pub result: String,
-    /// List of results.json that is read.
+    /// list of results.json that is read: cases, optima, worsts, curve
+    #[key(default = "cases")]
     pub entries: String,
-    /// Expression of `x`, for charts and tables.
+    /// expression of `x`, for charts and tables: "9.42 / x"
+    #[key(default = "x")]
     pub x: String,
-    /// Expression of `y`, for charts and tables.
+    /// expression of `y`, for charts and tables
+    #[key(default = "y")]
     pub y: String,
-    /// Words for legends.
-    #[serde(default)]
+    /// words for legends
+    #[key(optional = "the name of the series")]
     pub label: Option<String>,
-    /// Published numbers instead of results.
-    #[serde(default)]
+    /// published numbers instead of results: \[\[x, y\], ...\]
+    #[key(unit = "-", len = ">= 1, <= 1000", optional = "a study is given")]
     pub points: Option<Vec<[f64; 2]>>,
 }
 

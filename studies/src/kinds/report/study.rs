@@ -1,9 +1,8 @@
 //! A study of studies as commands see it: its parts are run first, then the page is made from their results.
 
 use super::claims::{Answer, Verdict};
-use super::contents::Contents;
+use super::contents::{Contents, ReportFile};
 use super::figures::Chart;
-use super::keys::STUDY;
 use super::page::results_page;
 use super::parts::Parts;
 use super::value::Value;
@@ -22,7 +21,7 @@ use serde::Deserialize;
 use serde_json::{Value as Json, json};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use voussoir_core::plugin::Shape;
+use voussoir_core::plugin::KeyValue;
 
 /// A study of studies.
 pub struct ReportStudy {
@@ -30,6 +29,8 @@ pub struct ReportStudy {
     pub name: String,
     /// What it says.
     pub contents: Contents,
+    /// True if figures are drawn.
+    figures: bool,
     parts: Vec<Part>,
     resolved: toml::Value,
 }
@@ -39,12 +40,13 @@ impl ReportStudy {
     pub fn read(source: StudySource, read: ReadFile) -> Result<Self, StudyError> {
         let StudySource { root, diagnostics, .. } = source;
         let mut checker = Checker::new(&root);
-        let checked = checker.check(&root, &Shape::Table(STUDY), "");
+        let checked = checker.check(&root, &ReportFile::SHAPE, "");
         let found: Vec<_> = diagnostics.into_iter().chain(checker.diagnostics).collect();
         let (Some(table), true) = (checked, found.is_empty()) else { return Err(found.into()) };
-        let mut contents = Contents::deserialize(&table["report"]).map_err(|error| {
+        let file = ReportFile::deserialize(&table).map_err(|error| {
             vec![LocatedDiagnostic::new(&root.place("report"), "report", format!("cannot be read: {error}"))]
         })?;
+        let ReportFile { name, report: contents, output, .. } = file;
         let mut diagnostics = DiagnosticList::new(&root, found);
         let parts = read_parts(&mut diagnostics, &contents, &root, read);
         contents.check(&mut diagnostics, &parts);
@@ -58,14 +60,13 @@ impl ReportStudy {
             // In the result folder each part's own file stands in its folder.
             report.insert("studies".into(), own.collect::<Vec<_>>().into());
         }
-        let name = table["name"].as_str().unwrap_or_default().to_string();
-        contents.figures = Drawn::read(&table["output"]["figures"], 1).anything();
-        Ok(ReportStudy { name, contents, parts, resolved })
+        let figures = Drawn::of(output.figures, 1).anything();
+        Ok(ReportStudy { name, contents, figures, parts, resolved })
     }
 
     /// The page and everything else that follows from the results of the parts.
     fn output(&self, results: &[String], version: &str, date: Option<&str>) -> RunOutput {
-        let parts = Parts::new(&self.parts, results);
+        let parts = Parts::new(&self.parts, results, self.figures);
         let series: BTreeMap<&str, Value> = self
             .contents
             .series
@@ -75,7 +76,7 @@ impl ReportStudy {
         let named = |name: &str| series.get(name).cloned();
         let answers: Vec<Answer> = self.contents.claims.iter().map(|claim| claim.answer(&named)).collect();
         let mut files = Vec::new();
-        if self.contents.figures {
+        if self.figures {
             let chart =
                 |chart: &Chart| (format!("figures/chart-{}.svg", chart.name), chart.svg(&self.contents.series, &parts));
             files.extend(self.contents.charts.iter().map(chart));

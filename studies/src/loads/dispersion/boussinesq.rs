@@ -2,20 +2,20 @@
 #![doc = include_str!("boussinesq.md")]
 
 use super::law::{Dispersion, Patch, Through};
-use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
-use voussoir_core::plugin::{Card, Parameter, PluginKind, Quantity, Range};
+use voussoir_core::plugin::{Card, Keys, PluginKind};
 
 /// Parts of equal width into which the stress is cut, each even, with the exact force of its part.
 const PARTS: usize = 40;
 
 /// The vertical stress of an elastic half-plane.
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Keys)]
 pub struct Boussinesq {
-    /// Beyond which nothing is carried, from the vertical \[deg\].
+    /// from the vertical: beyond it nothing is carried, and what is within is scaled up to the whole load
+    #[key(unit = "deg", range = ">= 0, < 90")]
     pub angle: f64,
-    /// At which the stress is taken \[m\]; the depth of the fill where it is not given.
+    /// at which the stress is taken
+    #[key(unit = "m", range = ">= 0", optional = "the depth of the fill under the load's centre")]
     pub depth: Option<f64>,
 }
 
@@ -67,16 +67,6 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::Dispersion,
         tag: "boussinesq",
         summary: "the vertical stress of an elastic half-plane under the load, cut off under an angle",
-        parameters: &[
-            Parameter::number(
-                "angle",
-                Quantity::Degrees,
-                Range::new(0.0, false, 90.0, true),
-                "from the vertical: beyond it nothing is carried, and what is within is scaled up to the whole load",
-            ),
-            Parameter::number("depth", Quantity::Length, Range::NON_NEGATIVE, "at which the stress is taken")
-                .optional("the depth of the fill under the load's centre"),
-        ],
         sources: &[
             "Flamant 1892, C. R. Acad. Sci. 114 (line load on a half-plane, from Boussinesq 1885)",
             "Poulos & Davis 1974, Elastic Solutions for Soil and Rock Mechanics, 3.2.1 (strip load)",
@@ -84,7 +74,7 @@ voussoir_core::inventory::submit! {
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("boussinesq.md"),
-        ..Card::BLANK
+        ..Card::of::<Boussinesq>()
     }
 }
 

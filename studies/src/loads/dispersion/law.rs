@@ -1,6 +1,7 @@
 //! What a law of dispersion is.
 
 use std::fmt::Debug;
+use voussoir_core::plugin::{KeyValue, PluginKind, Shape};
 
 /// A part of a load on the level line between two x \[m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,4 +34,8 @@ pub trait Dispersion: Debug + Send + Sync {
     fn has_depth(&self) -> bool {
         true
     }
+}
+
+impl KeyValue for Box<dyn Dispersion> {
+    const SHAPE: Shape = Shape::Plugin(PluginKind::Dispersion);
 }

@@ -1,12 +1,10 @@
 //! `none`: a load reaches the extrados as it stands.
 
 use super::law::{Dispersion, Patch, Through};
-use serde::{Deserialize, Serialize};
-use voussoir_core::plugin::{Card, PluginKind};
+use voussoir_core::plugin::{Card, Keys, PluginKind};
 
 /// A load reaches the extrados as it stands.
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Keys)]
 pub struct Undispersed {}
 
 #[typetag::serde(name = "none")]
@@ -24,6 +22,6 @@ voussoir_core::inventory::submit! {
         file: file!(),
         package: voussoir_core::package!(),
         page: "# `none`\n\nThe load acts on the extrados where it stands, as where `dispersion` is not given.\n",
-        ..Card::BLANK
+        ..Card::of::<Undispersed>()
     }
 }

@@ -1,16 +1,16 @@
 //! `uniform`: a load spreads evenly under an angle through a depth.
 
 use super::law::{Dispersion, Patch, Through};
-use serde::{Deserialize, Serialize};
-use voussoir_core::plugin::{Card, Parameter, PluginKind, Quantity, Range};
+use voussoir_core::plugin::{Card, Keys, PluginKind};
 
 /// A load spreads evenly to both sides.
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Keys)]
 pub struct Uniform {
-    /// From the vertical \[deg\].
+    /// from the vertical
+    #[key(unit = "deg", range = ">= 0, < 90")]
     pub angle: f64,
-    /// Through which it spreads \[m\]; the depth of the fill where it is not given.
+    /// through which the load spreads
+    #[key(unit = "m", range = ">= 0", optional = "the depth of the fill under the load's centre")]
     pub depth: Option<f64>,
 }
 
@@ -35,17 +35,12 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::Dispersion,
         tag: "uniform",
         summary: "a load spreads evenly to both sides, under an angle through a depth",
-        parameters: &[
-            Parameter::number("angle", Quantity::Degrees, Range::new(0.0, false, 90.0, true), "from the vertical"),
-            Parameter::number("depth", Quantity::Length, Range::NON_NEGATIVE, "through which the load spreads")
-                .optional("the depth of the fill under the load's centre"),
-        ],
         sources: &["Highways Agency 2001, BD 21/01, The Assessment of Highway Bridges and Structures"],
         file: file!(),
         package: voussoir_core::package!(),
         page: "# `uniform`\n\nA load that stands between two x reaches the extrados evenly between these x widened by depth × tan(angle) \
                on both sides; the force stays. In the fill of a bridge the depth is that of the straight extrados chord under the \
                load's centre, the same for the whole patch; layers may have angles of their own. Elsewhere it is given.\n",
-        ..Card::BLANK
+        ..Card::of::<Uniform>()
     }
 }

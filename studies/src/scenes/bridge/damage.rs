@@ -2,15 +2,13 @@
 
 use super::builder::{Builder, NumberedJoints, RingPlace};
 use crate::scenes::lookup::{law, take};
-use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::model::{Bond, Catalogue, Chord, Joint};
-use voussoir_core::plugin::{Diagnostic, Need, Parameter, Quantity, Range, Shape, Variant};
+use voussoir_core::plugin::{Diagnostic, Keys};
 
 /// The face of a ring or a pier from which a joint is damaged.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Keys)]
 pub enum Face {
     /// The lower face of the ring.
     Intrados,
@@ -22,119 +20,91 @@ pub enum Face {
     Right,
 }
 
+/// Keys that pieces of damage share.
+#[derive(Debug, Keys)]
+pub(super) struct DamageKeys {
+    /// span, from 0 at the left
+    #[key(range = "<= 1_000_000", optional = "the first")]
+    span: Option<usize>,
+    /// ring, from 0 at the inside
+    #[key(range = "<= 1_000_000", optional = "the innermost")]
+    ring: Option<usize>,
+    /// pier instead of a ring, from 0 at the left
+    #[key(range = "<= 1_000_000", optional = "a ring")]
+    pier: Option<usize>,
+    /// numbers of joints across the ring, from 0 at the left springing; of a pier from 0 under its cap
+    #[key(range = "<= 1_000_000", len = ">= 1", optional = "all but bonded ones")]
+    joints: Option<Vec<usize>>,
+    /// the face from which the depth counts: of rings intrados or extrados, of piers left or right
+    #[key(optional = "intrados; of piers it must be given")]
+    side: Option<Face>,
+    /// along the joint, from that face
+    #[key(unit = "m", range = "> 0")]
+    depth: f64,
+}
+
 /// A piece of damage.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq, Keys)]
+#[keys(tag = "kind")]
 pub enum Damage {
-    /// Joints across a ring that touch no longer down to a depth.
+    /// joints across a ring or a pier that touch no longer down to a depth
     LostMortar {
         /// From 0 at the left; of a ring.
+        #[key(like = DamageKeys)]
         span: Option<usize>,
         /// From 0 at the inside.
+        #[key(like = DamageKeys)]
         ring: Option<usize>,
-        /// Instead of a ring, from 0 at the left.
+        /// Instead of a ring.
+        #[key(like = DamageKeys)]
         pier: Option<usize>,
-        /// From 0 at the left springing, of piers at the top; all where they are not given.
+        /// All where they are not given.
+        #[key(like = DamageKeys)]
         joints: Option<Vec<usize>>,
-        /// From which face; of rings the intrados where it is not given.
+        /// The face from which the depth counts.
+        #[key(like = DamageKeys)]
         side: Option<Face>,
         /// \[m\].
+        #[key(like = DamageKeys)]
         depth: f64,
     },
-    /// Joints across a ring that follow another law down to a depth.
+    /// joints across a ring or a pier that follow another law down to a depth
     Repointed {
         /// From 0 at the left; of a ring.
+        #[key(like = DamageKeys)]
         span: Option<usize>,
         /// From 0 at the inside.
+        #[key(like = DamageKeys)]
         ring: Option<usize>,
-        /// Instead of a ring, from 0 at the left.
+        /// Instead of a ring.
+        #[key(like = DamageKeys)]
         pier: Option<usize>,
-        /// From 0 at the left springing, of piers at the top; all where they are not given.
+        /// All where they are not given.
+        #[key(like = DamageKeys)]
         joints: Option<Vec<usize>>,
-        /// From which face; of rings the intrados where it is not given.
+        /// The face from which the depth counts.
+        #[key(like = DamageKeys)]
         side: Option<Face>,
         /// \[m\].
+        #[key(like = DamageKeys)]
         depth: f64,
-        /// The law of the part that is repointed.
+        /// interface law of the part that is repointed
+        #[key(reference = "joints")]
         joint: String,
     },
-    /// Voussoirs that are gone.
+    /// voussoirs that are gone; the fill then stands on the ring below
     LostVoussoir {
         /// From 0 at the left.
+        #[key(like = DamageKeys)]
         span: Option<usize>,
         /// From 0 at the inside.
+        #[key(like = DamageKeys)]
         ring: Option<usize>,
-        /// From 0 at the left.
+        /// numbers of the voussoirs, from 0 at the left
+        #[key(range = "<= 1_000_000", len = ">= 1")]
         voussoirs: Vec<usize>,
     },
 }
-
-const fn number(name: &'static str, doc: &'static str, without: &'static str) -> Parameter {
-    Parameter { name, doc, shape: Shape::Integer { min: 0, max: 1_000_000 }, need: Need::Optional(without) }
-}
-
-const NUMBERS: Shape = Shape::List { of: &Shape::Integer { min: 0, max: 1_000_000 }, min: 1, max: usize::MAX };
-const SPAN: Parameter = number("span", "span, from 0 at the left", "the first");
-const RING: Parameter = number("ring", "ring, from 0 at the inside", "the innermost");
-const PIER: Parameter = number("pier", "pier instead of a ring, from 0 at the left", "a ring");
-const JOINTS: Parameter = Parameter {
-    name: "joints",
-    doc: "numbers of joints across the ring, from 0 at the left springing; of a pier from 0 under its cap",
-    shape: NUMBERS,
-    need: Need::Optional("all but bonded ones"),
-};
-const SIDE: Parameter = Parameter {
-    name: "side",
-    doc: "the face from which the depth counts: of rings intrados or extrados, of piers left or right",
-    shape: Shape::Choice(&["intrados", "extrados", "left", "right"]),
-    need: Need::Optional("intrados; of piers it must be given"),
-};
-const DEPTH: Parameter =
-    Parameter::number("depth", Quantity::Length, Range::POSITIVE, "along the joint, from that face");
-
-/// What an entry of `damage` may hold.
-pub(super) const DAMAGE: Shape = Shape::Tagged {
-    key: "kind",
-    variants: &[
-        Variant {
-            tag: "lost_mortar",
-            doc: "joints across a ring or a pier that touch no longer down to a depth",
-            parameters: &[SPAN, RING, PIER, JOINTS, SIDE, DEPTH],
-        },
-        Variant {
-            tag: "repointed",
-            doc: "joints across a ring or a pier that follow another law down to a depth",
-            parameters: &[
-                SPAN,
-                RING,
-                PIER,
-                JOINTS,
-                SIDE,
-                DEPTH,
-                Parameter {
-                    name: "joint",
-                    doc: "interface law of the part that is repointed",
-                    shape: Shape::Reference("joints"),
-                    need: Need::Required,
-                },
-            ],
-        },
-        Variant {
-            tag: "lost_voussoir",
-            doc: "voussoirs that are gone; the fill then stands on the ring below",
-            parameters: &[
-                SPAN,
-                RING,
-                Parameter {
-                    name: "voussoirs",
-                    doc: "numbers of the voussoirs, from 0 at the left",
-                    shape: NUMBERS,
-                    need: Need::Required,
-                },
-            ],
-        },
-    ],
-};
 
 /// Joints of a ring or a pier that are damaged in the same way.
 struct Section<'a> {

@@ -3,84 +3,91 @@
 
 use crate::loads::dispersion::Dispersion;
 use crate::scenes::lookup::out_of_range;
-use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use voussoir_core::law::{FillResistance, FillState};
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::model::{Assembly, Bridge, Chord, FillMass, FillPart, FillReaction, carried};
-use voussoir_core::plugin::{Diagnostic, Range};
+use voussoir_core::plugin::{Diagnostic, Keys, Range};
 
 /// Parts of the fill on a deformable block, each with two points.
 const PARTS: usize = 16;
-/// Angles of friction \[deg\].
-pub(super) const FRICTION: Range = Range::new(0.0, false, 90.0, true);
 
 /// How far the fill reaches to both sides.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
 pub enum Extent {
     /// Over the whole extrados.
-    #[default]
     Extrados,
     /// Up to the verticals through the outermost intrados springings.
     Springings,
 }
 
 /// A layer of the fill.
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Keys)]
 pub struct Layer {
-    /// Its upper level \[m\].
+    /// its upper level, above y = 0
+    #[key(unit = "m")]
     pub to_level: f64,
-    /// \[kg/m³\].
+    /// of the fill
+    #[key(unit = "kg/m3", range = ">= 0")]
     pub density: f64,
-    /// \[deg\].
+    /// angle of internal friction
+    #[key(unit = "deg", range = ">= 0, < 90", optional = "that of the fill")]
     pub friction_angle: Option<f64>,
-    /// \[Pa\].
+    /// cohesion
+    #[key(unit = "Pa", range = ">= 0", optional = "that of the fill")]
     pub cohesion: Option<f64>,
-    /// Of the spread of loads, from the vertical \[deg\].
+    /// of the spread of loads in it, from the vertical
+    #[key(unit = "deg", range = ">= 0, < 90", optional = "that of the dispersion")]
     pub angle: Option<f64>,
 }
 
 /// Solid backing.
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Copy, Keys)]
 pub struct Haunching {
-    /// Its upper level \[m\].
+    /// its upper level, above y = 0
+    #[key(unit = "m")]
     pub level: f64,
-    /// \[kg/m³\]; as the voussoirs where it is not given.
+    /// of the backing
+    #[key(unit = "kg/m3", range = ">= 0", optional = "that of the voussoirs")]
     pub density: Option<f64>,
-    /// Horizontal pressure up to which it resists \[Pa\].
-    #[serde(default)]
+    /// horizontal pressure up to which it resists
+    #[key(unit = "Pa", range = ">= 0", default = 0.0)]
     pub strength: f64,
 }
 
 /// `[scene.fill]`.
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Keys)]
 pub struct Fill {
-    /// Of a level road above the highest crown \[m\].
+    /// depth of a level road above the highest crown's extrados
+    #[key(unit = "m", range = ">= 0", optional = "road is given")]
     pub cover: Option<f64>,
-    /// The road's points from left to right \[m\].
+    /// points of the road from left to right, level beyond them
+    #[key(names = ["x", "y"], unit = "m", len = ">= 1", optional = "level, by cover")]
     pub road: Option<Vec<[f64; 2]>>,
     /// \[kg/m³\].
+    #[key(like = Layer)]
     pub density: f64,
     /// \[deg\].
+    #[key(like = Layer, optional = "no resistance is asked for")]
     pub friction_angle: Option<f64>,
     /// \[Pa\].
-    #[serde(default)]
+    #[key(like = Layer, default = 0.0)]
     pub cohesion: f64,
-    /// How far it reaches.
-    #[serde(default)]
+    /// extrados: fill stands on the whole extrados; springings: it ends above the outermost intrados
+    /// springings
+    #[key(default = "extrados")]
     pub extent: Extent,
-    /// How live loads spread in it; read where loads are placed.
+    /// how live loads spread: { law = "uniform", angle = 30.0 }
+    #[key(optional = "loads do not spread")]
     pub dispersion: Option<Box<dyn Dispersion>>,
-    /// How it resists the rings.
+    /// how the fill resists the rings: { law = "fill_pressure", passive_factor = 0.33 }
+    #[key(optional = "the fill does not resist")]
     pub resistance: Option<Box<dyn FillResistance>>,
-    /// Solid backing in the haunches.
+    /// solid backing in the haunches up to a level
+    #[key(optional = "none")]
     pub haunching: Option<Haunching>,
-    /// Layers from the lowest; above the last the fill itself.
-    #[serde(default)]
+    /// layers from the lowest; above the last stands the fill itself
+    #[key(default = [])]
     pub layers: Vec<Layer>,
 }
 

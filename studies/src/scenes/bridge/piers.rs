@@ -1,47 +1,44 @@
 //! Piers of a bridge: courses of blocks, and between the springings above them a cap.
 
 use crate::scenes::lookup::out_of_range;
-use serde::{Deserialize, Serialize};
 use voussoir_core::model::crosses_itself;
 use voussoir_core::model::geometry::{Vec2, area_and_centroid};
-use voussoir_core::plugin::{Diagnostic, Range};
+use voussoir_core::plugin::{Diagnostic, Keys, Range};
 
 /// Greatest number of courses.
 pub(super) const MAX_COURSES: usize = 1000;
 
 /// What a pier stands on.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
 pub enum Footing {
     /// On fixed ground, with a joint like any other.
-    #[default]
     Fixed,
     /// Its lowest course is one with the ground.
     Bonded,
 }
 
 /// A pier.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq, Keys)]
 pub struct Pier {
-    /// Below the lower of the springings that it carries \[m\].
+    /// height below the lower of the springings on it
+    #[key(unit = "m", range = "> 0")]
     pub height: f64,
-    /// At the springings, which is the distance between their intrados ends \[m\].
+    /// at the springings: the distance of their intrados ends
+    #[key(unit = "m", range = "> 0")]
     pub width: f64,
-    /// At its foot \[m\]; as at the springings where it is not given.
+    /// at its foot
+    #[key(unit = "m", range = "> 0", optional = "that at the springings")]
     pub base_width: Option<f64>,
-    /// Number of courses of equal height.
-    #[serde(default = "one")]
+    /// number of courses, equally high
+    #[key(range = ">= 1, <= MAX_COURSES", default = 1)]
     pub courses: usize,
-    /// What it stands on.
-    #[serde(default)]
+    /// fixed: it stands on fixed ground with a joint like any other; bonded: its lowest course is one with
+    /// the ground
+    #[key(default = "fixed")]
     pub footing: Footing,
-    /// Material, instead of the scene's.
+    /// material of its blocks
+    #[key(reference = "materials", optional = "that of the scene")]
     pub material: Option<String>,
-}
-
-fn one() -> usize {
-    1
 }
 
 /// A pier in place.

@@ -7,10 +7,9 @@ use crate::scenes::arch::Ends;
 use crate::scenes::lookup::{out_of_range, take};
 use crate::scenes::profile::{Profile, Ring, Springing};
 use crate::scenes::thickness::Thickness;
-use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 use voussoir_core::model::geometry::Vec2;
-use voussoir_core::plugin::{Diagnostic, Range};
+use voussoir_core::plugin::{Diagnostic, Keys, Range};
 
 /// Greatest number of voussoirs in a ring.
 pub(super) const MAX_VOUSSOIRS: usize = 10_000;
@@ -20,58 +19,60 @@ pub(super) const MAX_RINGS: usize = 50;
 const FINE: usize = 2000;
 
 /// Whether radial joints of neighbouring rings meet.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
 pub enum RadialJoints {
     /// They meet.
-    #[default]
     Aligned,
     /// Every other ring begins with half a voussoir.
     Offset,
 }
 
 /// One number for all rings, or one for each from the innermost outwards.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(untagged)]
+#[derive(Debug, Clone, PartialEq, Eq, Keys)]
+#[keys(untagged)]
 pub enum Counts {
     /// The same in every ring.
+    #[key(range = ">= 1, <= MAX_VOUSSOIRS")]
     Each(usize),
     /// By ring.
+    #[key(range = ">= 1, <= MAX_VOUSSOIRS", len = ">= 1, <= MAX_RINGS")]
     Rings(Vec<usize>),
 }
 
 /// A span.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq, Keys)]
 pub struct Span {
-    /// Shape of the intrados.
+    /// shape of the intrados
     pub profile: Profile,
-    /// Of all rings together, along the joints; not for `points`.
+    /// thickness of all rings together, along the joints; { crown, springing } grows with the arc length
+    /// between them
+    #[key(optional = "the profile is a list of points")]
     pub thickness: Option<Thickness>,
-    /// Number of voussoirs.
+    /// number of voussoirs in a ring, or a list of numbers from the innermost ring outwards
+    #[key(optional = "voussoir_length is given, or the profile is a list of points")]
     pub voussoirs: Option<Counts>,
-    /// Instead: their least length along the lower face of their ring \[m\].
+    /// least length of a voussoir along the lower face of its ring
+    #[key(unit = "m", range = "> 0", optional = "voussoirs is given")]
     pub voussoir_length: Option<f64>,
-    /// Number of rings.
-    #[serde(default = "one")]
+    /// number of rings, equally thick
+    #[key(range = ">= 1, <= MAX_RINGS", default = 1)]
     pub rings: usize,
-    /// Whether radial joints of neighbouring rings meet.
-    #[serde(default)]
+    /// aligned: radial joints of neighbouring rings meet; offset: every other ring begins with half a
+    /// voussoir
+    #[key(default = "aligned")]
     pub radial_joints: RadialJoints,
-    /// How the rings meet their supports.
-    #[serde(default)]
+    /// bonded: the springing faces move with the supports; jointed: they follow the interface law
+    #[key(default = "jointed")]
     pub ends: Ends,
-    /// Inclination of the support planes \[deg\].
+    /// inclination of the support plane above the horizontal, rising outwards; one number or \[left, right\]
+    #[key(optional = "the end joints are normal to the intrados")]
     pub springing: Option<Springing>,
-    /// Level of the springings \[m\].
-    #[serde(default)]
+    /// level of its springings
+    #[key(unit = "m", default = 0.0)]
     pub level: f64,
-    /// Material of the voussoirs, instead of the scene's.
+    /// material of its blocks
+    #[key(reference = "materials", optional = "that of the scene")]
     pub material: Option<String>,
-}
-
-fn one() -> usize {
-    1
 }
 
 /// A place along a ring: the share `part/of` of its length.

@@ -180,8 +180,11 @@ fn impossible_profiles_are_refused_at_their_key() {
         assert_eq!(path(Profile::ThreeCentred { span: 10.0, rise: 3.0, crown_radius }, None), "profile.crown_radius");
     }
     assert_eq!(path(Profile::ThreeCentred { span: 4.0, rise: 3.0, crown_radius: 8.0 }, None), "profile.rise");
-    let points =
-        |extrados: &[[f64; 2]]| Profile::Points { intrados: vec![[0.0, 0.0], [1.0, 0.0]], extrados: extrados.to_vec() };
+    let points = |extrados: &[[f64; 2]]| Profile::Points {
+        intrados: vec![[0.0, 0.0], [1.0, 0.0]],
+        extrados: extrados.to_vec(),
+        file: None,
+    };
     let only = |profile: Profile| profile.ring(None, None, None);
     assert_eq!(only(points(&[[0.0, 1.0]])).unwrap_err()[0].path, "profile.extrados");
     assert_eq!(only(points(&[[1.0, 1.0], [0.0, 1.0]])).unwrap_err()[0].path, "profile.intrados.0");

@@ -1,45 +1,40 @@
-//! Keys that several laws share, described once.
+//! Keys that several laws share, each described once: a law's field names them by `#[key(like = …)]`.
 
-use voussoir_core::plugin::{Parameter, Quantity, Range};
+use voussoir_core::plugin::Keys;
 
-pub const FRICTION: Parameter = Parameter::number(
-    "friction",
-    Quantity::Ratio,
-    Range::NON_NEGATIVE,
-    "coefficient of friction μ; or give friction_angle",
-)
-.optional("friction_angle is given");
+/// Keys of joint laws.
+#[derive(Debug, Keys)]
+pub struct JointKeys {
+    /// coefficient of friction μ; or give friction_angle
+    #[key(unit = "-", range = ">= 0", optional = "friction_angle is given")]
+    friction: Option<f64>,
+    /// angle of friction, μ = tan(angle)
+    #[key(unit = "deg", range = ">= 0, < 90", optional = "friction is given")]
+    friction_angle: Option<f64>,
+    /// angle by which slip opens the joint, at most the angle of friction
+    #[key(unit = "deg", range = ">= 0, < 90")]
+    dilatancy_angle: f64,
+    /// stiffness of the joint itself against closing
+    #[key(unit = "Pa/m", range = "> 0", optional = "the joint itself is stiff")]
+    normal_stiffness: Option<f64>,
+    /// stiffness of the joint itself against slip
+    #[key(unit = "Pa/m", range = "> 0", optional = "the joint itself is stiff")]
+    shear_stiffness: Option<f64>,
+}
 
-pub const FRICTION_ANGLE: Parameter = Parameter::number(
-    "friction_angle",
-    Quantity::Degrees,
-    Range::new(0.0, false, 90.0, true),
-    "angle of friction, μ = tan(angle)",
-)
-.optional("friction is given");
-
-pub const DILATANCY_ANGLE: Parameter = Parameter::number(
-    "dilatancy_angle",
-    Quantity::Degrees,
-    Range::new(0.0, false, 90.0, true),
-    "angle by which slip opens the joint, at most the angle of friction",
-);
-
-pub const NORMAL_STIFFNESS: Parameter = Parameter::number(
-    "normal_stiffness",
-    Quantity::Stiffness,
-    Range::POSITIVE,
-    "stiffness of the joint itself against closing",
-)
-.optional("the joint itself is stiff");
-
-pub const SHEAR_STIFFNESS: Parameter = Parameter::number(
-    "shear_stiffness",
-    Quantity::Stiffness,
-    Range::POSITIVE,
-    "stiffness of the joint itself against slip",
-)
-.optional("the joint itself is stiff");
+/// Keys of materials.
+#[derive(Debug, Keys)]
+pub struct MaterialKeys {
+    /// Young's modulus E
+    #[key(unit = "Pa", range = "> 0")]
+    young_modulus: f64,
+    /// Poisson's ratio ν
+    #[key(unit = "-", range = "> -1, < 0.5")]
+    poisson_ratio: f64,
+    /// density, or specific weight such as "22 kN/m3"
+    #[key(unit = "kg/m3", range = ">= 0")]
+    density: f64,
+}
 
 /// μ from whichever of the two keys is given.
 pub fn friction(friction: Option<f64>, friction_angle: Option<f64>) -> f64 {
