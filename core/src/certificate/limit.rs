@@ -86,7 +86,7 @@ pub struct Verdict {
     pub start_is_carried: bool,
 }
 
-/// Additional claims if joints have the flow of their own laws.
+/// Additional claims if each joint has the flow of its law.
 #[derive(Debug, Clone, Copy)]
 pub struct NonAssociatedClaim<'a> {
     /// The claimed lower bound of all such factors.

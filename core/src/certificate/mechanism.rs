@@ -161,7 +161,7 @@ pub(super) fn jumps_about(assembly: &Assembly, centroids: &[Vec2], motion: &[Cen
     assembly.joints.iter().map(jump).collect()
 }
 
-/// Share of a joint's height above which its rotation counts as crushing and no longer as a hinge.
+/// Share of a joint's height above which its rotation counts as crushing instead of a hinge.
 pub const CRUSHES: f64 = 0.5;
 
 /// Greatest size of jumps that are ignored, as a share of the greatest jump.

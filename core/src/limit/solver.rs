@@ -84,13 +84,13 @@ pub struct LimitAnswer {
     /// Velocities, one entry per group, about the problem's pole. They are scaled to varying·q̇ = 1; for
     /// `NoEquilibrium` with a feasible interval to ±1, without such an interval their scale is arbitrary.
     pub motion: Option<Vec<Velocity>>,
-    /// Is the motion the only one?
+    /// True if the motion is the only one.
     pub unique: Option<bool>,
     /// Forces of a ray, one entry per joint of the problem.
     pub ray: Option<Vec<JointForce>>,
     /// All factors with an admissible field, if the start is not among them.
     pub feasible_interval: Option<[f64; 2]>,
-    /// Set if joints have the flow of their own laws.
+    /// Set if each joint has the flow of its law.
     pub non_associated: Option<NonAssociated>,
     /// Work done.
     pub counters: Counters,

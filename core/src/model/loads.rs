@@ -51,7 +51,7 @@ pub struct Stage {
     pub accelerations: Vec<Vec2>,
     /// Spreads of the forces that come from a road.
     pub spreads: Vec<LoadSpread>,
-    /// Movements of supports, multiplied by the stage's factor.
+    /// Prescribed movements of supports, multiplied by the stage's factor.
     pub settlements: Vec<Settlement>,
     /// End of the stage.
     pub target: Target,

@@ -106,7 +106,7 @@ pub struct LoadStep {
 /// The input of a path solver.
 #[derive(Debug, Clone)]
 pub struct PathProblem {
-    /// Bodies.
+    /// Bodies of the problem.
     pub bodies: Vec<PathBody>,
     /// The body of each block of the assembly.
     pub body_of: Vec<usize>,

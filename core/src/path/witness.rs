@@ -45,7 +45,7 @@ pub struct NoneContinues {
     pub falls: ModeTree,
 }
 
-/// Rates of everything at a state.
+/// Rates of all quantities at a state.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PathRate {
     /// Rate λ̇.

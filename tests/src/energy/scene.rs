@@ -54,7 +54,7 @@ pub struct Held {
 pub struct EnergyScene {
     /// Blocks; a bonded end forms one block with its support.
     pub blocks: Vec<RigidBlock>,
-    /// Springs.
+    /// Springs of the scene.
     pub points: Vec<SpringPoint>,
     /// Live load ℓ \[N\], over the unknowns.
     pub load: DVector<f64>,

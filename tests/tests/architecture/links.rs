@@ -1,10 +1,10 @@
-//! Links of the pages lead somewhere.
+//! Links of the pages lead to existing files and headings.
 
 use super::source::workspace;
 use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 
-/// Pages outside `docs/` that readers open on their own.
+/// Pages outside `docs/` that readers open separately.
 const PAGES: [&str; 7] = [
     "README.md",
     "CONTRIBUTING.md",

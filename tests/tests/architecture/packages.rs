@@ -1,4 +1,4 @@
-//! Publishing needs whole packages, true versions, licences and pinned tools.
+//! Packages can be published: they are complete, and have correct versions, licences and pinned tools.
 
 use super::source::{each_source, workspace};
 use serde_json::Value as Json;
@@ -44,7 +44,7 @@ fn plain(path: &Path) -> PathBuf {
     out
 }
 
-/// Every published crate has the metadata that crates.io asks for, its licences, and versions on the crates of the project that it needs.
+/// Every published crate has the metadata that crates.io requires, its licences, and the versions of the project's crates that it needs.
 #[test]
 fn crates_can_be_published() {
     let metadata = metadata(&workspace());
@@ -80,7 +80,7 @@ fn packages_hold_what_they_include() {
     for (_, folder) in published(&metadata) {
         let root = plain(&folder);
         each_source(&folder.join("src"), &mut |path, source| {
-            // A page whose examples are tested is no part of the program.
+            // A page whose examples are tested is not part of the program.
             let compiled = source.split("#[cfg(doctest)]").next().unwrap_or_default();
             for after in ["include_str!(\"", "include_bytes!(\""].iter().flat_map(|word| compiled.split(word).skip(1)) {
                 let name = after.split('"').next().unwrap_or_default();
@@ -111,7 +111,7 @@ fn copies_are_up_to_date() {
     }
 }
 
-/// `rust-version` is the greatest that a dependency asks for, or a later one; lints (`incompatible_msrv`) hold our own code to it.
+/// `rust-version` is the greatest version that a dependency requires, or a later one; lints (`incompatible_msrv`) check our own code.
 #[test]
 fn the_oldest_supported_rust_is_true() {
     let number = |version: &str| -> Vec<u32> {

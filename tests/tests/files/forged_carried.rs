@@ -1,4 +1,4 @@
-//! Forgery of what is said of a load that is carried: `verify` finds a forged force, zone, reserve and check.
+//! Forged results of a load that is carried: `verify` finds a forged force, zone, reserve and check.
 
 use super::tolerances::of_another_processor;
 use serde_json::{Value, json};
@@ -10,7 +10,7 @@ fn carried() -> String {
     changed(&arch, "until = \"collapse\"", "factor = 30.0")
 }
 
-/// Each number is found if it is forged, bit by bit and by claims; so is what is left out or added.
+/// Every forged number is found, by comparison of bits and by the claims. Omitted and added entries are found too.
 #[test]
 fn forged_forces_zones_and_reserves_are_found() {
     let (study, original) = results(&carried());

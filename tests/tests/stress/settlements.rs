@@ -6,7 +6,7 @@
 //! |---|---|
 //! | rigid blocks that follow their supports or cannot | a linear program over the motions: the least overlap |
 //! | small displacements, no slip or rigid | limit analysis of the unmoved scene: a settlement changes no limit load (1e-6) |
-//! | small displacements, Coulomb friction | the associated limit load is not passed, and both path solvers agree or name what is not unique |
+//! | small displacements, Coulomb friction | the associated limit load is not passed, and both path solvers agree or name the result that is not unique |
 //! | finite, compliant joints without slip | the energy program: the first and another peak of one of its branches (1 %) |
 //! | finite, else | the mirror image with half the step (1e-3), or the answer names a bifurcation |
 

@@ -10,7 +10,7 @@ use voussoir_tests::{Arch, answered, assert_close, collapse_factor, crushing, fr
 
 const SOLVERS: [(&str, f64); 2] = [("limit_chain", 1e-12), ("limit_conic", 1e-11)];
 
-/// Rise 2.99 m, bonded ends, unlimited strength: 698.0226652123788 kN, four hinges.
+/// With rise 2.99 m, bonded ends and unlimited strength the load is 698.0226652123788 kN, with four hinges.
 #[test]
 fn strathmashie_bonded() {
     for (solver, tolerance) in SOLVERS {
@@ -22,7 +22,7 @@ fn strathmashie_bonded() {
     }
 }
 
-/// 13 voussoirs, jointed ends: 491.3709236878251 kN.
+/// With 13 voussoirs and jointed ends the load is 491.3709236878251 kN.
 #[test]
 fn strathmashie_jointed() {
     for (solver, tolerance) in SOLVERS {
@@ -31,7 +31,7 @@ fn strathmashie_jointed() {
     }
 }
 
-/// Friction 0.3: 517.9014430032892 kN, sliding and hinges together.
+/// With friction 0.3 the load is 517.9014430032892 kN, with sliding and hinges.
 #[test]
 fn strathmashie_with_low_friction() {
     for (solver, tolerance) in SOLVERS {
@@ -41,7 +41,7 @@ fn strathmashie_with_low_friction() {
     }
 }
 
-/// Crushing at 10 MPa with the rectangular stress block: 669.346 kN.
+/// With crushing at 10 MPa and the rectangular stress block the load is 669.346 kN.
 #[test]
 fn strathmashie_with_crushing() {
     for (solver, _) in SOLVERS {
@@ -50,7 +50,7 @@ fn strathmashie_with_crushing() {
     }
 }
 
-/// Rise 1.19 m, bonded, unlimited strength: two straight struts fit in the ring, so there is no finite load.
+/// With rise 1.19 m, bonded ends and unlimited strength no load is finite: two straight struts fit in the ring.
 #[test]
 fn shallow_arch_is_unbounded_and_proves_it() {
     for (solver, _) in SOLVERS {
@@ -61,7 +61,7 @@ fn shallow_arch_is_unbounded_and_proves_it() {
     }
 }
 
-/// Load at midspan: unbounded at rise 2.99 m; 987.1 kN at rise 3.89 m, five hinges (statement 12).
+/// The load at midspan is unbounded at rise 2.99 m, and 987.1 kN at rise 3.89 m, with five hinges (statement 12).
 #[test]
 fn load_at_midspan() {
     for (solver, _) in SOLVERS {

@@ -6,12 +6,12 @@ use voussoir::results::CaseResult;
 use voussoir::results::carried::{JointEntry, ReserveFlow};
 use voussoir_tests::{Arch, answered, changed, crushing, friction};
 
-/// A study whose last stage goes to a factor instead of collapse.
+/// Returns a study whose last stage ends at a factor instead of collapse.
 fn to_factor(text: &str, factor: f64) -> String {
     changed(text, "until = \"collapse\"", &format!("factor = {factor:?}"))
 }
 
-/// A column of two blocks under its weight and a horizontal push, each 1 m wide and high and 1 m thick, of 1000 kg/m³.
+/// Returns a column of two blocks under its weight and a horizontal push. Each is 1 m wide, high and thick, of 1000 kg/m³.
 fn column(joint: &str, push: f64) -> String {
     format!(
         "name = \"column\"\n[scene]\nscene = \"blocks\"\nwidth = 1.0\nmaterial = \"stone\"\njoint = \"dry\"\nblocks = [\n\
@@ -33,7 +33,8 @@ fn close(found: f64, known: f64) {
     assert!((found - known).abs() <= 1e-9 * known.abs().max(1e-3), "{found} instead of {known}");
 }
 
-/// A column has one field: N is the weight above, V the push and M its lever; stresses, sliding and rocking follow by hand.
+/// The field of a column is unique: N is the weight above, V the push and M its moment. Stresses, sliding and rocking are
+/// calculated by hand.
 #[test]
 fn a_column_by_hand() {
     let result = answered(&column(&friction(0.9), 1000.0));
@@ -52,14 +53,14 @@ fn a_column_by_hand() {
         close(least.abs(), e);
         close(greatest, least);
     }
-    // It rocks about its toe: 20 kN × 0.5 m over 1.5 m.
+    // It rocks about its toe at 20 kN × 0.5 m / 1.5 m.
     let reserve = result.carried.reserve.expect("a reserve");
     close(reserve.factor.expect("a factor"), 20.0 / 3.0);
     assert_eq!((reserve.status, reserve.flow), (Status::Collapse, ReserveFlow::Associated));
     assert!(result.carried.permissible.is_none(), "the rule is one of arches");
 }
 
-/// A greater push opens the lowest joint: e = 0.3 m, contact over 3 (0.5 − 0.3) m. A joint that crushes has its block as well.
+/// A greater push opens the lowest joint: e = 0.3 m, contact over 3 (0.5 − 0.3) m. A joint that crushes also has a stress block.
 #[test]
 fn an_open_joint_and_its_stress_block() {
     let result = answered(&column(&crushing(0.6, 1e6), 4000.0));
@@ -73,7 +74,7 @@ fn an_open_joint_and_its_stress_block() {
     close(block.strength, 1e6);
 }
 
-/// The reserve is the load of the study that goes to collapse, and the permissible limit state changes at half of it.
+/// The reserve is the load of the study that ends at collapse, and the permissible limit state changes at half of it.
 #[test]
 fn the_reserve_is_the_collapse_load() {
     let arch = Arch { voussoirs: 9, ends: "jointed", ..Arch::default() }.study();
@@ -88,7 +89,8 @@ fn the_reserve_is_the_collapse_load() {
     }
 }
 
-/// Friction without dilatancy is read with associated flow, which proves that the rule is violated and not that it holds.
+/// For friction without dilatancy the reserve is calculated with associated flow, which proves that the rule is violated but not
+/// that it holds.
 #[test]
 fn other_flow_proves_no_reserve() {
     let arch =
@@ -128,7 +130,7 @@ fn the_zone_holds_every_field() {
     }
 }
 
-/// Keys of `[output]` leave out the zone, or everything.
+/// Keys of `[output]` omit the zone, or all results of a carried load.
 #[test]
 fn nothing_is_added_that_is_not_asked_for() {
     let column = column(&friction(0.6), 1000.0);

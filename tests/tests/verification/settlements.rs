@@ -65,7 +65,7 @@ fn the_load_after_any_settlement_is_that_of_the_unmoved_arch() {
     }
 }
 
-/// A spread arch stands on three hinges: they open on the sides of Mery's thrust lines for a spreading and for a
+/// A spread arch has three hinges: they open on the sides of Mery's thrust lines for a spreading and for a
 /// closing support, and are listed with their sides.
 #[test]
 fn a_spread_arch_stands_on_three_hinges() {
@@ -482,8 +482,8 @@ fn loads_and_settlements_in_any_order_end_at_the_same_load() {
     }
 }
 
-/// A wall on one ground that sinks and turns, or on two that move as one body: all bricks go with it, no joint moves, and the
-/// field is that of the loads alone.
+/// If the ground of a wall sinks and rotates, or two grounds move as one body, all bricks move with the ground, no joint
+/// moves, and the field is the field of the loads alone.
 #[test]
 fn a_wall_goes_with_its_ground() {
     let wall = |cuts: &str, settlement: &str| {

@@ -378,7 +378,7 @@ fn walls(all: &mut Vec<Extreme>, factor: &impl Fn(&str) -> f64) {
     let flat = Wall { brick: [0.4, 0.4e-6], ..base.clone() };
     family.add("slivers a millionth as high as long".into(), flat.study(), tight(0.65));
     let slender = Wall { brick: [0.4e-4, 0.4], ..base.clone() };
-    // λ of a tower of bricks of almost no length: it overturns at a slope of its own slenderness, or less.
+    // λ of a tower of bricks of almost no length: it overturns at a slope equal to its slenderness, or less.
     family.add(
         "slivers ten thousand times as high as long".into(),
         slender.study(),
