@@ -129,8 +129,11 @@ impl Condenser {
         Ok(Condensed { points: points.to_vec(), flexibility: turned })
     }
 
-    /// Condenses a body whose material yields. Before yielding its flexibility is that of [`condense`](Self::condense)
-    /// with the same elasticity, to the last bit for elements of order 2 and 3.
+    /// Condenses a body whose material yields. Before yielding its flexibility is the flexibility of
+    /// [`condense`](Self::condense) with the same elasticity, to the last bit for elements of order 2 and 3.
+    ///
+    /// # Errors
+    /// Names the fault of the body, its mesh or a point.
     pub fn inelastic(
         &mut self,
         vertices: &[Vec2],
@@ -162,8 +165,11 @@ impl Condenser {
     }
 
     /// Returns displacements and stresses of the whole mesh from `forces` \[N\] at `points` and a uniform `body_force`
-    /// \[N/m³\]. They are those of a body in equilibrium: a remaining resultant is stored in [`Recovered::imbalance`]
-    /// and balanced by inertia.
+    /// \[N/m³\]. The body is in equilibrium: a remaining resultant is stored in [`Recovered::imbalance`] and balanced by
+    /// inertia.
+    ///
+    /// # Errors
+    /// Names the fault of the body, its mesh or a point, or different numbers of points and forces.
     pub fn recover(
         &mut self,
         vertices: &[Vec2],

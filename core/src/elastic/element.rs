@@ -36,6 +36,7 @@ pub struct Reference {
 }
 
 impl Reference {
+    /// Creates the data of elements of this order, with (order + 1)² Gauss points.
     pub fn new(order: usize) -> Self {
         let nodes = lobatto(order + 1).0;
         let mut reference = Reference { order, nodes, points: Vec::new() };

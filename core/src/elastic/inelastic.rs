@@ -51,6 +51,7 @@ pub(super) struct Strains {
 }
 
 impl Strains {
+    /// Computes B, weights and lengths of all elements of a shape.
     pub fn new(shape: &Shape, plane: Plane) -> Self {
         let corners = (0..shape.mesh.elements.len()).map(|e| shape.mesh.corners(e));
         Strains {
@@ -306,6 +307,9 @@ impl InelasticBody {
     /// Recomputes a state from displacements and history alone. Returns the greatest unbalanced force on a node \[N\]
     /// with the stresses of the law, and the change of the history that the law still gives, relative to the greatest
     /// strain: 0 if no stress is beyond the yield surface.
+    ///
+    /// # Errors
+    /// If an update fails or the numbers do not fit the mesh.
     pub fn check(&self, displacement: &[f64], history: &[f64], forces: &[f64]) -> Result<[f64; 2], String> {
         if displacement.len() != 2 * self.nodes() || history.len() != self.gauss_points() * self.state_size() {
             return Err("the state of a block does not fit its mesh".into());
@@ -349,6 +353,9 @@ impl InelasticBody {
 
     /// Returns displacements and stresses of the whole mesh in world axes of the undeformed placement. The stress at a
     /// node is the mean of the nearest Gauss points, so that the stress of each element is within the yield surface.
+    ///
+    /// # Errors
+    /// If an update fails.
     pub fn recover(&self, displacement: &[f64], state: &InelasticState) -> Result<Recovered, String> {
         let strains = self.strains_at(displacement);
         let mut new = state.history.clone();

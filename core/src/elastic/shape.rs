@@ -29,6 +29,7 @@ pub(super) struct Placement {
 }
 
 impl Placement {
+    /// Places anticlockwise `vertices` \[m\]. An error names their fault.
     pub fn new(vertices: &[Vec2]) -> Result<Self, String> {
         if vertices.len() < 3 || vertices.iter().any(|v| !(v.x.is_finite() && v.y.is_finite())) {
             return Err("an elastic body needs three finite vertices or more".into());
@@ -46,6 +47,7 @@ impl Placement {
         Ok(Placement { local: vertices.iter().map(|v| placement.local(*v)).collect(), ..placement })
     }
 
+    /// Returns a point \[m\] in the frame of the shape.
     pub fn local(&self, point: Vec2) -> Vec2 {
         self.rotation.transpose() * (point - self.origin) / self.size
     }
@@ -86,6 +88,7 @@ pub(super) struct Shape {
 }
 
 impl Shape {
+    /// Meshes and factorises a shape. An error gives the reason why this is not possible.
     pub fn new(
         placement: &Placement,
         elasticity: PlaneElasticity,
@@ -140,6 +143,7 @@ impl Shape {
         })
     }
 
+    /// Returns true if a body with these properties is congruent and has the same mesh and elements.
     pub fn is(
         &self,
         placement: &Placement,
@@ -179,7 +183,8 @@ impl Shape {
         Some(self.mesh.elements[element].iter().copied().zip(values).collect())
     }
 
-    /// Returns the places of points given in the frame of the shape; `asked` are the same points in world axes.
+    /// Returns the places of points given in the frame of the shape; `asked` are the same points in world axes. An
+    /// error names a point outside the body.
     pub fn places(&self, points: &[Vec2], asked: &[Vec2]) -> Result<Vec<Place>, String> {
         let place = |(point, asked): (&Vec2, &Vec2)| {
             self.place(*point).ok_or_else(|| format!("the point ({}, {}) m lies outside its body", asked.x, asked.y))
@@ -217,7 +222,8 @@ impl Shape {
     }
 
     /// Returns P K⁺ Pᵀ times each column of `loads`, refined once and checked. Residuals are computed at projected
-    /// displacements: displacements of the held mesh may be large rigid motions, which cost digits.
+    /// displacements: displacements of the held mesh may be large rigid motions, which cost digits. An error if
+    /// no solution is accurate enough.
     pub fn displacements(&self, mut loads: DMatrix<f64>) -> Result<DMatrix<f64>, String> {
         self.project(&mut loads, &self.inertia, &self.rigid);
         let solve = |mut right: DMatrix<f64>| {
@@ -246,7 +252,7 @@ impl Shape {
         Ok(all)
     }
 
-    /// Returns C̃ of points given in the frame of the shape.
+    /// Returns C̃ of places. Errors are those of [`displacements`](Self::displacements).
     pub fn flexibility(&self, places: &[Place]) -> Result<DMatrix<f64>, String> {
         let columns = 2 * places.len();
         let full = at_places(places, &self.displacements(self.loads_at(places))?);

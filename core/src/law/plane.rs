@@ -118,6 +118,9 @@ impl PlanarUpdate {
     }
 
     /// Updates one point; see [`StressUpdate::update_point`].
+    ///
+    /// # Errors
+    /// The law's failure.
     pub fn update_point(
         &self,
         strain: &[f64; 3],
@@ -135,6 +138,9 @@ impl PlanarUpdate {
     }
 
     /// Updates a group of points; see [`StressUpdate::update`].
+    ///
+    /// # Errors
+    /// The index of the first point without result, with the reason.
     pub fn update(
         &self,
         strains: &[[f64; 3]],

@@ -52,6 +52,9 @@ pub trait StressUpdate: Debug + Send + Sync {
     fn state_names(&self) -> &'static [&'static str];
 
     /// Updates one point. `old` and `new` have the length of the state.
+    ///
+    /// # Errors
+    /// The reason why the step has no result.
     fn update_point(
         &self,
         strain: &Voigt,
@@ -68,6 +71,9 @@ pub trait StressUpdate: Debug + Send + Sync {
 
     /// Updates a group of points: one strain, context and result per point; the states of the points follow one
     /// another.
+    ///
+    /// # Errors
+    /// The index of the first point without result, with the reason; `WrongSize` if the lengths of the slices do not match.
     fn update(
         &self,
         strains: &[Voigt],

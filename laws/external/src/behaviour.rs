@@ -171,7 +171,7 @@ pub(crate) fn check_step(gradients: &[f64], old: &[f64], new: &[f64], size: usiz
 }
 
 impl Behaviour {
-    /// Opens the library and checks the behaviour.
+    /// Opens the library and checks the behaviour. An error names the key of the study and the fault.
     pub fn load<const N: usize>(request: &Request, family: &Family) -> Result<Self, Wrong> {
         let library = open(request.library).or_else(|why| wrong("library", why))?;
         let symbols = Symbols { library, behaviour: request.behaviour, hypothesis: family.hypothesis };
@@ -226,7 +226,7 @@ impl Behaviour {
     }
 
     /// Integrates a step. The state consists of the behaviour's own state, then gradients, forces and energies at the
-    /// start of the step.
+    /// start of the step. An error is the message of the behaviour, a wrong length or a number that is not finite.
     pub fn step<const N: usize>(
         &self,
         gradients: [f64; N],

@@ -175,7 +175,7 @@ const UNCHANGED: u8 = 1;
 const CHANGED: u8 = 2;
 
 impl Isolated {
-    /// Starts the process, which opens and checks the behaviour.
+    /// Starts the process, which opens and checks the behaviour. An error names the key of the study and the fault.
     pub fn load<const N: usize>(request: &Request) -> Result<Self, Wrong> {
         let library = allowed(request.library).or_else(|why| wrong("library", why))?;
         let asked = Asked {
@@ -195,7 +195,7 @@ impl Isolated {
         }
     }
 
-    /// Integrates a step, as [`Behaviour::step`].
+    /// Integrates a step, as [`Behaviour::step`]. A process that fails or is late is ended; all later steps are then errors.
     pub fn step<const N: usize>(
         &self,
         gradients: [f64; N],
@@ -230,6 +230,9 @@ fn ending(mut process: Process) -> String {
 
 /// Runs a behaviour for another process until it sends no more steps. This is the whole work of a program that
 /// [`isolate_with`] names.
+///
+/// # Errors
+/// If the first line is not a request, or the connection fails.
 pub fn serve() -> io::Result<()> {
     let socket = connected()?;
     let mut from = BufReader::new(socket.try_clone()?);

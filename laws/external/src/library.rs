@@ -18,6 +18,9 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 /// Allows studies of this process to name a library. This does not run any of its code.
+///
+/// # Errors
+/// If the path does not exist or cannot be read.
 pub fn allow(path: &Path) -> io::Result<()> {
     let path = path.canonicalize()?;
     let mut allowed = locked(&ALLOWED);

@@ -1,5 +1,5 @@
 //! The connection of `isolate = true` on systems without socket pairs: a port of this machine, and a word that only the two
-//! processes know.
+//! processes know. Errors are those of the system.
 
 use std::collections::hash_map::RandomState;
 use std::hash::BuildHasher;
@@ -32,7 +32,7 @@ impl Door {
         Ok(format!("{} {}\n", self.listener.local_addr()?.port(), self.secret))
     }
 
-    /// Returns the connection of the process that knows the secret.
+    /// Returns the connection of the process that knows the secret. An error if it does not connect within `patience`.
     pub fn accept(self, patience: Duration) -> io::Result<TcpStream> {
         let end = Instant::now() + patience;
         while Instant::now() < end {

@@ -12,7 +12,7 @@ pub(crate) enum Runner {
 }
 
 impl Runner {
-    /// Opens the library and checks the behaviour.
+    /// Opens the library and checks the behaviour. An error names the key of the study and the fault.
     pub fn load<const N: usize>(request: &Request, family: &Family, isolate: bool) -> Result<Self, Wrong> {
         if isolate {
             Isolated::load::<N>(request).map(Runner::Apart)
@@ -29,7 +29,7 @@ impl Runner {
         }
     }
 
-    /// Returns the tangent in the initial state.
+    /// Returns the tangent in the initial state. An error names the key of the study and the fault.
     pub fn at_rest<const N: usize>(&self) -> Result<[[f64; N]; N], Wrong> {
         let old = vec![0.0; self.names().len()];
         check_rest(self.step([0.0; N], 0.0, &old, &mut old.clone()))

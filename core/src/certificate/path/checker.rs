@@ -77,8 +77,11 @@ impl PathChecker {
         PathChecker { finite, ..PathChecker::default() }
     }
 
-    /// Creates a checker that checks states against the structure of the assembly and the stages, whatever problem they
-    /// come with.
+    /// Creates a checker that checks states against the structure of the assembly and the stages, not against the problem
+    /// that they come with.
+    ///
+    /// # Errors
+    /// Names the part of the assembly from which no structure can be derived.
     pub fn certifying(assembly: &Assembly, stages: &[Stage], finite: bool) -> Result<Self, String> {
         Ok(PathChecker {
             finite,

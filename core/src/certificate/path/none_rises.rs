@@ -105,6 +105,7 @@ fn sums(column: &Column, vector: &FarkasVector) -> [Sum; 2] {
 }
 
 impl Products {
+    /// Computes the products of the multipliers with the equations, for the rates that are `refuted`.
     pub fn new(equations: &RateEquations, vector: &FarkasVector, refuted: Refuted) -> Self {
         let both = |column: &Column| {
             let [a, b] = sums(column, vector);
