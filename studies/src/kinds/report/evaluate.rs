@@ -279,7 +279,7 @@ fn rises_then_falls(value: Value) -> Value {
     if numbers.is_empty() {
         return Value::none("no value");
     }
-    let grows = numbers[..=top.min(numbers.len() - 1)].windows(2).all(|pair| pair[1].1 >= pair[0].1);
+    let grows = numbers[..=top].windows(2).all(|pair| pair[1].1 >= pair[0].1);
     let falls = numbers[top..].windows(2).all(|pair| pair[1].1 <= pair[0].1);
     Value::Truth(grows && falls && top > 0 && top + 1 < numbers.len())
 }
@@ -359,7 +359,7 @@ fn recoveries(curve: Value) -> Value {
     if numbers.is_empty() {
         return Value::none("no value");
     }
-    let range = numbers[..=top.min(numbers.len() - 1)].iter().map(|(x, _)| x.abs()).fold(0.0, f64::max);
+    let range = numbers[..=top].iter().map(|(x, _)| x.abs()).fold(0.0, f64::max);
     let steps = numbers[..=top].windows(2).filter(|pair| (pair[1].0 - pair[0].0).abs() > 1e-6 * range);
     let slopes: Vec<f64> = steps.map(|pair| (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0)).collect();
     let mut later = slopes.clone();

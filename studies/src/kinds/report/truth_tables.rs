@@ -326,6 +326,7 @@ fn functions_of_lists() {
         ("length(4)", "1"),
         ("length('a')", "1"),
         ("length(none)", "none (no equilibrium)"),
+        ("length(gap)", "{0: 1, 1: none (no equilibrium), 2: 1}"),
         ("first(list)", "1"),
         ("last(list)", "6"),
         ("first(bare)", "none (an empty list)"),
