@@ -367,6 +367,7 @@ fn values_at_an_abscissa() {
         ("within(zigzag, 1.00000001, 2.99999999)", "{2: 2}"),
         ("within(zigzag, 2, 2)", "{2: 2}"),
         ("within(far, 2, 3)", "{}"),
+        ("within(large, 1000.000001, 1000.5)", "{}"),
         ("within(up, 'a', 2)", "unknown (\"within\" needs two numbers)"),
         ("within(up, 0, none)", "unknown (\"within\" needs two numbers)"),
         ("within(none, 0, 1)", "none (no equilibrium)"),
@@ -389,6 +390,10 @@ fn recoveries_of_a_curve() {
     assert_eq!(curve(&[(0.0, 0.0), (1.0, 0.25), (2.0, 1.25), (3.0, 1.5), (4.0, 2.5)]), "2");
     assert_eq!(curve(&[(0.0, 0.0), (1.0, 1.0), (2.0, 0.0), (3.0, 0.9)]), "0");
     assert_eq!(curve(&[(0.0, 0.0), (2.0, 2.0), (4.0, 3.0), (5.0, 3.0)]), "0");
+    // The slope counts, not the rise of a step; and a curve in metres has as many as one in millimetres.
+    let uneven = [(0.0, 0.0), (2.0, 2.0), (4.0, 2.5), (4.5, 3.5)];
+    assert_eq!(curve(&uneven), "1");
+    assert_eq!(curve(&uneven.map(|(x, y)| (1e-3 * x, y))), "1");
     // Steps of equal abscissa have no slope.
     assert_eq!(curve(&[(0.0, 0.0), (1.0, 1.0), (1.0, 0.5), (2.0, 1.5)]), "0");
     assert_eq!(curve(&[(0.0, 0.0)]), "0");
