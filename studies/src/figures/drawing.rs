@@ -5,9 +5,10 @@ use super::fill;
 use super::format::{format_force, headline};
 use super::loads::Loads;
 use super::svg_canvas::SvgCanvas;
-use super::symbols::{OUTLINE, STONE, STRUT, Symbol, THRUST, mark};
-use super::thrust::{resultants, strut_lines, thrust_pieces};
+use super::symbols::{OUTLINE, STONE, STRUT, Symbol, THRUST, ZONE, mark};
+use super::thrust::{resultants, strut_lines, thrust_pieces, zone_parts};
 use crate::results::CaseResult;
+use crate::results::carried::JointEntry;
 use voussoir_core::limit::Status;
 use voussoir_core::model::geometry::{Vec2, bounding_box, turned};
 use voussoir_core::model::{Assembly, Stage};
@@ -154,6 +155,9 @@ pub(super) fn supports(canvas: &mut SvgCanvas, assembly: &Assembly) {
 
 fn forces(canvas: &mut SvgCanvas, assembly: &Assembly, result: &CaseResult, legend: &mut Legend) {
     let joint_forces = result.proof.field.as_ref().map(|field| resultants(assembly, field));
+    if assembly.arch.is_some() {
+        zone(canvas, assembly, &result.carried.joints, legend);
+    }
     if let Some(points) = &result.proof.thrust_line {
         let points: Vec<Option<Vec2>> = points.iter().map(|point| point.map(Vec2::from)).collect();
         let pieces = thrust_pieces(assembly, &points, joint_forces.as_deref().unwrap_or(&[]));
@@ -184,6 +188,15 @@ fn forces(canvas: &mut SvgCanvas, assembly: &Assembly, result: &CaseResult, lege
         }
     }
     legend.push((Symbol::Force, format!("joint force, width ∝ force (widest {})", format_force(strongest))));
+}
+
+/// The zone of thrust as a band, with the joints across it.
+fn zone(canvas: &mut SvgCanvas, assembly: &Assembly, joints: &[JointEntry], legend: &mut Legend) {
+    let parts = zone_parts(assembly, joints);
+    if !parts.is_empty() {
+        canvas.outlines(parts.iter().map(<[Vec2; 4]>::as_slice), ZONE, OUTLINE, outline_width(canvas, assembly), "");
+        legend.push((Symbol::Zone, "zone of thrust: all admissible thrust lines cross joints within it".into()));
+    }
 }
 
 fn strut(canvas: &mut SvgCanvas, assembly: &Assembly, stages: &[Stage], result: &CaseResult, legend: &mut Legend) {

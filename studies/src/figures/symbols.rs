@@ -28,6 +28,8 @@ pub const EARLIER: &str = "#86b8d8";
 pub const SETTLEMENT: &str = "#d55e00";
 /// Thrust line and joint forces.
 pub const THRUST: &str = "#009e73";
+/// Zone of thrust.
+pub const ZONE: &str = "#c9e8dd";
 /// Strut of an unbounded case.
 pub const STRUT: &str = "#cc79a7";
 /// Hinges and sliding joints.
@@ -62,6 +64,8 @@ pub enum Symbol {
     Settlement,
     /// The thrust line.
     Thrust,
+    /// The zone of thrust.
+    Zone,
     /// A joint's force.
     Force,
     /// The strut of an unbounded case.
@@ -99,6 +103,7 @@ impl LegendSymbol for Symbol {
             Symbol::EarlierLoad => canvas.arrow(ends[0], ends[1], EARLIER, 2.2, 10.0),
             Symbol::Settlement => canvas.arrow(ends[0], ends[1], SETTLEMENT, 3.0, 10.0),
             Symbol::Thrust => canvas.line(&ends, THRUST, 2.2, ""),
+            Symbol::Zone => boxed(canvas, [x, y], ZONE, THRUST, ""),
             Symbol::Force => canvas.line(&[[x + 6.0, y], [x + 28.0, y]], THRUST, 5.0, ""),
             Symbol::Strut => canvas.line(&ends, STRUT, 3.0, "9 5"),
             Symbol::Hinge => hinge(canvas, middle),

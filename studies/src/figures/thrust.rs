@@ -1,8 +1,9 @@
 //! Thrust lines and struts: joint resultants, and the corners that forces have inside blocks.
 
 use crate::results::FieldEntry;
-use voussoir_core::model::Assembly;
+use crate::results::carried::JointEntry;
 use voussoir_core::model::geometry::{Vec2, contains, cross};
+use voussoir_core::model::{Assembly, Joint};
 
 /// The resultant that a joint passes to its plus body.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,7 +26,7 @@ pub fn resultants(assembly: &Assembly, field: &[FieldEntry]) -> Vec<Option<Resul
         }
     }
     let strongest = sums.iter().map(|(n, t, _)| n.hypot(*t)).fold(0.0, f64::max);
-    let resultant = |joint: &voussoir_core::model::Joint, (normal, shear, moment): (f64, f64, Vec2)| {
+    let resultant = |joint: &Joint, (normal, shear, moment): (f64, f64, Vec2)| {
         if normal.abs() <= 1e-9 * strongest {
             return None;
         }
@@ -66,6 +67,22 @@ pub fn thrust_pieces(assembly: &Assembly, points: &[Option<Vec2>], forces: &[Opt
     }
     pieces.retain(|piece| piece.len() > 1);
     pieces
+}
+
+/// The zone of thrust of an arch: for each block between two joints whose zones are known the quadrilateral between them.
+pub fn zone_parts(assembly: &Assembly, joints: &[JointEntry]) -> Vec<[Vec2; 4]> {
+    let mut ends: Vec<Option<[Vec2; 2]>> = vec![None; assembly.joints.len()];
+    for entry in joints {
+        if let (Some(zone), Some(joint)) = (entry.zone, assembly.joints.get(entry.joint)) {
+            ends[entry.joint] = Some(zone.map(|e| joint.middle() + joint.frame().1 * e));
+        }
+    }
+    let pairs = assembly.joints.windows(2).zip(ends.windows(2));
+    let part = |(joints, ends): (&[Joint], &[Option<[Vec2; 2]>])| {
+        let ([a, b], [c, d]) = ends[0].zip(ends[1])?;
+        (joints[0].plus == joints[1].minus).then_some([a, b, d, c])
+    };
+    pairs.filter_map(part).collect()
 }
 
 /// Lines that join the resultants of a strut through the blocks of any assembly: two joints of a

@@ -1,6 +1,7 @@
 //! Forged results of a load that is carried: `verify` finds a forged force, zone, reserve and check.
 
 use super::tolerances::of_another_processor;
+use super::units::Written;
 use serde_json::{Value, json};
 use voussoir_tests::written::{findings, results};
 use voussoir_tests::{Arch, changed};
@@ -49,4 +50,21 @@ fn forged_forces_zones_and_reserves_are_found() {
             assert!(!findings(&study, &forged).is_empty(), "{at}");
         }
     }
+}
+
+/// The report, the drawing and joints.csv show the forces, the zone and the reserve; a collapse has none of them.
+#[test]
+fn pages_show_a_load_that_is_carried() {
+    let written = Written::of(&carried());
+    let report = written.text("report.html");
+    for words in ["Loads that are carried", "permissible limit state fulfilled", "zone of thrust", "collapse at factor"]
+    {
+        assert!(report.contains(words), "{words}");
+    }
+    assert!(written.text("figures/case-0000-scene.svg").contains("zone of thrust"));
+    let table = written.text("joints.csv");
+    assert_eq!(table.lines().count(), 1 + 10, "nine voussoirs have ten joints");
+    assert!(table.lines().next().is_some_and(|header| header.ends_with("zone_least [m],zone_greatest [m]")));
+    let collapse = Written::of(&Arch { voussoirs: 9, ends: "jointed", ..Arch::default() }.study());
+    assert!(!collapse.text("report.html").contains("Loads that are carried"));
 }

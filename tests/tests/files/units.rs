@@ -158,17 +158,17 @@ fn the_owner_of_a_key_decides_its_unit() {
 }
 
 /// Files and pictures of a study.
-struct Written(Vec<(String, Vec<u8>)>);
+pub struct Written(Vec<(String, Vec<u8>)>);
 
 impl Written {
-    fn of(text: &str) -> Self {
+    pub fn of(text: &str) -> Self {
         let source = StudySource::parse(text, "study.toml", &[]).and_then(read_source);
         let study = source.unwrap_or_else(|wrong| panic!("{wrong}"));
         let request = RunRequest { wanted: (0..study.count()).collect(), jobs: 1, ..RunRequest::default() };
         Written(study.run(&request, &Unobserved).files)
     }
 
-    fn text(&self, name: &str) -> String {
+    pub fn text(&self, name: &str) -> String {
         let found = self.0.iter().find(|(own, _)| own == name);
         let (_, bytes) = found.unwrap_or_else(|| panic!("no {name}"));
         String::from_utf8_lossy(bytes).into_owned()
