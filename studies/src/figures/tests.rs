@@ -318,6 +318,7 @@ fn every_writer_gives_its_files_and_they_need_nothing_else() {
                 "comparison",
                 "curve_csv",
                 "figures",
+                "joints_csv",
                 "report",
                 "results_csv",
                 "results_json",

@@ -5,7 +5,7 @@ use super::page;
 use super::register::register;
 use super::study_output::StudyOutput;
 use super::writer::Writer;
-use crate::figures::format::{escape, format_force, format_length, format_number, status_word};
+use crate::figures::format::{escape, format_force, format_number, status_word};
 use crate::results::CaseResult;
 use crate::results::carried::{JointEntry, PermissibleEntry, ReserveEntry, ReserveFlow};
 use serde_json::Value as Json;
@@ -162,7 +162,9 @@ fn joints(entries: &[JointEntry]) -> String {
     header.extend(if crushes { &["block length", "block stress", "of strength"][..] } else { &[] });
     header.push("sliding reserve");
     header.extend(zones.then_some("zone of thrust"));
-    let length = |x: Option<f64>| x.map_or("–".into(), format_length);
+    // One unit for all, so that columns can be compared.
+    let metres = |x: f64| format!("{} m", format_number(x, 3));
+    let length = |x: Option<f64>| x.map_or("–".into(), metres);
     let stress = |x: Option<f64>| x.map_or("–".into(), format_stress);
     let rows = entries.iter().take(ROWS).map(|entry| {
         let mut cells = vec![
@@ -172,7 +174,7 @@ fn joints(entries: &[JointEntry]) -> String {
             format_force(entry.shear),
             format!("{} m", format_force(entry.moment)),
             length(entry.eccentricity),
-            format_length(entry.contact_length),
+            metres(entry.contact_length),
             stress(entry.greatest_stress),
         ];
         if crushes {
@@ -185,7 +187,7 @@ fn joints(entries: &[JointEntry]) -> String {
         }
         cells.push(entry.sliding_reserve.map_or("–".into(), |x| format_number(x, 4)));
         if zones {
-            cells.push(entry.zone.map_or("–".into(), |[a, b]| format!("{} to {}", format_length(a), format_length(b))));
+            cells.push(entry.zone.map_or("–".into(), |[a, b]| format!("{} to {}", metres(a), metres(b))));
         }
         cells
     });
