@@ -1,10 +1,10 @@
-//! The last resort against a panic in what stored data leads to.
+//! Catches panics that stored data may cause, and returns them as messages.
 
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
 
 thread_local! {
-    /// True while a panic of this thread is caught and reported in words.
+    /// True while [`caught`] runs work on this thread.
     static CAUGHT: Cell<bool> = const { Cell::new(false) };
 }
 

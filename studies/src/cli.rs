@@ -1,4 +1,4 @@
-//! The command line: what can be asked for, and which command answers.
+//! The command line: its commands, their options, and the function that runs each.
 
 use crate::commands;
 pub use crate::commands::clock::processor_time;
@@ -191,7 +191,7 @@ enum Command {
 }
 
 impl Command {
-    /// Does what was asked for; `arguments` are those after the program's name.
+    /// Runs the command; `arguments` are the arguments after the program's name.
     fn answer(self, arguments: &[String]) -> Outcome {
         match self {
             Command::Run { studies, out, set, jobs, case, resume, quiet, shard, json, list, open } => {
@@ -275,8 +275,8 @@ impl New {
     }
 }
 
-/// Does what the arguments of the process ask for; 0 all cases answered and certified, 1 some case not,
-/// 2 wrong input, 3 cannot read or write, or an error of the program itself.
+/// Runs the program with the arguments of the process. Exit code 0: all cases are answered and certified; 1: some case is
+/// not; 2: wrong input; 3: a file cannot be read or written, or the program itself has an error.
 pub fn main() -> ExitCode {
     #[cfg(feature = "external")]
     if let Some(code) = behaviour_for_another() {
@@ -288,7 +288,7 @@ pub fn main() -> ExitCode {
             ExitCode::from(commands::ended(Err(CliError::no_access(why))))
         }
         Ok(Ok(code)) => ExitCode::from(code),
-        // Asked for help or version, or not understood: said, and ended as clap does.
+        // Help, version or a usage error: `clap` has printed it and has set the exit code.
         Ok(Err(said)) => {
             commands::keep(said.print());
             let printed = commands::ended(Ok(Verdict::Proved));
@@ -297,11 +297,13 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// The word after which this program runs a library's behaviour for another process; no command that users need.
+/// First argument of a process that runs the behaviour of an external library for another process. It is not a command
+/// for users.
 #[cfg(feature = "external")]
 const WORKER: &str = "run-behaviour";
 
-/// Where this process was started to run a behaviour apart, what that came to; else behaviours run apart in this program.
+/// Runs an external behaviour and returns its exit code if this process was started for that. Otherwise it registers the
+/// separate process in which this program runs external behaviours.
 #[cfg(feature = "external")]
 fn behaviour_for_another() -> Option<ExitCode> {
     if std::env::args_os().nth(1).is_some_and(|word| word == WORKER) {
@@ -314,12 +316,12 @@ fn behaviour_for_another() -> Option<ExitCode> {
     None
 }
 
-/// The same for given arguments, without the program's name; an error is what clap has to say instead.
+/// Runs the program with given arguments, without the program's name. The error is the message of `clap`.
 pub fn main_from(arguments: impl IntoIterator<Item = std::ffi::OsString>) -> Result<u8, clap::Error> {
     outcome_of(arguments).map(commands::ended)
 }
 
-/// The outcome of given arguments, without the program's name, with nothing printed of an error.
+/// Returns the outcome for given arguments, without the program's name. Errors are not printed.
 ///
 /// # Errors
 /// The message of clap, if the arguments are not understood or ask for help or the version.

@@ -1,7 +1,7 @@
 //! Voussoir: how masonry made of blocks stands and collapses.
 //!
-//! A study is text, a file, a value with the same keys, or is built piece by piece; its answers are typed and carry
-//! what proves them:
+//! You can read a study from a text, a file or a value with the same keys, or build it step by step. Its results are typed
+//! and contain their proofs:
 //!
 //! ```
 //! use voussoir::prelude::*;
@@ -27,14 +27,14 @@
 //!
 //! | | |
 //! |---|---|
-//! | [`Study::from_toml`], [`Study::from_file`], [`Study::from_value`], [`Study::builder`] | a study, or a [`StudyError`] with every mistake in it |
-//! | [`Study::run`], [`Study::run_with`] | all its cases, or some, side by side, watched and cancelled by an [`Observer`](solve::Observer) such as [`Watch`](solve::Watch) |
-//! | [`StudyResults`], [`CaseResult`] | what `results.json` holds, typed; [`verify()`] checks it |
-//! | [`kinds::read_study`], [`kinds::read_source`] with [`study::StudySource`] | a study of any kind, also one without a scene: [`LoadedStudy::run`](kinds::LoadedStudy::run) gives the files that `voussoir run` writes, as bytes |
-//! | [`conformance::conform`] | whether a law of one's own keeps what it promises |
-//! | [`cli::main`] | the command line, for a program that links plug-ins of its own |
+//! | [`Study::from_toml`], [`Study::from_file`], [`Study::from_value`], [`Study::builder`] | a study, or a [`StudyError`] with all mistakes in it |
+//! | [`Study::run`], [`Study::run_with`] | solves all cases or some of them, in parallel; an [`Observer`](solve::Observer) such as [`Watch`](solve::Watch) follows the run and can cancel it |
+//! | [`StudyResults`], [`CaseResult`] | the content of `results.json`, typed; [`verify()`] checks it |
+//! | [`kinds::read_study`], [`kinds::read_source`] with [`study::StudySource`] | a study of any kind, also one without a scene: [`LoadedStudy::run`](kinds::LoadedStudy::run) returns the files that `voussoir run` writes, as bytes |
+//! | [`conformance::conform`] | checks that your law keeps the promises of its card and its trait |
+//! | [`cli::main`] | the command line, for a program that links its own plug-ins |
 //!
-//! The crate names every crate that holds plug-ins, because one that no source names registers nothing.
+//! This crate names every crate that contains plug-ins: the linker drops a crate that no source names, with its plug-ins.
 #![forbid(unsafe_code)]
 
 pub mod bench;
@@ -70,7 +70,7 @@ pub use voussoir_external as external;
 pub use voussoir_laws as laws;
 pub use voussoir_solvers as solvers;
 
-/// The page's Rust compiles, and gives the numbers that it shows.
+/// Compiles and runs the Rust examples of the page `library.md` and checks their numbers.
 #[cfg(doctest)]
 #[doc = include_str!("../../docs/reference/library.md")]
 pub struct Page;

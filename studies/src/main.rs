@@ -1,4 +1,4 @@
-//! The command line of Voussoir.
+//! The program `voussoir`.
 
 fn main() -> std::process::ExitCode {
     voussoir::cli::main()

@@ -1,4 +1,4 @@
-//! The names that a program needs to ask and to read the answer: `use voussoir::prelude::*;`.
+//! The names that a program needs to run a study and to read its results: `use voussoir::prelude::*;`.
 
 pub use crate::kinds::RunOptions;
 pub use crate::results::{CaseResult, StudyResults};

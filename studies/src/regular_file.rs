@@ -1,4 +1,4 @@
-//! Files of a results folder are opened only if they are regular: a pipe or a device might never end.
+//! Opens files of a results folder only if they are regular files: reading a pipe or a device might never end.
 
 use std::fs::File;
 use std::io::{Error, ErrorKind, Result};
@@ -8,9 +8,10 @@ use std::path::Path;
 ///
 /// # Errors
 ///
-/// If it cannot be opened, is no regular file ([`ErrorKind::InvalidInput`]) or is longer ([`ErrorKind::FileTooLarge`]).
+/// The file cannot be opened, is not a regular file ([`ErrorKind::InvalidInput`]) or is longer
+/// ([`ErrorKind::FileTooLarge`]).
 pub(crate) fn open_regular(path: &Path, limit: u64) -> Result<File> {
-    // Before it is opened: a pipe without a writer blocks whoever opens it.
+    // Check before opening: opening a pipe that has no writer blocks.
     check(&std::fs::metadata(path)?, limit)?;
     let file = File::open(path)?;
     check(&file.metadata()?, limit)?;

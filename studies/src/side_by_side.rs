@@ -1,12 +1,12 @@
-//! Work on several processors.
+//! Parallel work on several processors.
 
 use rayon::prelude::*;
 
-/// Stack of a thread: as much as the first one of a program has.
+/// Stack of a thread \[bytes\]: the usual stack of a program's first thread.
 const STACK: usize = 8 << 20;
 
-/// Does some work with at most `jobs` threads for what it does in parallel; results must not depend on their number.
-/// Work within such work is done by the same threads.
+/// Runs `work` with at most `jobs` threads for its parallel parts. Results must not depend on the number of threads. Nested
+/// calls share the threads of the outer call.
 pub fn side_by_side<T: Send>(jobs: usize, work: impl FnOnce() -> T + Send) -> T {
     let jobs = jobs.max(1);
     if within() == Some(jobs) {
@@ -14,12 +14,13 @@ pub fn side_by_side<T: Send>(jobs: usize, work: impl FnOnce() -> T + Send) -> T 
     }
     match rayon::ThreadPoolBuilder::new().num_threads(jobs).stack_size(STACK).build() {
         Ok(pool) => pool.install(work),
-        // No thread to be had: the caller's own, and those of the process.
+        // If no threads can be created, the calling thread does the work.
         Err(_) => work(),
     }
 }
 
-/// What `one` makes of each item, in their order: side by side within [`side_by_side`], else one after the other.
+/// Applies `one` to each item and returns the results in the order of the items. Runs in parallel within [`side_by_side`],
+/// otherwise sequentially.
 pub fn in_order<A: Sync, B: Send>(items: &[A], one: impl Fn(&A) -> B + Send + Sync) -> Vec<B> {
     match within() {
         Some(2..) => items.par_iter().map(one).collect(),
@@ -27,12 +28,12 @@ pub fn in_order<A: Sync, B: Send>(items: &[A], one: impl Fn(&A) -> B + Send + Sy
     }
 }
 
-/// Threads that [`in_order`] works with here.
+/// Returns the number of threads that [`in_order`] uses here.
 pub fn threads() -> usize {
     within().unwrap_or(1)
 }
 
-/// Threads of the work that the caller is a part of; `None` outside of such work.
+/// Returns the number of threads of the enclosing [`side_by_side`]; `None` outside of it.
 fn within() -> Option<usize> {
     rayon::current_thread_index().map(|_| rayon::current_num_threads())
 }

@@ -1,4 +1,4 @@
-//! Who takes part: variants, or solvers with what makes them more or less accurate, one thing at a time.
+//! The contestants of a bench: the variants of a study, or solvers with accuracy settings that differ one at a time.
 
 use crate::solve::knobs::{Sets, finer_mesh, other_order, smaller_steps};
 use crate::solve::restated::restated;
@@ -6,20 +6,20 @@ use crate::study::Case;
 use serde_json::json;
 use voussoir_core::plugin::{Card, PluginKind, candidates};
 
-/// A name with the case to be answered, or why it cannot be.
+/// A name with its case, or the reason why the case is not possible.
 pub(super) struct Contestant {
     pub name: String,
     pub case: Result<Case, String>,
 }
 
-/// The variants of a study.
+/// Returns the variants of a study.
 pub(super) fn of_variants<'a>(cases: impl Iterator<Item = &'a Case>) -> Vec<Contestant> {
     let own = |case: &Case| Contestant { name: case.variant.clone().unwrap_or_default(), case: Ok(case.clone()) };
     cases.map(own).collect()
 }
 
-/// Every solver that takes the case; with those that follow a path, meshes half and twice as fine, elements of lower and
-/// higher order, and steps of a half and of a quarter. The finest mesh stands last.
+/// Returns every solver that supports the case. A path solver also takes part with meshes half and twice as fine, with
+/// elements of lower and higher order, and with steps of a half and of a quarter. The finest mesh is the last one.
 pub(super) fn contestants(case: &Case) -> Vec<Contestant> {
     let mut found = Vec::new();
     for card in candidates(PluginKind::LimitSolver) {

@@ -1,53 +1,53 @@
-//! What was measured: problems, contestants at them, errors.
+//! Measured data of a bench: problems, results and errors of the contestants.
 
 use crate::results::CaseResult;
 
-/// One contestant at one problem.
+/// The measurement of one contestant for one problem.
 #[derive(Debug, Clone)]
 pub struct Measurement {
     /// Index of the problem.
     pub problem: usize,
     /// Name of the contestant.
     pub contestant: String,
-    /// Relative error of the load factor; `None` where it has failed, or is the reference, or there is none.
+    /// Relative error of the load factor. `None` if the contestant has failed or is the reference, or if there is no reference.
     pub error: Option<f64>,
-    /// Seconds, the least of all runs.
+    /// Least time of all runs \[s\].
     pub seconds: f64,
-    /// The answer.
+    /// Result of the contestant.
     pub result: CaseResult,
 }
 
 impl Measurement {
-    /// The load factor, where it is a certified collapse or limit point.
+    /// Returns the load factor if the result is a certified collapse or limit point.
     pub fn factor(&self) -> Option<f64> {
         self.result.collapse_load()
     }
 }
 
-/// A case of the study without its variant, with what its errors are measured from.
+/// A case of the study without its variant, with the reference of its errors.
 #[derive(Debug, Clone, Default)]
 pub struct Problem {
     /// Scene and swept values.
     pub name: String,
-    /// λ*, and where it is from.
+    /// Reference factor λ* and its source.
     pub reference: Option<(f64, String)>,
 }
 
-/// What was measured.
+/// All measurements of a bench.
 #[derive(Debug, Clone, Default)]
 pub struct Bench {
     /// The problems.
     pub problems: Vec<Problem>,
-    /// Every contestant at every problem, problem after problem.
+    /// Measurements of every contestant, sorted by problem.
     pub measurements: Vec<Measurement>,
-    /// Contestants that cannot answer a problem, and why: (problem, contestant, reason).
+    /// Contestants that cannot solve a problem: (problem, contestant, reason).
     pub refused: Vec<(usize, String, String)>,
-    /// Whether it was ended before all was measured.
+    /// True if the bench was stopped before the last measurement.
     pub cut_short: bool,
 }
 
 impl Bench {
-    /// Adds what was measured of another study, whose problems get its name.
+    /// Adds the measurements of another study; the names of its problems get the name of the study.
     pub fn join(&mut self, name: &str, other: Bench) {
         let offset = self.problems.len();
         let named = |own: Problem| {

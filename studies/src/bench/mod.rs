@@ -1,8 +1,7 @@
-//! Run time against error: the variants of a study, or every solver that can answer it over what makes it more or less
-//! accurate, side by side.
+//! Run time against error: the variants of a study, or every compatible solver with several settings of its accuracy.
 //!
-//! What is asked of every contestant is decided before: a case that is no certified collapse or limit point has failed, and the error
-//! is |λ/λ* − 1| for one reference λ* a problem. Time is that of one thread, the least of several runs.
+//! All contestants get the same question. A case that is not a certified collapse or limit point counts as failed. The error is
+//! |λ/λ* − 1| with one reference λ* for each problem. Time is the least of several runs on one thread.
 
 mod contestants;
 mod measured;
@@ -17,33 +16,33 @@ use crate::study::{Case, Study};
 use contestants::{Contestant, contestants, of_variants};
 use voussoir_core::plugin::{PluginKind, card};
 
-/// What is measured takes so many seconds at least.
+/// Least duration of a timed measurement \[s\].
 const TICKS: f64 = 0.05;
-/// But is done no more than so many times.
+/// Greatest number of repetitions in a timed measurement.
 const MOST_OFTEN: u32 = 1 << 12;
 
-/// How a study is benched.
+/// Options of a bench.
 pub struct BenchOptions<'a> {
-    /// Runs of each contestant, of which the fastest counts.
+    /// Runs of each contestant; the fastest run counts.
     pub runs: usize,
-    /// Where errors are measured from.
+    /// Reference of the errors.
     pub reference: Option<Reference>,
-    /// Seconds so far; the difference of two readings is what is measured.
+    /// Returns the time \[s\]; the difference of two readings is a duration.
     pub clock: &'a dyn Fn() -> f64,
-    /// Is told each measurement, and whether to go on.
+    /// Receives each measurement; returns false to stop the bench.
     pub told: &'a dyn Fn(&Measurement) -> bool,
 }
 
-/// Where errors are measured from.
+/// The reference of errors.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Reference {
-    /// The answers of this variant, or contestant.
+    /// The results of this variant or contestant.
     Named(String),
-    /// A load factor that is known.
+    /// A known load factor.
     Known(f64),
 }
 
-/// Measures the variants of a study; of one without variants, every solver that can answer it.
+/// Measures the variants of a study. If a study has no variants, every compatible solver is measured.
 pub fn bench(study: &Study, options: &BenchOptions) -> Bench {
     let variants = study.outline.variants.len();
     let count = study.cases.len() / variants.max(1);
@@ -79,7 +78,7 @@ pub fn bench(study: &Study, options: &BenchOptions) -> Bench {
     bench
 }
 
-/// Names of those that take part in the first problem.
+/// Returns the names of the contestants of the first problem.
 pub fn names(study: &Study) -> Vec<String> {
     match (study.outline.variants.is_empty(), study.cases.first()) {
         (true, Some(case)) => {
@@ -96,7 +95,7 @@ fn name_of(case: &Case) -> String {
 
 fn measure(problem: usize, contestant: String, case: &Case, options: &BenchOptions) -> Measurement {
     let result = solve_case(case);
-    // Clocks tick every few milliseconds: short work is done often enough to be seen.
+    // The resolution of clocks is a few milliseconds: short work is repeated until the clock shows it.
     let (mut seconds, mut often) = (f64::INFINITY, 1u32);
     let mut left = options.runs.max(1);
     while left > 0 {
@@ -113,8 +112,8 @@ fn measure(problem: usize, contestant: String, case: &Case, options: &BenchOptio
     Measurement { problem, contestant, error: None, seconds, result }
 }
 
-/// Errors of a problem's measurements: from what was asked for, from the variant that the study names, from limit analysis
-/// where that answers the `same` question, or from the last and finest of the path that has most.
+/// Sets the errors of a problem's measurements. The reference is, in this order: the requested one; the variant that the
+/// study names; limit analysis, if it answers the `same` question; the last path with the largest number of unknowns.
 fn refer(bench: &mut Bench, problem: usize, (asked, named): (Option<&Reference>, Option<&str>), same: bool) {
     let own = || bench.measurements.iter().filter(|own| own.problem == problem);
     let of = |found: Option<&Measurement>| found.and_then(|own| Some((own.factor()?, own.contestant.clone())));

@@ -1,4 +1,4 @@
-//! What was measured as a table, as CSV, and as two charts.
+//! Output of a bench: a table, a CSV file and two charts.
 
 use super::measured::{Bench, Measurement};
 use crate::figures::chart::chart;
@@ -7,7 +7,7 @@ use crate::figures::series::{ChartStyle, Series};
 use crate::writers::csv_table::csv_table;
 use comfy_table::{ContentArrangement, Table, presets};
 
-/// Errors below this are drawn at it: the last bits of a number.
+/// Smaller errors are drawn as this value: they are rounding errors.
 const NO_ERROR: f64 = 1e-16;
 
 fn text<T>(value: Option<T>, written: impl Fn(T) -> String) -> String {
@@ -18,7 +18,7 @@ fn counters(own: &Measurement) -> String {
     own.result.counters.iter().map(|(name, count)| format!("{name} {count}")).collect::<Vec<_>>().join(", ")
 }
 
-/// One row a measurement, for the terminal.
+/// Returns a table for the terminal with one row for each measurement.
 pub fn table(bench: &Bench) -> String {
     let several = bench.problems.len() > 1;
     let mut table = Table::new();
@@ -48,7 +48,7 @@ pub fn table(bench: &Bench) -> String {
     text
 }
 
-/// The same with every digit.
+/// Returns the same table as CSV, with all digits.
 pub fn csv(bench: &Bench) -> String {
     let header = [
         "problem",
@@ -83,7 +83,7 @@ pub fn csv(bench: &Bench) -> String {
     csv_table(header.map(String::from).to_vec(), bench.measurements.iter().map(row))
 }
 
-/// Names of contestants in order of appearance.
+/// Returns the names of the contestants in order of appearance.
 fn names(bench: &Bench) -> Vec<&str> {
     let mut names: Vec<&str> = Vec::new();
     for own in &bench.measurements {
@@ -94,7 +94,7 @@ fn names(bench: &Bench) -> Vec<&str> {
     names
 }
 
-/// Error over time, a mark for each contestant and problem; `None` where nothing has an error.
+/// Draws error over time, with a mark for each contestant and problem. Returns `None` if no measurement has an error.
 pub fn error_chart(title: &str, bench: &Bench) -> Option<String> {
     let series: Vec<Series> = names(bench)
         .into_iter()
@@ -114,8 +114,8 @@ pub fn error_chart(title: &str, bench: &Bench) -> Option<String> {
         .then(|| chart(title, "processor time [s]", "relative error of the load factor [-]", &series, &[note], &style))
 }
 
-/// The share of problems that a contestant answers, within an error, in so many times the least time that anybody takes
-/// (Dolan and Moré, Math. Program. 91, 2002); `None` of a single problem.
+/// Draws a performance profile: the share of problems that a contestant solves within an error, over its time divided by
+/// the least time of all contestants (Dolan and Moré, Math. Program. 91, 2002). Returns `None` for a single problem.
 pub fn profile_chart(title: &str, bench: &Bench, within: f64) -> Option<String> {
     let count = bench.problems.len();
     if count < 2 {

@@ -34,7 +34,7 @@ impl LoadKind for Axles {
         let start = x_at(site, self.at, "at")?;
         let (left, right) = reach(site, "at")?;
         let on = |position: &f64| (left..=right).contains(&(start + position));
-        // Where all are off it is the place that is wrong.
+        // If all axles are off the arch, the mistake is the position.
         let crossing = self.positions.iter().any(on);
         let (mut placed, mut diagnostics, mut notes) = (Vec::new(), Vec::new(), Vec::new());
         for (i, (position, force)) in self.positions.iter().zip(&self.forces).enumerate() {

@@ -1,9 +1,9 @@
-//! The extrados of an arch or a bridge, on which loads stand.
+//! Loads on the extrados of an arch or a bridge.
 //!
-//! On arches `span_fraction` f counts along the intrados span from the left springing, and a load
-//! acts on the straight extrados chord above (or below) that x; where a vertical meets two chords,
-//! on the upper one. A force on the boundary of two voussoirs goes to the one nearer to midspan,
-//! and exactly at midspan half to each, so that mirrored loads load mirrored blocks.
+//! On arches `span_fraction` f is measured along the intrados span from the left springing. A load acts on the straight
+//! extrados chord above (or below) that x. If a vertical line crosses two chords, the load acts on the upper one. A force at
+//! the boundary of two voussoirs acts on the voussoir nearer to midspan. Exactly at midspan each voussoir gets half, so that
+//! mirrored loads act on mirrored blocks.
 
 use super::dispersion::{Dispersion, Patch, Through};
 use super::site::LoadSite;
@@ -11,10 +11,10 @@ use voussoir_core::model::geometry::Vec2;
 use voussoir_core::model::{CONTACT_TOLERANCE, Chord, LoadSpread, PointForce, carried};
 use voussoir_core::plugin::Diagnostic;
 
-/// Share of the scene's size within which a load is at a vertex.
+/// Share of the size of the scene within which a load is moved to a vertex.
 const ROUNDING: f64 = 1e-12;
 
-/// The faces on which loads stand.
+/// Returns the faces that carry loads.
 fn faces(site: &LoadSite, key: &str) -> Result<Vec<Chord>, Vec<Diagnostic>> {
     let faces = site.assembly.extrados();
     if faces.is_empty() {
@@ -25,7 +25,7 @@ fn faces(site: &LoadSite, key: &str) -> Result<Vec<Chord>, Vec<Diagnostic>> {
     Ok(faces)
 }
 
-/// x of a span fraction, between the intrados ends of the first and last joint across a ring.
+/// Returns x of a span fraction, between the intrados ends of the first and last joint across a ring.
 pub fn x_at(site: &LoadSite, fraction: f64, key: &str) -> Result<f64, Vec<Diagnostic>> {
     faces(site, key)?;
     site.finite(&[(key, &[fraction])])?;
@@ -37,14 +37,14 @@ pub fn x_at(site: &LoadSite, fraction: f64, key: &str) -> Result<f64, Vec<Diagno
     Ok(left + fraction * span)
 }
 
-/// How far the faces reach on which loads stand \[m\].
+/// Returns the horizontal range of the faces that carry loads \[m\].
 pub fn reach(site: &LoadSite, key: &str) -> Result<(f64, f64), Vec<Diagnostic>> {
     let (left, right) = extent(&faces(site, key)?);
     let tolerance = ROUNDING * site.assembly.size();
     Ok((left - tolerance, right + tolerance))
 }
 
-/// A force at x: on the upper chord, at the boundary of two on the one nearer to midspan, at midspan half on each.
+/// Places a force at x on the upper chord: at a boundary on the chord nearer to midspan, at midspan half on each.
 pub fn on_extrados(site: &LoadSite, x: f64, force: Vec2, key: &str) -> Result<Vec<PointForce>, Vec<Diagnostic>> {
     let chords = faces(site, key)?;
     let chosen = upper_at(&chords, x, ROUNDING * site.assembly.size());
@@ -58,7 +58,7 @@ pub fn on_extrados(site: &LoadSite, x: f64, force: Vec2, key: &str) -> Result<Ve
     chosen.into_iter().map(on).collect()
 }
 
-/// The upper chords at x: one, or two alike where they meet in the middle of a ring; none beyond the ends.
+/// Returns the upper chords at x: one chord, two equal ones at the middle of a ring, none beyond the ends.
 fn upper_at(chords: &[Chord], x: f64, tolerance: f64) -> Vec<Chord> {
     let here: Vec<_> = chords
         .iter()
@@ -66,15 +66,15 @@ fn upper_at(chords: &[Chord], x: f64, tolerance: f64) -> Vec<Chord> {
         .map(|chord| (chord, chord.at(x)))
         .collect();
     let Some(top) = here.iter().map(|(_, point)| point.y).max_by(f64::total_cmp) else { return Vec::new() };
-    // Chords that meet at x have their common vertex there, to within the tolerance and its slope.
+    // Chords that meet at x share a vertex, within the tolerance and the slope of the chord.
     let near = |point: &Vec2| here.iter().any(|(_, p)| p.y == top && (point - p).norm() <= 4.0 * tolerance);
     let upper: Vec<_> = here.iter().filter(|(_, point)| point.y == top || near(point)).collect();
     let nearest = upper.iter().map(|(chord, _)| chord.from_middle).min().unwrap_or(0);
     upper.into_iter().filter(|(chord, _)| chord.from_middle == nearest).map(|(chord, _)| **chord).collect()
 }
 
-/// Forces of an even load per plan length \[N/m\] between two x; each voussoir gets one force at the middle of what
-/// it carries, or the points of a rule. `keys` name the ends in what is wrong.
+/// Returns the forces of a uniform load per plan length \[N/m\] between two x. Each rigid voussoir gets one force at the
+/// middle of its loaded length, each deformable one the points of a quadrature rule. `keys` name the ends in messages.
 pub fn on_patch(
     site: &LoadSite,
     [start, end]: [f64; 2],
@@ -98,8 +98,8 @@ pub fn on_patch(
     Ok(forces)
 }
 
-/// Forces of an even load per plan length \[N/m\] between two x; what lies beyond the bridge, or on what the ground
-/// holds, goes to the ground.
+/// Returns the forces of a uniform load per plan length \[N/m\] between two x. Load beyond the bridge or on fixed bodies
+/// goes to the ground.
 pub fn on_faces(site: &LoadSite, ends: [f64; 2], density: Vec2, key: &str) -> Result<Vec<PointForce>, Vec<Diagnostic>> {
     let chords = faces(site, key)?;
     let carried = carried(&chords, ends, ROUNDING * site.assembly.size());
@@ -110,18 +110,18 @@ pub fn on_faces(site: &LoadSite, ends: [f64; 2], density: Vec2, key: &str) -> Re
     Ok(movable.flat_map(on).collect())
 }
 
-/// What a load on the road does to the blocks.
+/// The action of a load on the road on the blocks.
 #[derive(Debug)]
 pub struct FromRoad {
     /// Forces for a load of 1 N downwards.
     pub forces: Vec<PointForce>,
-    /// How far the patch reaches beyond its own ends after its way through the fill \[m\].
+    /// Distance by which the patch is longer on each side after its way through the fill \[m\].
     pub reach: f64,
-    /// The same for drawings.
+    /// The spread, for drawings.
     pub spread: LoadSpread,
 }
 
-/// A load of 1 N, even over a patch of the road, spread in the fill; `None` where its centre is off the bridge.
+/// Spreads a load of 1 N, uniform over a patch of the road, in the fill. Returns `None` if its centre is off the bridge.
 pub fn from_road(site: &LoadSite, patch: Patch, key: &str) -> Result<Option<FromRoad>, Vec<Diagnostic>> {
     let chords = faces(site, key)?;
     let tolerance = ROUNDING * site.assembly.size();
@@ -152,7 +152,7 @@ pub fn from_road(site: &LoadSite, patch: Patch, key: &str) -> Result<Option<From
     Ok(Some(FromRoad { forces, reach, spread }))
 }
 
-/// Downward forces with one resultant for each rigid block: on its straight chord, where they stand.
+/// Merges downward forces into one resultant for each rigid block, on the straight chord that carries them.
 fn merged(site: &LoadSite, forces: Vec<PointForce>) -> Vec<PointForce> {
     let mut out: Vec<PointForce> = Vec::new();
     for force in forces {
@@ -168,7 +168,7 @@ fn merged(site: &LoadSite, forces: Vec<PointForce>) -> Vec<PointForce> {
     out
 }
 
-/// The layers between the road and a level at x, from the lowest.
+/// Returns the layers between the road and a level at x, from bottom to top.
 pub fn fill_layers(site: &LoadSite, x: f64, level: f64) -> Vec<Through> {
     let Some((bridge, road)) = site.assembly.bridge.as_ref().and_then(|bridge| Some((bridge, bridge.road_at(x)?)))
     else {
@@ -186,8 +186,8 @@ pub fn fill_layers(site: &LoadSite, x: f64, level: f64) -> Vec<Through> {
     through
 }
 
-/// How a load above the extrados at x spreads by a law of its own; a mistake at `key` where the law gives no depth and
-/// there is no fill.
+/// Spreads a load above the extrados at x by the law that the load names. Reports a mistake at `key` if neither the law nor
+/// a fill defines the depth.
 pub fn dispersed(
     site: &LoadSite,
     law: &dyn Dispersion,
@@ -204,7 +204,7 @@ pub fn dispersed(
     Ok(law.spread(patch, &fill))
 }
 
-/// Least and greatest x of the extrados.
+/// Returns the least and greatest x of the extrados.
 fn extent(chords: &[Chord]) -> (f64, f64) {
     let left = chords.iter().fold(f64::INFINITY, |x, chord| x.min(chord.left()));
     (left, chords.iter().fold(f64::NEG_INFINITY, |x, chord| x.max(chord.right())))

@@ -15,13 +15,13 @@ pub(super) struct LoadKeys {
     dispersion: Option<Box<dyn Dispersion>>,
 }
 
-/// What an entry of `loads` may hold: the keys of one of the registered load kinds.
+/// Returns the shape of an entry of `loads`: the keys of one of the registered load kinds.
 pub fn load_shape() -> &'static Shape {
     static SHAPE: LazyLock<Shape> = LazyLock::new(|| {
         let kinds = cards_of(PluginKind::LoadKind).into_iter();
         let variants: Vec<Variant> =
             kinds.map(|card| Variant { tag: card.tag, doc: card.summary, parameters: card.parameters }).collect();
-        // Made once, from a registry that lives as long as the program.
+        // Made once, from a registry with the lifetime of the program.
         Shape::Tagged { key: PluginKind::LoadKind.tag_key(), variants: Vec::leak(variants) }
     });
     &SHAPE

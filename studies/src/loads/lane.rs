@@ -1,4 +1,4 @@
-//! `lane`: an even load along the road of a bridge, as of a lane or a track.
+//! `lane`: a uniform load along the road of a bridge, such as a traffic lane or a railway track.
 
 use super::extrados::on_faces;
 use super::load_kind::{LoadKind, Placed};

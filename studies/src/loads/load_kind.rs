@@ -1,4 +1,4 @@
-//! What a load kind is.
+//! The trait of a kind of load.
 
 use super::site::LoadSite;
 use std::fmt::Debug;
@@ -6,16 +6,16 @@ use voussoir_core::model::geometry::Vec2;
 use voussoir_core::model::{LoadSpread, PointForce};
 use voussoir_core::plugin::Diagnostic;
 
-/// What a load does to the blocks.
+/// The action of a load on the blocks.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Placed {
     /// Forces on blocks.
     pub forces: Vec<PointForce>,
     /// Accelerations of all blocks \[m/s²\].
     pub accelerations: Vec<Vec2>,
-    /// How what stands on a road has spread.
+    /// The spread of loads on the road.
     pub spreads: Vec<LoadSpread>,
-    /// What a user should know of where the load went.
+    /// Notes for the user about the places where the load acts.
     pub notes: Vec<String>,
 }
 
@@ -28,6 +28,6 @@ impl From<Vec<PointForce>> for Placed {
 /// A kind of load, chosen by `kind = …` in an entry of `loads`.
 #[typetag::serde(tag = "kind")]
 pub trait LoadKind: Debug + Send + Sync {
-    /// The forces and accelerations of the load, or what is wrong with its keys on these blocks.
+    /// Returns the forces and accelerations of the load. The error lists the mistakes in its keys for these blocks.
     fn place(&self, site: &LoadSite) -> Result<Placed, Vec<Diagnostic>>;
 }

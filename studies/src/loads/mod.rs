@@ -1,4 +1,4 @@
-//! Loads of a stage: from what a study says to forces on blocks. One file each; file = tag.
+//! Loads of a stage: from the keys of a study to forces on blocks. One file each; file = tag.
 
 pub mod axles;
 pub mod body;

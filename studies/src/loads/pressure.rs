@@ -30,7 +30,7 @@ impl LoadKind for Pressure {
             return site.fail("edge", message);
         }
         let (a, b) = (vertices[edge], vertices[(edge + 1) % vertices.len()]);
-        // Of an anticlockwise polygon the inside lies to the left of every edge.
+        // The interior of an anticlockwise polygon is to the left of each edge.
         let force = turned(b - a) * (self.value * site.assembly.width);
         Ok(site.spread(body, [a, b], force).into())
     }

@@ -1,4 +1,4 @@
-//! Where a load is being placed: the blocks, the key of the load in the study, and what is wrong there.
+//! The blocks on which a load is placed, with the key of the load in the study, for messages.
 
 use super::dispersion::Dispersion;
 use super::vehicle_axles::VehicleAxles;
@@ -8,7 +8,7 @@ use voussoir_core::model::geometry::{Vec2, contains};
 use voussoir_core::model::{Assembly, CONTACT_TOLERANCE, PointForce};
 use voussoir_core::plugin::{Diagnostic, Keys};
 
-/// Parts of an evenly spread load on a deformable block.
+/// Number of parts of a uniform load on a deformable block.
 const PARTS: usize = 16;
 
 /// A block by name; a whole number is the name of a voussoir.
@@ -22,7 +22,7 @@ pub enum BlockName {
 }
 
 impl BlockName {
-    /// As text.
+    /// Returns the name as text.
     pub fn text(&self) -> String {
         match self {
             BlockName::Number(number) => number.to_string(),
@@ -31,45 +31,45 @@ impl BlockName {
     }
 }
 
-/// The blocks that a load is placed on.
+/// The blocks on which a load is placed.
 #[derive(Debug)]
 pub struct LoadSite<'a> {
     /// Blocks and joints.
     pub assembly: &'a Assembly,
     /// Key of the load in the study.
     path: &'a str,
-    /// What the study says of loads elsewhere.
+    /// Tables of the study that loads refer to.
     pub tables: &'a LoadTables,
-    /// Free group of each body; `None` where bonds hold it to the ground.
+    /// Free group of each body; `None` if bonds connect it to the ground.
     held: Vec<Option<usize>>,
 }
 
-/// What a study says of loads outside the list of a stage.
+/// Tables of a study for loads, besides the list of a stage.
 #[derive(Debug, Default)]
 pub struct LoadTables {
     /// `[vehicles.NAME]`.
     pub vehicles: BTreeMap<String, VehicleAxles>,
-    /// How loads on the road spread in the fill.
+    /// Law by which loads on the road spread in the fill.
     pub dispersion: Option<Box<dyn Dispersion>>,
 }
 
 impl<'a> LoadSite<'a> {
-    /// The blocks of an assembly; `path` is the key of the load in the study.
+    /// Prepares the blocks of an assembly; `path` is the key of the load in the study.
     pub fn new(assembly: &'a Assembly, tables: &'a LoadTables, path: &'a str) -> Self {
         LoadSite { assembly, path, tables, held: assembly.rigid_groups().0 }
     }
 
-    /// Whether a force can move a block.
+    /// Returns true if a force can move a block.
     pub fn moves(&self, body: usize) -> bool {
         !self.assembly.bodies[body].fixed && (self.held[body].is_some() || !self.assembly.is_rigid(body))
     }
 
-    /// A key of the load from the study's root.
+    /// Returns a key of the load with its path from the root of the study.
     pub fn key(&self, key: &str) -> String {
         if key.is_empty() { self.path.to_string() } else { format!("{}.{key}", self.path) }
     }
 
-    /// What is wrong with a key of the load.
+    /// Reports a mistake in a key of the load.
     pub fn fail<T>(&self, key: &str, message: impl Into<String>) -> Result<T, Vec<Diagnostic>> {
         Err(vec![Diagnostic::new(self.key(key), message)])
     }
@@ -84,7 +84,7 @@ impl<'a> LoadSite<'a> {
         if wrong.is_empty() { Ok(()) } else { Err(wrong) }
     }
 
-    /// Index of a block that a load can move.
+    /// Returns the index of a block that a load can move.
     pub fn movable(&self, body: usize, key: &str) -> Result<usize, Vec<Diagnostic>> {
         let name = &self.assembly.bodies[body].name;
         if self.assembly.bodies[body].fixed {
@@ -97,7 +97,7 @@ impl<'a> LoadSite<'a> {
         Ok(body)
     }
 
-    /// Index of a block that a load can move, by its name under the key `block`.
+    /// Returns the index of a block that a load can move, by its name under the key `block`.
     pub fn block(&self, block: &BlockName) -> Result<usize, Vec<Diagnostic>> {
         let name = block.text();
         let body = self.assembly.body(&name).ok_or_else(|| {
@@ -107,7 +107,7 @@ impl<'a> LoadSite<'a> {
         self.movable(body, "block")
     }
 
-    /// A force at a point in or on a block.
+    /// Places a force at a point in or on a block.
     pub fn on_block(&self, block: &BlockName, point: Vec2, force: Vec2) -> Result<PointForce, Vec<Diagnostic>> {
         let body = self.block(block)?;
         let tolerance = CONTACT_TOLERANCE * self.assembly.size();
@@ -118,8 +118,8 @@ impl<'a> LoadSite<'a> {
         Ok(PointForce { body, point, force })
     }
 
-    /// A force spread evenly between two points: as its resultant on a rigid block, as the points of
-    /// a Gauss rule on equal parts on a deformable one.
+    /// Spreads a force uniformly between two points: as its resultant on a rigid block, as the points of a Gauss rule on equal
+    /// parts on a deformable block.
     pub fn spread(&self, body: usize, [from, to]: [Vec2; 2], force: Vec2) -> Vec<PointForce> {
         if self.assembly.is_rigid(body) || self.assembly.bodies[body].fixed {
             return vec![PointForce { body, point: (from + to) / 2.0, force }];

@@ -1,4 +1,4 @@
-//! What is proved of placed loads.
+//! Tests of placed loads.
 
 use super::{LoadKind, LoadSite, LoadTables, Placed};
 use crate::scenes::test_catalogue::catalogue;
@@ -69,7 +69,7 @@ fn the_resultant_of_a_strip_is_pressure_times_length_times_width_at_its_middle()
         assert!((total - exact).abs() < 1e-12 * exact.abs());
         assert!((moment - exact * (2.0 * (from + to) - 2.0)).abs() < 1e-11 * exact.abs());
         assert!(forces.iter().all(|f| f.force.x == 0.0));
-        // A strip lies on the upper chords only: no force below the widest point of a tall ring.
+        // A strip acts on the upper chords only: no force below the widest point of a tall ring.
         assert!(forces.iter().all(|f| f.point.y > arch.bodies[f.body].vertices[0].y.min(rise / 2.0) - 1e-12));
         let mut bodies: Vec<_> = forces.iter().map(|f| f.body).collect();
         bodies.dedup();
@@ -136,7 +136,7 @@ fn every_impossible_load_is_refused_at_its_key() {
     }
 }
 
-/// An axle off the arch counts nothing, and a note says so.
+/// An axle off the arch is ignored, and a note reports it.
 #[test]
 fn an_axle_off_the_arch_counts_nothing() {
     let load = json!({ "kind": "axles", "at": 0.5, "positions": [0.0, 9.0], "forces": [1.0, 1.0] });
@@ -172,8 +172,8 @@ fn without_dispersion_loads_stand_as_they_always_did() {
     }
 }
 
-/// A point load that spreads by 45° through 0.5 m is a strip of 1 m with the same force; a strip grows by 0.5 m on both
-/// sides and keeps its force and its middle; what would reach beyond the extrados is refused.
+/// A point load that spreads by 45° through 0.5 m is a strip of 1 m with the same force. A strip grows by 0.5 m on both
+/// sides and keeps its force and its middle. A load that would reach beyond the extrados is refused.
 #[test]
 fn a_uniform_spread_keeps_the_resultant() {
     let arch = arch(4.0, 1.0, 15, "jointed", "stone");

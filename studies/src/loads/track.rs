@@ -28,19 +28,19 @@ pub struct Track {
 }
 
 impl Track {
-    /// How far the ballast widens a patch to each side \[m\].
+    /// Returns the distance by which the ballast widens a patch on each side \[m\].
     fn reach(&self) -> f64 {
         self.ballast_depth * self.ballast_angle.to_radians().tan()
     }
 
-    /// Why its numbers cannot be, with the key.
+    /// Returns the key and the reason if the numbers are not possible.
     pub(super) fn mistake(&self) -> Option<(&'static str, String)> {
         let sum: f64 = self.shares.iter().sum();
         ((sum - 1.0).abs() > 1e-9).then(|| ("track.shares", format!("add up to {sum}, not to 1")))
     }
 }
 
-/// What of an axle reaches the road, with places counted from the axle.
+/// Returns the patches of the road that an axle loads, with positions relative to the axle.
 pub fn footprints(axle: &Axle, track: Option<&Track>) -> Vec<Patch> {
     let Some(track) = track else {
         let half = axle.length / 2.0;
@@ -54,7 +54,7 @@ pub fn footprints(axle: &Axle, track: Option<&Track>) -> Vec<Patch> {
     track.shares.iter().enumerate().map(sleeper).filter(|patch| patch.share > 0.0).collect()
 }
 
-/// Width across the road that an axle loads \[m\]; `None` where the axle says nothing of it.
+/// Returns the width across the road that an axle loads \[m\]; `None` if the axle does not define it.
 pub(super) fn loaded_width(axle: &Axle, track: Option<&Track>) -> Option<f64> {
     let sleepers = track.and_then(|track| Some(track.sleeper_length? + 2.0 * track.reach()));
     sleepers.or(axle.wheel_width)

@@ -48,7 +48,7 @@ pub struct VehicleLoad {
 }
 
 impl VehicleLoad {
-    /// x of an axle.
+    /// Returns x of an axle.
     fn place_of(&self, axle: &Axle) -> f64 {
         match self.direction {
             Direction::Forward => self.at + axle.at,
@@ -56,7 +56,7 @@ impl VehicleLoad {
         }
     }
 
-    /// Width that carries an axle, of the bridge's width, with its reach to both sides in the fill \[m\].
+    /// Returns the part of the bridge's width that carries an axle, with its spread on both sides in the fill \[m\].
     fn carrying(&self, axle: &Axle, width: f64, reach: f64) -> f64 {
         match (self.across, loaded_width(axle, self.track.as_ref())) {
             (Across::Effective, Some(wheel)) => width.min(wheel + 2.0 * reach),
@@ -69,7 +69,7 @@ impl VehicleLoad {
 impl LoadKind for VehicleLoad {
     fn place(&self, site: &LoadSite) -> Result<Placed, Vec<Diagnostic>> {
         site.finite(&[("at", &[self.at])])?;
-        // A name that stands for nothing, or for an entry with mistakes of its own, is named where keys are checked.
+        // An unknown name, or an entry with mistakes, is reported by the check of keys.
         let Some(vehicle) = site.tables.vehicles.get(&self.vehicle) else { return Err(Vec::new()) };
         if let Some((key, message)) = self.track.as_ref().and_then(Track::mistake) {
             return site.fail(key, message);

@@ -1,5 +1,5 @@
-//! Blocks at the end of a path: displacements and stresses on their meshes, recovered from the
-//! result alone (contact forces, loads and motions of the blocks).
+//! Blocks at the end of a path: displacements and stresses on their meshes, computed from the result alone (contact
+//! forces, loads and motions of the blocks).
 
 use crate::results::CaseResult;
 use crate::results::inelastic_state;
@@ -10,32 +10,32 @@ use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::model::{Assembly, Stage};
 use voussoir_core::path::{PathProblem, PathState};
 
-/// A block with its mesh; a rigid one is a single cell of its vertices.
+/// A block with its mesh; a rigid block is a single cell with its vertices as nodes.
 #[derive(Debug, Clone)]
 pub struct DisplacedBlock {
     /// Index of the block.
     pub block: usize,
-    /// Places before any load \[m\].
+    /// Positions before any load \[m\].
     pub nodes: Vec<Vec2>,
     /// Displacement of each node \[m\].
     pub displacement: Vec<Vec2>,
-    /// (σ_xx, σ_yy, σ_zz, σ_xy) at each node, tension positive \[Pa\]; in axes that turn with the
-    /// block where displacements are finite; empty for a rigid block.
+    /// Stress (σ_xx, σ_yy, σ_zz, σ_xy) at each node, tension positive \[Pa\]. If displacements are finite, the axes rotate with
+    /// the block. Empty for a rigid block.
     pub stress: Vec<[f64; 4]>,
-    /// The same in the middle of each cell; empty for a rigid block.
+    /// Stress in the middle of each cell \[Pa\]; empty for a rigid block.
     pub cell_stress: Vec<[f64; 4]>,
     /// Nodes of each cell, in VTK's order.
     pub cells: Vec<Vec<usize>>,
     /// Order of the elements; 0 for a rigid block.
     pub order: usize,
-    /// Mean equivalent plastic strain of each cell; empty where the block has not yielded.
+    /// Mean equivalent plastic strain of each cell; empty if the block has not yielded.
     pub plastic_strain: Vec<f64>,
-    /// Greatest resultant that is left on the block, its weight included, relative to the forces on
-    /// it (moments divided by the size of the scene); 0 for a rigid block.
+    /// Greatest residual resultant on the block, including its weight, relative to the forces on it (moments are divided by the
+    /// size of the scene); 0 for a rigid block.
     pub imbalance: f64,
 }
 
-/// The state at which `result` ends, on the problem that its case poses.
+/// Returns the state at the end of `result`, for the problem of its case.
 fn end_state(
     problem: &PathProblem,
     assembly: &Assembly,
@@ -54,8 +54,8 @@ fn end_state(
     Ok(PathState { load_step, factor, force, motion, yielded, ..PathState::default() })
 }
 
-/// The blocks of a case at the end of its path, or why there are none. Blocks without a shape are
-/// left out.
+/// Returns the blocks of a case at the end of its path. Blocks without a shape are omitted. The error gives the reason if no
+/// blocks are available.
 pub fn displaced_blocks(
     assembly: &Assembly,
     stages: &[Stage],
@@ -93,12 +93,12 @@ struct EndState<'a> {
 }
 
 impl EndState<'_> {
-    /// A vector turned by an angle where displacements are finite.
+    /// Rotates a vector by an angle if displacements are finite.
     fn turn(&self, angle: f64, v: Vec2) -> Vec2 {
         if self.finite { v * angle.cos() + turned(v) * angle.sin() } else { v }
     }
 
-    /// Displacement of a place that moves with a body of the path.
+    /// Returns the displacement of a point that moves with a body of the path.
     fn rigid(&self, body: usize, place: Vec2) -> Vec2 {
         let [x, y, theta] = self.state.motion[body];
         let arm = place - self.problem.bodies[body].pole;

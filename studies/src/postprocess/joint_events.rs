@@ -1,10 +1,9 @@
-//! What happened on a path, joint by joint: when each became a hinge, slid, opened or crushed.
+//! The history of each joint on a path: when it became a hinge, slid, opened or crushed.
 //!
-//! Events of a path are those of contact points. A joint is a **hinge** when exactly one of its
-//! points is still closed and that is an end of the joint; it **slides** when all its closed points
-//! slide the same way; it **opens** when none is closed. Points that change at the same factor change
-//! together: what lasts for no increment of load is not listed. A joint that moves in the collapse
-//! mechanism and had not changed before is listed last, at the collapse load.
+//! Events of a path are those of contact points. A joint is a **hinge** if exactly one of its points is still closed and
+//! this point is an end of the joint. A joint **slides** if all its closed points slide in the same direction. It **opens**
+//! if no point is closed. Points that change at the same factor change together: a state without an increment of load is not
+//! listed. A joint that moves in the collapse mechanism and had not changed before is listed last, at the collapse load.
 
 use crate::results::{CaseResult, EventEntry, FieldEntry};
 use serde::Serialize;
@@ -13,36 +12,36 @@ use voussoir_core::model::geometry::Vec2;
 use voussoir_core::model::{Assembly, Bond};
 use voussoir_core::path::ContactEvent;
 
-/// How a joint as a whole behaves.
+/// The state of a whole joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum JointState {
-    /// More than an end is closed, and not all of it slides.
+    /// More than one end is closed, and at least one closed point does not slide.
     Closed,
     /// Only this end (0 or 1) is closed.
     Hinge(usize),
-    /// All closed points slide the same way.
+    /// All closed points slide in the same direction.
     Slides,
     /// No point is closed.
     Open,
 }
 
-/// A change of a joint as a whole.
+/// A change of the state of a whole joint.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct JointEvent {
     /// Name of the stage.
     pub stage: String,
-    /// Factor of that stage's loads (of its gravity, where `gravity` is set).
+    /// Factor of the loads of the stage (of gravity, if `gravity` is set).
     pub factor: f64,
-    /// Whether it happened while gravity was applied.
+    /// True if the change happened while gravity was applied.
     pub gravity: bool,
     /// Index of the joint.
     pub joint: usize,
-    /// Where: the closed end of a hinge, else the middle of the joint \[m\].
+    /// Position of the change \[m\]: the closed end of a hinge, otherwise the middle of the joint.
     pub point: [f64; 2],
-    /// What the joint became; `None` where it began to crush at some point.
+    /// The new state of the joint; `None` if a point began to crush.
     pub became: Option<JointState>,
-    /// Whether the end of a hinge slides.
+    /// True if the closed end of a hinge slides.
     pub slides: bool,
 }
 
@@ -96,7 +95,7 @@ fn joints(assembly: &Assembly, field: &[FieldEntry]) -> BTreeMap<usize, Points> 
     joints
 }
 
-/// Joints as wholes, in the order in which they changed. Empty for a case without a path.
+/// Returns the changes of joints in the order in which they happened. Empty for a case without a path.
 pub fn joint_events(assembly: &Assembly, result: &CaseResult) -> Vec<JointEvent> {
     let mut joints = joints(assembly, result.proof.field.as_deref().unwrap_or_default());
     let mut changes = Vec::new();
@@ -161,7 +160,7 @@ pub fn joint_events(assembly: &Assembly, result: &CaseResult) -> Vec<JointEvent>
     changes
 }
 
-/// Joints that move in the mechanism and had not changed before: their change ends the path.
+/// Returns the joints that move in the mechanism and had not changed before: their change ends the path.
 fn at_the_end(assembly: &Assembly, result: &CaseResult, joints: &BTreeMap<usize, Points>) -> Vec<JointEvent> {
     let (Some(mechanism), Some(factor), Some(stage)) = (&result.mechanism, result.load_factor, result.stages.last())
     else {

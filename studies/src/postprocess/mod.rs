@@ -1,4 +1,4 @@
-//! What can be read from results: the order in which joints changed, and displaced meshes with stresses.
+//! Data derived from results: the order in which joints changed, and displaced meshes with stresses.
 
 pub mod displaced_mesh;
 pub mod joint_events;

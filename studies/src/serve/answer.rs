@@ -1,4 +1,4 @@
-//! The answer to a case as data for the page's script.
+//! The result of a case as data for the script of the page.
 
 use super::handles::handles;
 use crate::config::document::Node;
@@ -10,10 +10,10 @@ use serde_json::{Value as Json, json};
 use voussoir_core::limit::Status;
 use voussoir_core::model::{Assembly, PointForce, Stage};
 
-/// More forces of a stage than this are thinned.
+/// Greatest number of forces of a stage that are drawn; longer lists are thinned.
 const ARROWS: usize = 40;
 
-/// Everything that the page shows of a result; `toml` is the study file of the case.
+/// Returns all data of a result that the page shows; `toml` is the study file of the case.
 pub(super) fn answer(case: &Case, result: &CaseResult, root: &Node, toml: String) -> Json {
     let mechanism = result.mechanism.as_ref().map(|mechanism| {
         let joints = hinge_list(mechanism);
@@ -41,7 +41,7 @@ pub(super) fn answer(case: &Case, result: &CaseResult, root: &Node, toml: String
     })
 }
 
-/// What proves the answer, in one sentence.
+/// Describes the proof of the result in one sentence.
 fn proof(result: &CaseResult) -> String {
     let bounds = result.both_bounds().filter(|_| result.status.is_answer()).map(|[low, high]| {
         format!(
@@ -66,7 +66,8 @@ fn proof(result: &CaseResult) -> String {
     format!("{words}; {checked}, greatest residual {worst:.0e}")
 }
 
-/// Forces of all stages as [x, y, share of the greatest in x, in y, whether of the last stage].
+/// Returns the forces of all stages as [x, y, x component, y component, true for the last stage], with components as shares
+/// of the greatest force.
 fn arrows(assembly: &Assembly, stages: &[Stage]) -> Json {
     let size = assembly.size();
     let mut out = Vec::new();

@@ -7,12 +7,12 @@ use serde_json::Value as Json;
 use std::fmt::Write;
 use voussoir_core::plugin::{Quantity, Range};
 
-/// Longer lists of numbers have no sliders.
+/// Greatest length of a list of numbers with sliders.
 const LONGEST: usize = 12;
-/// Parts of a slider's way.
+/// Number of steps of a slider.
 const PARTS: f64 = 500.0;
 
-/// Headings with the table under them.
+/// Headings of the groups of controls, each with its table of the study.
 const GROUPS: [(&str, &str); 6] = [
     ("Geometry", "scene"),
     ("Materials", "materials"),
@@ -22,7 +22,7 @@ const GROUPS: [(&str, &str); 6] = [
     ("Partial factors", "factors"),
 ];
 
-/// A slider's ends and its step.
+/// The ends and the step of a slider.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Track {
     pub from: f64,
@@ -30,15 +30,15 @@ pub(super) struct Track {
     pub step: f64,
 }
 
-/// 1, 2 or 5 times a power of ten, at most `x > 0`.
+/// Returns 1, 2 or 5 times a power of ten, at most `x > 0`.
 fn tidy_below(x: f64) -> f64 {
     let power = 10f64.powf(x.log10().floor());
     let digit = [5.0, 2.0, 1.0].into_iter().find(|digit| digit * power <= x * (1.0 + 1e-12)).unwrap_or(1.0);
-    // Written and read, so that 1e-3 is what it says.
+    // Format and parse the number, so that 1e-3 is the exact decimal.
     format!("{:e}", digit * power).parse().unwrap_or(power)
 }
 
-/// How far a number goes where neither its value nor its range says so, in the unit of its quantity.
+/// Returns the usual greatest value of a quantity, in its unit, if neither value nor range gives one.
 fn usual(quantity: Quantity) -> f64 {
     match quantity {
         Quantity::Ratio | Quantity::Length => 1.0,
@@ -54,7 +54,7 @@ fn usual(quantity: Quantity) -> f64 {
     }
 }
 
-/// The track of a slider: the range of the schema where it is finite, else up to three times the value.
+/// Returns the track of a slider: the range of the schema if it is finite, otherwise up to three times the value.
 pub(super) fn track(kind: NumberKind, value: f64) -> Track {
     match kind {
         NumberKind::Whole(min, max) => {
@@ -74,7 +74,7 @@ fn real_track(quantity: Quantity, range: Range, value: f64) -> Track {
     } else {
         -far
     };
-    // A range that ends a little beyond the value is shown whole.
+    // If a range ends a little beyond the value, the slider covers it completely.
     let to = if range.max.is_finite() && range.max - from <= 20.0 * far {
         range.max
     } else if value < 0.0 && range.min.is_infinite() {
@@ -89,7 +89,7 @@ fn real_track(quantity: Quantity, range: Range, value: f64) -> Track {
     Track { from: from.min(value), to: to.max(value), step }
 }
 
-/// The label of a number: names of the tables above it, its words and its unit.
+/// Returns the label of a number: names of the tables above it, its words and its unit.
 fn label(key: &NumericKey, resolved: &Json) -> String {
     let meaning = key_meaning(study_keys(), &|name| resolved.get(name), &key.key);
     meaning.map_or(key.key.clone(), |meaning| meaning.title())
@@ -115,7 +115,7 @@ fn control(key: &NumericKey, resolved: &Json) -> String {
     )
 }
 
-/// The controls of a case as HTML: sliders for its numbers, fields for those that are optional and not given.
+/// Returns the controls of a case as HTML: sliders for its numbers, fields for optional numbers that are not given.
 pub(super) fn controls(resolved: &Json) -> String {
     let keys = numeric_keys(study_keys(), resolved, LONGEST);
     let mut text = String::new();

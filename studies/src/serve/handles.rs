@@ -1,4 +1,4 @@
-//! Loads that can be dragged: where each stands, and which keys follow.
+//! Loads that you can drag: the position of each, and the keys that change with it.
 
 use crate::config::document::Node;
 use crate::config::dotted_key::join;
@@ -7,7 +7,7 @@ use serde_json::{Value as Json, json};
 use voussoir_core::model::Assembly;
 use voussoir_core::model::geometry::Vec2;
 
-/// Where span fractions begin and how long the span is \[m\].
+/// Returns the start and the length of the span of span fractions \[m\].
 fn span(assembly: &Assembly) -> Option<(f64, f64)> {
     match (&assembly.bridge, &assembly.arch) {
         (Some(bridge), _) => Some((bridge.springings[0], bridge.springings[1] - bridge.springings[0])),
@@ -16,8 +16,8 @@ fn span(assembly: &Assembly) -> Option<(f64, f64)> {
     }
 }
 
-/// The loads of all stages that have a place, each with its place \[m\], the keys that move it, and how much of a key
-/// is a metre. `vertical` is the key of its height where it has one.
+/// Returns the loads of all stages that have a position: the position \[m\], the keys that move the load, and the change of
+/// each key per metre. `vertical` is the key of the height, if the load has one.
 pub(super) fn handles(case: &Case, root: &Node) -> Json {
     let mut out = Vec::new();
     for (stage, node) in
@@ -51,7 +51,7 @@ fn handle(case: &Case, stage: usize, key: &str, load: &Json) -> Option<Json> {
             _ => return None,
         }
     };
-    // At the height of the nearest force of its stage.
+    // The height of the nearest force of its stage.
     let forces = case.stages.get(stage)?.forces.iter();
     let far = |point: &Vec2| (point.x - x).abs();
     let y = forces.map(|force| force.point).min_by(|a, b| far(a).total_cmp(&far(b))).map_or(0.0, |point| point.y);

@@ -1,5 +1,5 @@
-//! A study that is looked at while its numbers change: sliders from the schema, answers as data for the page's
-//! script, and the page. Pure functions; `voussoir serve` brings them to a browser.
+//! A study with sliders in the browser: sliders from the schema, results as data for the script of the page, and the page.
+//! These are pure functions; `voussoir serve` connects them to a browser.
 
 mod answer;
 mod controls;

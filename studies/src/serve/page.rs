@@ -1,28 +1,28 @@
-//! The page that is served: drawings, the answer, sliders.
+//! The page in the browser: drawings, result, sliders.
 
 use super::controls::controls;
 use crate::figures::format::escape;
 use crate::writers::page;
 use serde_json::Value as Json;
 
-/// What a page shows.
+/// The data of a page.
 #[derive(Debug)]
 pub(super) struct Shown<'a> {
     /// Name of the study.
     pub name: &'a str,
-    /// What its kind does with its cases.
+    /// Purpose of the study's kind.
     pub kind: &'a str,
     /// Id of the case.
     pub case: usize,
     /// Number of cases.
     pub count: usize,
-    /// What tells them apart; `None` where they are too many to choose from.
+    /// Labels of the cases; `None` if there are too many for a list.
     pub labels: Option<Vec<String>>,
     /// The checked keys of the case.
     pub resolved: &'a Json,
 }
 
-/// The page of a case.
+/// Returns the page of a case as HTML.
 pub(super) fn page(shown: &Shown) -> String {
     let mut body = format!("<h1>{}</h1>\n", escape(shown.name));
     if shown.kind != "run" {
@@ -41,7 +41,7 @@ pub(super) fn page(shown: &Shown) -> String {
     page::served(shown.name, &body)
 }
 
-/// A list of the study's cases.
+/// Returns a list of the study's cases.
 fn choice(shown: &Shown) -> String {
     let labels = match &shown.labels {
         Some(labels) if labels.len() > 1 => labels,
@@ -55,7 +55,7 @@ fn choice(shown: &Shown) -> String {
     format!("<p><label>Case <select id=\"case\">{}</select></label></p>\n", options.collect::<String>())
 }
 
-/// What is seen of an answer; the script fills it.
+/// Section for the result; the script of the page fills it.
 const SEEN: &str = "<section class=\"seen\">\n<p class=\"summary\" role=\"status\"><strong id=\"headline\">…</strong></p>\n\
 <pre id=\"mistakes\" class=\"bad\" role=\"alert\" hidden></pre>\n\
 <figure class=\"moving\"><svg id=\"statics\" role=\"img\" aria-label=\"the scene with its thrust line and loads\"></svg>\

@@ -1,4 +1,4 @@
-//! What is served: one case of a study, with the numbers that the page has changed.
+//! A session of `voussoir serve`: one case of a study, with the numbers that the page has changed.
 
 use super::{answer, page};
 use crate::config::diagnostic::LocatedDiagnostic;
@@ -12,50 +12,50 @@ use crate::writers::report::report_html;
 use serde::Deserialize;
 use serde_json::{Value as Json, json};
 
-/// A study with a scene whose cases can be looked at.
+/// A study with a scene whose cases are shown in the browser.
 #[derive(Debug)]
 pub struct Session {
     sweep: Sweep,
 }
 
-/// What a page asks for.
+/// A request of the page.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Asked {
     /// Id of the case.
     pub case: usize,
-    /// Dotted keys with the values they take: numbers in SI units, or texts such as `"25 MPa"`.
+    /// Dotted keys with their new values: numbers in SI units, or texts such as `"25 MPa"`.
     #[serde(default)]
     pub set: Vec<(String, Json)>,
 }
 
-/// At most so many cases of a drawn report.
+/// Greatest number of cases that are drawn in a report.
 const DRAWN: usize = 40;
-/// Labels of more cases are not listed.
+/// Greatest number of cases with labels in a list.
 const LISTED: usize = 500;
 
 impl Session {
-    /// Reads a study; every mistake in its first case and its axes.
+    /// Reads a study. The error contains all mistakes in its first case and its axes.
     pub fn read(source: StudySource) -> Result<Self, StudyError> {
         Ok(Session { sweep: StudyFile::read(source)?.sweep_unchecked()? })
     }
 
-    /// Its name.
+    /// Returns the name of the study.
     pub fn name(&self) -> &str {
         &self.sweep.name
     }
 
-    /// What is done with its cases; here each is looked at by itself.
+    /// Returns the purpose of the study's kind; here each case is shown separately.
     pub fn kind(&self) -> &str {
         &self.sweep.kind
     }
 
-    /// Number of cases.
+    /// Returns the number of cases.
     pub fn count(&self) -> usize {
         self.sweep.count()
     }
 
-    /// Variant, scene and swept values of each case; `None` where they are too many to choose from.
+    /// Returns variant, scene and swept values of each case; `None` if there are too many for a list.
     pub fn labels(&self) -> Option<Vec<String>> {
         let keys = self.sweep.swept_keys();
         let label = |id: usize| {
@@ -67,7 +67,7 @@ impl Session {
         (self.count() <= LISTED).then(|| (0..self.count()).map(|id| label(id).unwrap_or_default()).collect())
     }
 
-    /// The study file of what is asked for, with one case.
+    /// Returns the study file of a request, with one case.
     fn root(&self, asked: &Asked) -> Result<Node, Vec<LocatedDiagnostic>> {
         let mut root = self.sweep.expansion.case(asked.case)?.root;
         let run = Node { value: Value::String("run".into()), origin: root.place("kind") };
@@ -94,8 +94,8 @@ impl Session {
         Ok((root, Study::from_source(source)?))
     }
 
-    /// The answer as the page's script draws it: `mistakes` with the text of the diagnostics where the input is
-    /// wrong, `slow` where the observer has cancelled.
+    /// Returns the result in the form that the script of the page draws. `mistakes` contains the diagnostics as text if the
+    /// input is wrong; `slow` is set if the observer has cancelled.
     pub fn answer(&self, asked: &Asked, observer: &dyn Observer) -> Json {
         let (root, study) = match self.study(asked) {
             Ok(study) => study,
@@ -112,7 +112,7 @@ impl Session {
         }
     }
 
-    /// The report of what is asked for, as `run` writes it; an error is text for the reader.
+    /// Returns the report of a request, as `run` writes it; an error is a text for the reader.
     pub fn report(&self, asked: &Asked, observer: &dyn Observer) -> Result<String, String> {
         let (_, study) = self.study(asked).map_err(|wrong| wrong.to_string())?;
         let result = study.cases.first().and_then(|case| solve_unless_cancelled(case, observer));
@@ -122,7 +122,7 @@ impl Session {
         Ok(report_html(&StudyOutput::new(&study, &results, &cases), DRAWN))
     }
 
-    /// The page of a case, with sliders at the values of the study file.
+    /// Returns the page of a case, with sliders at the values of the study file.
     pub fn page(&self, case: usize) -> Result<String, String> {
         let (_, study) = self.study(&Asked { case, set: Vec::new() }).map_err(|wrong| wrong.to_string())?;
         let first = study.cases.first().ok_or("the study has no case")?;
@@ -137,7 +137,7 @@ impl Session {
     }
 }
 
-/// A value that stands where it was set.
+/// Sets the origin of a value and of all its parts.
 fn placed(mut node: Node, origin: &Origin) -> Node {
     node.set_origin(origin);
     node

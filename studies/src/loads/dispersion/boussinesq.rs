@@ -1,11 +1,12 @@
-//! `boussinesq`: the stress of an elastic half-plane under the load, cut off under an angle.
+//! `boussinesq`: the stress of an elastic half-plane under the load, cut off at an angle.
 #![doc = include_str!("boussinesq.md")]
 
 use super::law::{Dispersion, Patch, Through};
 use std::f64::consts::PI;
 use voussoir_core::plugin::{Card, Keys, PluginKind};
 
-/// Parts of equal width into which the stress is cut, each even, with the exact force of its part.
+/// Number of parts of equal width into which the stress is divided. Each part is uniform and has the exact force of its
+/// interval.
 const PARTS: usize = 40;
 
 /// The vertical stress of an elastic half-plane.
@@ -19,7 +20,7 @@ pub struct Boussinesq {
     pub depth: Option<f64>,
 }
 
-/// Share of a strip load between −`half` and `half` that lies to the left of x at a depth z > 0.
+/// Returns the share of a strip load between −`half` and `half` that is to the left of x at a depth z > 0.
 fn to_the_left(x: f64, half: f64, z: f64) -> f64 {
     // The share under a line load at 0, and its integral.
     let line = |u: f64| 0.5 + ((u / z).atan() + z * u / (u * u + z * z)) / PI;
@@ -46,7 +47,7 @@ impl Dispersion for Boussinesq {
         let place = |i: usize| most * (2.0 * i as f64 / PARTS as f64 - 1.0);
         let shares: Vec<f64> =
             (0..PARTS).map(|i| to_the_left(place(i + 1), half, depth) - to_the_left(place(i), half, depth)).collect();
-        // Mirrored parts carry alike, so that the moment stays, and all of them together the whole load.
+        // Mirrored parts carry the same share, so that the moment is unchanged; all parts together carry the whole load.
         let even = |i: usize| (shares[i] + shares[PARTS - 1 - i]) / 2.0;
         let total: f64 = (0..PARTS).map(even).sum();
         let part = |i: usize| Patch {
@@ -88,7 +89,7 @@ mod tests {
         law.spread(Patch { from: 2.0 - half, to: 2.0 + half, share: 1.0 }, &fill)
     }
 
-    /// Force and moment stay, whatever the patch and the cut-off.
+    /// Force and moment do not change, for any patch and cut-off.
     #[test]
     fn force_and_moment_stay() {
         for (angle, depth, half) in [(30.0, 0.5, 0.15), (60.0, 2.0, 0.0), (1.0, 0.1, 1.0), (89.9, 0.3, 0.2)] {
@@ -102,7 +103,7 @@ mod tests {
         }
     }
 
-    /// The parts against Flamant's stress 2 z³/(π (x² + z²)²), integrated numerically over load and part.
+    /// Compares the parts with Flamant's stress 2 z³/(π (x² + z²)²), integrated numerically over load and part.
     #[test]
     fn parts_carry_flamants_stress() {
         let (depth, half, angle) = (0.6_f64, 0.25, 45.0_f64);
@@ -121,7 +122,7 @@ mod tests {
         }
     }
 
-    /// Without depth the load reaches the extrados as it stands.
+    /// Without depth the load reaches the extrados unchanged.
     #[test]
     fn no_depth_no_spread() {
         assert_eq!(spread(30.0, 0.0, 0.1).len(), 1);

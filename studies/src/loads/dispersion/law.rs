@@ -1,4 +1,4 @@
-//! What a law of dispersion is.
+//! The trait of a law of dispersion.
 
 use std::fmt::Debug;
 use voussoir_core::plugin::{KeyValue, PluginKind, Shape};
@@ -8,29 +8,29 @@ use voussoir_core::plugin::{KeyValue, PluginKind, Shape};
 pub struct Patch {
     /// Left end.
     pub from: f64,
-    /// Right end; the left one where the load is at a point.
+    /// Right end; equal to the left end for a point load.
     pub to: f64,
     /// Share of the whole load.
     pub share: f64,
 }
 
-/// A layer through which a load goes.
+/// A layer of fill between a load and the extrados.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Through {
-    /// \[m\].
+    /// Thickness \[m\].
     pub thickness: f64,
-    /// Angle of spread that the layer has of its own, from the vertical \[rad\].
+    /// Angle of spread from the vertical, if the layer defines one \[rad\].
     pub angle: Option<f64>,
 }
 
-/// How a live load spreads between where it stands and the extrados, chosen by `dispersion = { law = … }`.
+/// The spread of a live load between its position and the extrados, chosen by `dispersion = { law = … }`.
 #[typetag::serde(tag = "law")]
 pub trait Dispersion: Debug + Send + Sync {
-    /// What reaches the level of the extrados through the fill under the load's centre; the shares add up to that of
-    /// the patch.
+    /// Returns the load at the level of the extrados, spread through the fill under the centre of the load. The shares add up
+    /// to the share of the patch.
     fn spread(&self, patch: Patch, fill: &[Through]) -> Vec<Patch>;
 
-    /// Whether it says itself through what depth loads spread, so that it needs no fill.
+    /// Returns true if the law defines the depth of the spread, so that it needs no fill.
     fn has_depth(&self) -> bool {
         true
     }

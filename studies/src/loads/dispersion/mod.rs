@@ -1,4 +1,4 @@
-//! Dispersion of live loads between where they stand and the extrados of an arch. One file each; file = tag.
+//! Dispersion of live loads between their position and the extrados of an arch. One file each; file = tag.
 
 pub mod boussinesq;
 mod law;

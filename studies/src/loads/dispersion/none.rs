@@ -1,4 +1,4 @@
-//! `none`: a load reaches the extrados as it stands.
+//! `none`: a load reaches the extrados unchanged.
 
 use super::law::{Dispersion, Patch, Through};
 use voussoir_core::plugin::{Card, Keys, PluginKind};

@@ -1,4 +1,4 @@
-//! `uniform`: a load spreads evenly under an angle through a depth.
+//! `uniform`: a load spreads evenly at an angle through a depth.
 
 use super::law::{Dispersion, Patch, Through};
 use voussoir_core::plugin::{Card, Keys, PluginKind};
