@@ -14,7 +14,7 @@ fn keys_are_declared_by_structs() {
     for folder in ["laws", "laws/external", "solvers", "studies"] {
         each_source(&workspace().join(folder).join("src"), &mut |path, text| {
             let text = without_tests(text);
-            // The type of an argument is no list of keys.
+            // The type of an argument is not a list of keys.
             let text = &text.replace("parameters: &[Parameter]", "");
             let place = path.display();
             for by_hand in ["Parameter::number(", "Quantity::of_unit(", "parameters: &[", "check: |value|"] {

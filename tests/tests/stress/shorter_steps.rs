@@ -120,7 +120,8 @@ fn a_quarter_of_the_step_changes_nothing() {
     family([20, 21, 1667, 1702].into_iter());
 }
 
-/// CASES=N tries those among N cases of the family of settlements from FIRST on, all 3000 by default.
+/// No settlement changes with a quarter of the step. CASES=N tries the settlements among N cases from FIRST on, by default
+/// all 3000.
 #[test]
 #[ignore = "long; what came out stands in docs/notebook/random_scenes.md"]
 fn a_quarter_of_the_step_changes_no_settlement() {

@@ -196,7 +196,7 @@ fn a_peak_that_is_not_placed_shortens_the_step() {
     }
 }
 
-/// STRATEGIES=N tries N scenes from FIRST on, 250 by default.
+/// Strategies and equivalent forms agree in random scenes. STRATEGIES=N tries N scenes from FIRST on, 250 by default.
 #[test]
 #[ignore = "long; what came out stands in docs/notebook/random_scenes.md"]
 fn strategies_and_disguises_agree_in_250_scenes() {

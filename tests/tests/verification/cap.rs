@@ -52,7 +52,8 @@ fn uniaxial_strength_sets_the_cap() {
     near(p_b, 10.0 * MPA, 1e-9);
 }
 
-/// Triaxial compression to the cap: axial minus lateral stress for lateral 1 and 5 MPa.
+/// Triaxial compression reaches the cap at an axial minus lateral stress of 26.99392608 MPa for a lateral stress of 1 MPa, and
+/// of 14.99812522 MPa for 5 MPa.
 #[test]
 fn triaxial_compression_to_the_cap() {
     for (lateral, wanted) in [(1.0, 26.99392608), (5.0, 14.99812522)] {
@@ -69,7 +70,7 @@ fn triaxial_compression_to_the_cap() {
     }
 }
 
-/// Triaxial compression to the shear surface: q = 3 (d + p_lateral tan β) / (3 − tan β), while p < p_a.
+/// Triaxial compression reaches the shear surface at q = 3 (d + p_lateral tan β) / (3 − tan β), while p < p_a.
 #[test]
 fn triaxial_compression_to_the_shear_surface() {
     let law = DruckerPragerCap {
@@ -96,7 +97,7 @@ fn triaxial_compression_to_the_shear_surface() {
     }
 }
 
-/// Uniaxial strain: first yield on the elastic path q/p = 3 (1 − 2ν)/(1 + ν).
+/// Uniaxial strain first yields on the elastic path q/p = 3 (1 − 2ν)/(1 + ν).
 #[test]
 fn uniaxial_strain() {
     for (poisson_ratio, wanted) in [(0.2, 19.99874999), (0.3, 16.15346380)] {
@@ -106,7 +107,7 @@ fn uniaxial_strain() {
     }
 }
 
-/// Plane strain with a free face: first yield, σ_zz = ν σ_xx.
+/// Plane strain with a free face first yields at σ_zz = ν σ_xx.
 #[test]
 fn plane_strain_with_a_free_face() {
     let update = paper(10.0 * MPA, 0.2).stress_update().unwrap();

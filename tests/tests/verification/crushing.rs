@@ -72,8 +72,8 @@ fn an_arch_that_softens_tends_to_one_peak() {
     assert!(fine.crushed > 0.1 && fine.peak[1] < AT, "{fine:?}");
 }
 
-/// The table of docs/theory/crushing.md (TABLE=1; half an hour): energy per band, per volume, without softening, order
-/// 2.
+/// With TABLE=1 the test prints the table of docs/theory/crushing.md in half an hour: energy per band, per volume, without
+/// softening, order 2.
 #[test]
 fn table() {
     if std::env::var("TABLE").is_err() {

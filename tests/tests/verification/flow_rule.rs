@@ -47,19 +47,19 @@ fn least_of(number: usize) {
     assert!(result.certificate.residuals["complementarity"] < 1e-12, "{:?}", result.certificate);
 }
 
-/// Least load .63898183 (independent program), below the published .640.
+/// The least load of wall 1 is .63898183, as an independent program finds, below the published .640.
 #[test]
 fn least_of_wall_1() {
     least_of(1);
 }
 
-/// Least load .35581738, published .356.
+/// The least load is .35581738; the published value is .356.
 #[test]
 fn least_of_wall_3() {
     least_of(3);
 }
 
-/// Least load 24/91, published .264.
+/// The least load is 24/91; the published value is .264.
 #[test]
 fn least_of_wall_4() {
     least_of(4);
@@ -116,7 +116,7 @@ fn a_wall_has_one_sequential_load_however_it_is_numbered() {
     }
 }
 
-/// A wall of 20 courses by 20 bricks by sequential programs, in seconds.
+/// Sequential programs solve a wall of 20 courses by 20 bricks in seconds.
 #[test]
 fn twenty_by_twenty_in_sequence() {
     let text = wall(Wall::in_bond(20, 20), COULOMB, "solver = \"limit_sequential\"");

@@ -10,19 +10,19 @@ fn associated(number: usize) {
     assert_close(collapse_factor(&known.wall.study()), known.associated, 2e-8);
 }
 
-/// Wall 1: 0.64285900.
+/// The load factor of wall 1 is 0.64285900.
 #[test]
 fn wall_1() {
     associated(1);
 }
 
-/// Wall 3, with a window: 0.40369410.
+/// The load factor of wall 3, with a window, is 0.40369410.
 #[test]
 fn wall_3() {
     associated(3);
 }
 
-/// Wall 4, with two windows: 0.33194840.
+/// The load factor of wall 4, with two windows, is 0.33194840.
 #[test]
 fn wall_4() {
     associated(4);
