@@ -15,12 +15,12 @@ pub fn changes_direction(c: char) -> bool {
     matches!(c, '\u{61c}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
-/// A text for a terminal: invisible characters but line breaks and tabs are written as `\u{…}`.
+/// Returns a text for a terminal: invisible characters, except line breaks and tabs, are written as `\u{…}`.
 pub fn escape(text: &str) -> Cow<'_, str> {
     escape_if(text, |c| is_invisible(c) && !matches!(c, '\n' | '\t'))
 }
 
-/// A part of a message, on one line and of bounded length.
+/// Returns a part of a message, on one line and of bounded length.
 pub fn quoted(text: &str) -> Cow<'_, str> {
     let length = text.chars().count();
     if length <= MAX_MESSAGE {

@@ -1,5 +1,5 @@
-//! The check of a value against its [`Shape`]: every mistake with its place, else the normalised
-//! value (numbers in the unit of their quantity, defaults filled in).
+//! Checks a value against its [`Shape`]. Collects every mistake with its place, or returns the normalised value (numbers in
+//! the unit of their quantity, defaults filled in).
 
 use crate::config::common_keys::{common_parameters, common_words, word_for};
 use crate::config::diagnostic::{LocatedDiagnostic, any_of, suggest};
@@ -19,15 +19,15 @@ use voussoir_core::plugin::{
 pub struct Unused {
     /// Its dotted key.
     pub key: String,
-    /// In words, what does not use it: `interface law "coulomb"`.
+    /// The plug-in that does not use the key, in words: `interface law "coulomb"`.
     pub by: String,
 }
 
-/// A value has mistakes, which are in the checker's list.
+/// The value has mistakes; they are in the list of the checker.
 #[derive(Debug, Clone, Copy)]
 pub struct Rejected;
 
-/// Message and help for a tag that is not among these.
+/// Returns message and help for a tag that is not one of `tags`.
 fn unknown_tag(tag: &str, tags: &[&str], what: &str) -> (String, String) {
     let is_plugin = PluginKind::ALL.iter().any(|kind| kind.describe() == what);
     let other = PluginKind::ALL.into_iter().find(|kind| is_plugin && card(*kind, tag).is_some());
@@ -46,20 +46,20 @@ fn unknown_tag(tag: &str, tags: &[&str], what: &str) -> (String, String) {
 /// A check in progress.
 #[derive(Debug)]
 pub struct Checker<'a> {
-    /// The study's root, where names are looked up.
+    /// Root of the study, in which names are looked up.
     pub root: &'a Node,
-    /// Turns specific weights into densities \[m/s²\].
+    /// Gravity that converts specific weights into densities \[m/s²\].
     pub gravity: f64,
-    /// Found so far.
+    /// Mistakes so far.
     pub diagnostics: Vec<LocatedDiagnostic>,
-    /// Found so far.
+    /// Unused keys so far.
     pub unused: Vec<Unused>,
     /// Tables of the study in which names were looked up.
     pub references: Vec<&'static str>,
 }
 
 impl<'a> Checker<'a> {
-    /// A check of values in the study `root`.
+    /// Begins a check of values in the study `root`.
     pub fn new(root: &'a Node) -> Self {
         Checker { root, gravity: gravity_of(root), diagnostics: Vec::new(), unused: Vec::new(), references: Vec::new() }
     }
@@ -74,7 +74,7 @@ impl<'a> Checker<'a> {
         None
     }
 
-    /// The normalised value; `None` where it has mistakes.
+    /// Returns the normalised value; `None` if it has mistakes.
     pub fn check(&mut self, node: &Node, shape: &Shape, key: &str) -> Option<Json> {
         let found = self.diagnostics.len();
         let value = match (shape, &node.value) {
@@ -114,7 +114,7 @@ impl<'a> Checker<'a> {
         value.filter(|_| self.diagnostics.len() == found)
     }
 
-    /// A number in the unit of its quantity.
+    /// Returns a number in the unit of its quantity.
     fn number(&mut self, node: &Node, shape: &Shape, key: &str) -> Option<f64> {
         let Shape::Number(quantity, range) = shape else { return None };
         let number = match &node.value {
@@ -241,7 +241,8 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// The first alternative that takes the value; else the mistakes of the first whose form fits.
+    /// Returns the value by the first alternative that accepts it. If none does, reports the mistakes of the first alternative
+    /// with a matching form.
     fn either(&mut self, node: &Node, shapes: &[Shape], key: &str) -> Option<Json> {
         let (before, unused) = (self.diagnostics.len(), self.unused.len());
         let mut first: Option<Vec<LocatedDiagnostic>> = None;
@@ -258,7 +259,7 @@ impl<'a> Checker<'a> {
                 self.diagnostics.extend(wrong);
                 None
             }
-            // A text may be meant as a number with a unit: then that is what is wrong with it.
+            // A text may be meant as a number with a unit: report the mistake in the number.
             None if node.text().is_some() && shapes.iter().any(|shape| matches!(shape, Shape::Number(..))) => {
                 let number = shapes.iter().find(|shape| matches!(shape, Shape::Number(..)))?;
                 self.check(node, number, key)
@@ -270,7 +271,7 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// The word under a deciding key.
+    /// Returns the tag of a table, the word that decides its keys.
     fn tag<'n>(
         &mut self,
         node: &Node,
@@ -298,7 +299,7 @@ impl<'a> Checker<'a> {
         Some(tag)
     }
 
-    /// Keys of a table; `skip` names keys already dealt with.
+    /// Checks the keys of a table; `skip` names keys that are already checked.
     fn table(
         &mut self,
         node: &Node,
@@ -308,7 +309,7 @@ impl<'a> Checker<'a> {
         others: &[Variant],
         key: &str,
     ) -> Option<Json> {
-        // A key that is written wrongly is not missing as well.
+        // A misspelt key is not reported as missing too.
         let mut misspelt = Vec::new();
         for entry in &table.entries {
             let known = skip.contains(&entry.key.as_str()) || parameters.iter().any(|p| p.name == entry.key);
@@ -340,7 +341,7 @@ impl<'a> Checker<'a> {
         sound.then_some(Json::Object(out))
     }
 
-    /// One key of a table: its value, its default, or `None` where it is optional and absent.
+    /// Returns one key of a table: its value or its default, or `None` if it is optional and absent.
     pub fn parameter(
         &mut self,
         node: &Node,
@@ -416,7 +417,7 @@ impl<'a> Checker<'a> {
             }
             skip.push(&entry.key);
         }
-        // A key that is written wrongly is not missing as well.
+        // A misspelt key is not reported as missing too.
         parameters.retain(|p| table.get(p.name).is_some() || !misspelt.contains(&p.name));
         let Some(Json::Object(rest)) = self.table(node, table, &parameters, &skip, &[], key) else { return None };
         let mut out = Map::from_iter([(tag_key.to_string(), Json::from(tag))]);
@@ -425,7 +426,7 @@ impl<'a> Checker<'a> {
         if let Some(card) = chosen
             && self.diagnostics.len() == found
         {
-            // A card's check reads the concrete type, which knows neither the tag nor common keys.
+            // The check of a card reads the concrete type, which has neither the tag nor the common keys.
             let own: Map<_, _> = value
                 .as_object()?
                 .iter()

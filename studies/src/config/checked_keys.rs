@@ -1,4 +1,4 @@
-//! Keys that no variant, scene or axis of a study changes: checked once, not once a case.
+//! Keys that no variant, scene or axis of a study changes: they are checked once, not once for each case.
 
 use crate::config::check::{Checker, Unused};
 use crate::config::document::{Node, Table};
@@ -8,20 +8,20 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 use voussoir_core::plugin::Parameter;
 
-/// What the check of a top-level key has given, and what it depends on besides the key.
+/// The checked value of a top-level key, and the other data on which the check depends.
 #[derive(Debug, Clone)]
 pub struct CheckedKey {
-    /// The normalised value; `None` where the key is optional and absent.
+    /// The normalised value; `None` if the key is optional and absent.
     pub value: Option<Arc<CheckedValue>>,
-    /// Keys below it without influence.
+    /// Unused keys below it.
     pub unused: Vec<Unused>,
     gravity: f64,
-    /// Tables in which names were looked up, with the names that were there.
+    /// Tables in which names were looked up, with the names at that time.
     names: Vec<(&'static str, Vec<String>)>,
 }
 
 impl CheckedKey {
-    /// Whether a check of the same value in another case must give the same.
+    /// Returns true if a check of the same value in another case must give the same result.
     pub fn holds_for(&self, checker: &Checker<'_>) -> bool {
         let same = |(table, names): &(&'static str, Vec<String>)| {
             names.iter().map(String::as_str).eq(names_in(checker.root, table))
@@ -34,13 +34,13 @@ fn names_in<'a>(root: &'a Node, table: &str) -> impl Iterator<Item = &'a str> {
     root.table().and_then(|root| root.get(table)?.table()).into_iter().flat_map(Table::keys)
 }
 
-/// The keys that all cases of a study share, by name; found when they are asked for.
+/// The keys that all cases of a study share, by name; each is checked on first use.
 #[derive(Debug, Clone, Default)]
 pub struct CheckedKeys(Arc<OnceLock<BTreeMap<&'static str, CheckedKey>>>);
 
 impl CheckedKeys {
-    /// What is known of a key of all cases of `expansion`, of which `keys` are all; `None` where each case has to check
-    /// its own.
+    /// Returns the checked key if it is the same in all cases of `expansion`. `keys` are all keys of the study file. `None` if
+    /// each case has to check the key itself.
     pub fn get(
         &self,
         expansion: &Expansion,
@@ -51,7 +51,7 @@ impl CheckedKeys {
     }
 }
 
-/// Checks the keys that no case changes. One with a mistake is left to the cases, which tell it.
+/// Checks the keys that no case changes. Keys with a mistake are omitted: the cases report it.
 fn checked(
     expansion: &Expansion,
     keys: impl Iterator<Item = &'static Parameter>,

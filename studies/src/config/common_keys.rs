@@ -1,4 +1,4 @@
-//! Keys and words that every plug-in of a kind takes besides those of its card.
+//! Keys and words that every plug-in of a kind accepts, besides the keys of its card.
 
 use serde_json::Value as Json;
 use voussoir_core::plugin::{Keys, Parameter, PluginKind, Shape};
@@ -40,29 +40,29 @@ pub struct SolverKeys {
     pub stop: Option<Stop>,
 }
 
-/// The keys of `T` in a checked table that holds keys of others besides; `None` if they cannot be read.
+/// Reads the keys of `T` from a checked table that also has other keys; `None` if they cannot be read.
 pub fn own_keys<T: Keys>(table: &Json) -> Option<T> {
     let own = |(name, _): &(&String, &Json)| T::PARAMETERS.iter().any(|key| key.name == name.as_str());
     let own = table.as_object()?.iter().filter(own).map(|(name, value)| (name.clone(), value.clone()));
     serde_json::from_value(Json::Object(own.collect())).ok()
 }
 
-/// The word that names the plug-in which a table configures.
+/// Returns the tag of the plug-in that a table configures.
 pub fn tag_of(kind: PluginKind, table: &Json) -> &str {
     table.get(kind.tag_key()).and_then(Json::as_str).unwrap_or_default()
 }
 
-/// Keys that every plug-in of a kind has besides those of its card.
+/// Returns the keys that every plug-in of a kind has, besides the keys of its card.
 pub fn common_parameters(kind: PluginKind) -> &'static [Parameter] {
     if kind == PluginKind::LimitSolver { SolverKeys::PARAMETERS } else { &[] }
 }
 
-/// What a kind is called in messages: limit and path solvers share one place.
+/// Returns the name of a kind in messages. Limit and path solvers share one name, because they share one table.
 pub fn word_for(kind: PluginKind) -> &'static str {
     if kind == PluginKind::LimitSolver { "solver" } else { kind.describe() }
 }
 
-/// Words that the tag may be besides the registered tags.
+/// Returns the words that a tag may be, besides the registered tags.
 pub fn common_words(kind: PluginKind) -> &'static [&'static str] {
     if kind == PluginKind::LimitSolver { &["auto"] } else { &[] }
 }

@@ -1,4 +1,4 @@
-//! Diagnostics: what is wrong with an input, at which key and place, and what to do about it.
+//! Diagnostics: mistakes in an input, each with its key, its place and advice.
 
 use crate::config::characters::quoted;
 use crate::config::origin::Origin;
@@ -7,25 +7,25 @@ use std::fmt;
 /// One mistake in a study, with its place.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct LocatedDiagnostic {
-    /// Where the key or value was written.
+    /// Place of the key or value.
     pub origin: Origin,
-    /// The dotted key; empty where there is none (syntax errors).
+    /// The dotted key; empty for syntax errors, which have no key.
     pub key: String,
-    /// What is wrong.
+    /// Description of the mistake.
     pub message: String,
-    /// What to do, where that can be said.
+    /// Advice, if possible.
     pub help: Option<String>,
-    /// The case it was found in, where other cases do not have it.
+    /// The case with the mistake, if other cases do not have it.
     pub case: Option<String>,
 }
 
 impl LocatedDiagnostic {
-    /// A mistake at a place.
+    /// Creates a mistake at a place.
     pub fn new(origin: &Origin, key: impl Into<String>, message: impl Into<String>) -> Self {
         LocatedDiagnostic { origin: origin.clone(), key: key.into(), message: message.into(), help: None, case: None }
     }
 
-    /// With advice.
+    /// Adds advice.
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
@@ -35,7 +35,7 @@ impl LocatedDiagnostic {
 impl fmt::Display for LocatedDiagnostic {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(out, "{}: ", quoted(&self.origin.to_string()))?;
-        // "--set KEY" has named its key already.
+        // `--set KEY` has already named its key.
         if !self.key.is_empty() && !matches!(&self.origin, Origin::Set(key) if **key == *self.key) {
             write!(out, "{}: ", quoted(&self.key))?;
         }
@@ -52,7 +52,7 @@ impl fmt::Display for LocatedDiagnostic {
 
 impl std::error::Error for LocatedDiagnostic {}
 
-/// All mistakes, one below the other, in the order of the file; command line last.
+/// Sorts mistakes in the order of the file, with the command line last.
 pub fn sort(mistakes: &mut [LocatedDiagnostic]) {
     mistakes.sort_by_key(|mistake| match &mistake.origin {
         Origin::File { line, column, .. } => (*line, *column),
@@ -61,7 +61,7 @@ pub fn sort(mistakes: &mut [LocatedDiagnostic]) {
     });
 }
 
-/// Words as `"a", "b" or "c"`.
+/// Joins words as `"a", "b" or "c"`.
 pub fn any_of<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
     let words: Vec<_> = words.into_iter().map(|word| format!("\"{word}\"")).collect();
     match words.split_last() {
@@ -70,7 +70,7 @@ pub fn any_of<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
     }
 }
 
-/// Advice for a wrong name: the nearest right one, or the list of all.
+/// Returns advice for a wrong name: the nearest valid name, or the list of all names.
 pub fn suggest(wrong: &str, names: &[&str], what: &str) -> String {
     match voussoir_core::plugin::nearest(wrong, names.iter().copied()) {
         Some(name) => format!("did you mean \"{name}\"?"),

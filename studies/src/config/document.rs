@@ -1,6 +1,6 @@
-//! A TOML document as a tree in which every key and value knows where it was written.
+//! A TOML document as a tree in which every key and value has its place.
 //!
-//! Only the form is read here; what keys mean is checked in [`super::check`].
+//! This module reads only the form; [`super::check`] checks the keys.
 
 use crate::config::diagnostic::{LocatedDiagnostic, sort};
 use crate::config::dotted_key::{join, segments};
@@ -11,7 +11,7 @@ use std::sync::Arc;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// A value and where it stands.
+/// A value with its place.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Node {
     /// The value.
@@ -31,7 +31,7 @@ pub enum Value {
     Float(f64),
     /// `true` or `false`.
     Boolean(bool),
-    /// A date or time, which no key of a study takes.
+    /// A date or time. No key of a study accepts it.
     Date(String),
     /// A list.
     Array(Vec<Node>),
@@ -51,36 +51,36 @@ pub struct Table {
 pub struct Entry {
     /// The key.
     pub key: String,
-    /// Where the key stands.
+    /// Place of the key.
     pub origin: Origin,
     /// Its value.
     pub node: Node,
 }
 
 impl Table {
-    /// The entry under `key`.
+    /// Returns the entry under `key`.
     pub fn entry(&self, key: &str) -> Option<&Entry> {
         self.entries.iter().find(|entry| entry.key == key)
     }
 
-    /// The value under `key`.
+    /// Returns the value under `key`.
     pub fn get(&self, key: &str) -> Option<&Node> {
         self.entry(key).map(|entry| &entry.node)
     }
 
-    /// The value under `key`, to be changed.
+    /// Returns the value under `key` for changes.
     pub fn get_mut(&mut self, key: &str) -> Option<&mut Node> {
         self.entries.iter_mut().find(|entry| entry.key == key).map(|entry| &mut entry.node)
     }
 
-    /// The keys in order.
+    /// Returns the keys in order.
     pub fn keys(&self) -> impl Iterator<Item = &str> {
         self.entries.iter().map(|entry| entry.key.as_str())
     }
 }
 
 impl Value {
-    /// What kind of value it is, in words.
+    /// Describes the type of the value in words.
     pub fn describe(&self) -> String {
         match self {
             Value::String(text) => format!("the text \"{text}\""),
@@ -128,13 +128,12 @@ impl Node {
         }
     }
 
-    /// What kind of value it is, in words.
+    /// Describes the type of the value in words.
     pub fn describe(&self) -> String {
         self.value.describe()
     }
 
-    /// The entry or list element at a dotted path with list indices, or its nearest ancestor that
-    /// exists: the place where it was written.
+    /// Returns the place of the entry or list element at a dotted path with list indices, or of its nearest existing ancestor.
     pub fn place(&self, path: &str) -> Origin {
         let mut node = self;
         let mut origin = &self.origin;
@@ -142,7 +141,7 @@ impl Node {
             match &node.value {
                 Value::Table(table) => match table.entry(&segment) {
                     Some(entry) => {
-                        // A value's own place says more than its key's, except for tables with a header.
+                        // The place of a value is more precise than the place of its key, except for tables with a header.
                         origin = &entry.node.origin;
                         node = &entry.node;
                     }
@@ -161,7 +160,7 @@ impl Node {
         origin.clone()
     }
 
-    /// The same value as plain TOML.
+    /// Returns the value as plain TOML.
     pub fn to_toml(&self) -> toml::Value {
         match &self.value {
             Value::String(text) | Value::Date(text) => toml::Value::String(text.clone()),
@@ -175,7 +174,7 @@ impl Node {
         }
     }
 
-    /// The same value as JSON; a number that is not finite becomes `null`.
+    /// Returns the value as JSON; a number that is not finite becomes `null`.
     pub fn to_json(&self) -> serde_json::Value {
         match &self.value {
             Value::String(text) | Value::Date(text) => text.clone().into(),
@@ -189,7 +188,7 @@ impl Node {
         }
     }
 
-    /// Gives the whole tree one origin.
+    /// Sets one origin for the whole tree.
     pub fn set_origin(&mut self, to: &Origin) {
         self.origin = to.clone();
         match &mut self.value {
@@ -205,7 +204,7 @@ impl Node {
     }
 }
 
-/// Reads a document. Errors are all syntax errors found.
+/// Reads a document. The error lists all syntax errors.
 pub fn parse(text: &str, file: &str) -> Result<Node, Vec<LocatedDiagnostic>> {
     let reader = Reader::new(text, file);
     if let Some(byte) = too_deep(text) {
@@ -234,8 +233,8 @@ fn nested_too_deep(origin: &Origin, key: &str) -> LocatedDiagnostic {
         .help("no key of a study needs that; look for a bracket that is not closed")
 }
 
-/// Reads one value, as it stands after an `=`; everything in it gets the origin `origin`.
-/// `None` where the text is no TOML value.
+/// Reads one value, in the form that it has after `=`. The value and all its parts get the origin `origin`. Returns `None`
+/// if the text is not a TOML value.
 pub fn parse_value(text: &str, origin: &Origin) -> Option<Node> {
     if let Some(value) = plain_scalar(text) {
         return Some(Node { value, origin: origin.clone() });
@@ -251,8 +250,8 @@ pub fn parse_value(text: &str, origin: &Origin) -> Option<Node> {
     Some(node)
 }
 
-/// A whole number, a decimal, a truth value or a text of the plainest form, which most defaults are: every case of a study
-/// reads them.
+/// Reads a whole number, a decimal, a truth value or a text in its simplest form. Most defaults have this form, and every
+/// case of a study reads them.
 fn plain_scalar(text: &str) -> Option<Value> {
     let digits = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
     let letters = |c: char| c.is_ascii_alphanumeric() || "_- ".contains(c);
@@ -269,15 +268,15 @@ fn plain_scalar(text: &str) -> Option<Value> {
     }
 }
 
-/// A document from a value that a program has made; every part of it gets the origin [`Origin::Value`]. Errors are
-/// all values that no study can hold, by key.
+/// Converts a value that a program has made into a document; every part gets the origin [`Origin::Value`]. The error lists
+/// all values that a study cannot contain, by key.
 pub fn from_json(value: &serde_json::Value) -> Result<Node, Vec<LocatedDiagnostic>> {
     let mut mistakes = Vec::new();
     let node = json_node(value, "", MAX_DEPTH, &mut mistakes);
     if mistakes.is_empty() { Ok(node) } else { Err(mistakes) }
 }
 
-/// `depth` is the number of levels that may still follow.
+/// Converts a value. `depth` is the number of further levels that are allowed.
 fn json_node(value: &serde_json::Value, path: &str, depth: usize, mistakes: &mut Vec<LocatedDiagnostic>) -> Node {
     use serde_json::Value as Json;
     let value = match value {
@@ -312,7 +311,7 @@ fn json_node(value: &serde_json::Value, path: &str, depth: usize, mistakes: &mut
 
 struct Reader {
     file: Arc<str>,
-    /// Byte where each line starts.
+    /// First byte of each line.
     lines: Vec<usize>,
     text: String,
 }
@@ -351,7 +350,7 @@ impl Reader {
         Node { value: Value::Table(Table { entries }), origin }
     }
 
-    /// `key` is the place of the key, which tables with a header are known by.
+    /// Converts a parsed value. `key` is the place of the key, which is the place of tables with a header.
     fn node(&self, value: &Spanned<DeValue<'_>>, key: &Origin, mistakes: &mut Vec<LocatedDiagnostic>) -> Node {
         let origin = self.origin(value.span().start);
         let value = match value.get_ref() {
@@ -399,7 +398,7 @@ mod tests {
         }
     }
 
-    /// Values that are read without the parser of whole documents are what it reads; what is not plain is left to it.
+    /// Values that are read without the parser of whole documents are equal to its values; other forms are left to the parser.
     #[test]
     fn plain_values_are_those_of_the_parser() {
         let plain = ["0", "7", "250", "0.0", "1.0", "12.750", "true", "false", "\"\"", "\"jointed\"", "\"a b-c_1\""];

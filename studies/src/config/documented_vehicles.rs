@@ -1,11 +1,11 @@
-//! Vehicles of published rules that a study may name without giving their axles.
+//! Vehicles of published rules: a study may name them without giving their axles.
 
 use super::document::{Entry, Node, Table, Value, parse};
 
 /// The vehicles, with their sources.
 const LIBRARY: &str = include_str!("../loads/documented_vehicles.toml");
 
-/// The table of the library; empty if it cannot be read, which a test forbids.
+/// Returns the table of the library; empty if it cannot be read, which a test rules out.
 fn library() -> Table {
     match parse(LIBRARY, "documented_vehicles.toml").map(|library| library.value) {
         Ok(Value::Table(library)) => library,
@@ -13,12 +13,12 @@ fn library() -> Table {
     }
 }
 
-/// Names of all documented vehicles.
+/// Returns the names of all documented vehicles.
 pub fn names() -> Vec<String> {
     library().entries.into_iter().map(|entry| entry.key).collect()
 }
 
-/// The lines of the library about a vehicle.
+/// Returns the lines of the library about a vehicle.
 pub fn lines_of(name: &str) -> Option<String> {
     let heading = format!("[{name}]");
     let mut lines = LIBRARY.lines().skip_while(|line| *line != heading);
@@ -27,7 +27,7 @@ pub fn lines_of(name: &str) -> Option<String> {
     Some(std::iter::once(first).chain(own).map(|line| format!("{line}\n")).collect())
 }
 
-/// Adds to `[vehicles]` those documented ones that the study names and does not give itself: then its resolved file has
+/// Adds the documented vehicles that the study names but does not define to `[vehicles]`, so that its resolved file contains
 /// every axle.
 pub fn add(root: &mut Node) {
     let mut named = Vec::new();
@@ -50,7 +50,7 @@ pub fn add(root: &mut Node) {
     }
 }
 
-/// All texts of a document.
+/// Collects all texts of a document.
 fn texts(node: &Node, out: &mut Vec<String>) {
     match &node.value {
         Value::String(text) => out.push(text.clone()),
@@ -70,8 +70,8 @@ mod tests {
         table.into_iter().map(|(name, vehicle)| (name, vehicle.try_into().unwrap())).collect()
     }
 
-    /// EN 15528: the wagon's mass is its mass per metre times its length, p = 5.0, 6.4, 7.2 and 8.0 t/m (8.8 for E5),
-    /// which is how c is rounded there; and its axles stand symmetrically.
+    /// EN 15528: the mass of a wagon is its mass per metre times its length, p = 5.0, 6.4, 7.2 and 8.0 t/m (8.8 for E5); the
+    /// standard rounds c accordingly. The axles are symmetric.
     #[test]
     fn wagons_have_the_mass_per_metre_of_their_category() {
         let per_metre = [

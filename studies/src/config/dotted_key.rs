@@ -1,6 +1,6 @@
-//! Dotted keys such as `scene.profile.rise`: apart and together again.
+//! Dotted keys such as `scene.profile.rise`: splits and joins them.
 
-/// The segments of a dotted key; a segment in double quotes may hold dots.
+/// Returns the segments of a dotted key; a segment in double quotes may contain dots.
 pub fn segments(path: &str) -> Vec<String> {
     let (mut out, mut segment, mut quoted) = (Vec::new(), String::new(), false);
     for character in path.chars() {
@@ -17,7 +17,7 @@ pub fn segments(path: &str) -> Vec<String> {
     out
 }
 
-/// A dotted key, one segment longer.
+/// Returns a dotted key with one more segment.
 pub fn join(path: &str, segment: &str) -> String {
     let quote = if segment.is_empty() || segment.contains(['.', ' ']) { "\"" } else { "" };
     let dot = if path.is_empty() { "" } else { "." };

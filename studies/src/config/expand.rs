@@ -1,6 +1,6 @@
-//! Variants, scenes of a comparison and sweeps: the cases of a study. Variants are outermost, then
-//! the scenes, then the axes of the sweep in the order of the file, the first slowest. A variant is
-//! set on top of a scene, a swept value on top of both.
+//! Variants, scenes of a comparison and sweeps: the cases of a study. Variants are outermost, then the scenes, then the axes
+//! of the sweep in the order of the file; the first axis changes slowest. A variant overrides a scene, a swept value
+//! overrides both.
 
 use crate::config::diagnostic::{LocatedDiagnostic, suggest};
 use crate::config::document::{Node, Table, Value};
@@ -19,7 +19,7 @@ pub const MAX_CASES: usize = 1_000_000;
 #[derive(Debug, Clone)]
 struct Axis {
     keys: Vec<(String, Origin)>,
-    /// For each step a value per key.
+    /// One value per key for each step.
     values: Vec<Vec<Node>>,
 }
 
@@ -29,14 +29,14 @@ struct Variant {
     set: Vec<(String, Origin, Node)>,
 }
 
-/// The cases of a study, made one at a time.
+/// The cases of a study, created one at a time.
 #[derive(Debug, Clone)]
 pub struct Expansion {
     base: Node,
     variants: Vec<Variant>,
     scenes: Vec<Variant>,
     axes: Vec<Axis>,
-    /// Keys of the study file, by whose quantities texts with units become numbers.
+    /// Keys of the study file; their quantities convert texts with units into numbers.
     schema: &'static [Parameter],
 }
 
@@ -45,24 +45,23 @@ pub struct Expansion {
 pub struct Expanded {
     /// Name of its variant.
     pub variant: Option<String>,
-    /// Name of its scene, where the study compares several.
+    /// Name of its scene, if the study compares several.
     pub scene: Option<String>,
-    /// Swept key → value; of a text with a unit, the number in the unit of its key.
+    /// Swept key → value. A text with a unit becomes the number in the unit of its key.
     pub parameters: Map<String, Json>,
     /// The whole study file of this case, without `sweep`, `variants`
     /// and the tables of study kinds.
     pub root: Node,
 }
 
-/// `x` rounded to 12 significant digits, so that 5.69 − 9 · 0.30 is 2.99.
+/// Rounds `x` to 12 significant digits, so that 5.69 − 9 · 0.30 is 2.99.
 pub fn rounded(x: f64) -> f64 {
     if x.is_finite() { format!("{x:.11e}").parse().unwrap_or(x) } else { x }
 }
 
 impl Expansion {
-    /// Reads `sweep` and `variants` of a study file, and the `scenes` of its kind's table; all mistakes in
-    /// them. `kind_tables` are the tables of study kinds, which are no part of a case,
-    /// and `schema` the keys of the study file.
+    /// Reads `sweep` and `variants` of a study file, and the `scenes` of its kind's table. The error lists all mistakes in them.
+    /// `kind_tables` are the tables of study kinds, which are not part of a case; `schema` has the keys of the study file.
     pub fn new(
         root: &Node,
         kind_tables: &[&str],
@@ -115,29 +114,29 @@ impl Expansion {
         if mistakes.is_empty() { Ok(expansion) } else { Err(mistakes) }
     }
 
-    /// What the cases are made from.
+    /// Returns the study file from which the cases are made.
     pub fn base(&self) -> &Node {
         &self.base
     }
 
-    /// Whether a top-level key, or anything below it, is set by a variant, a scene or the sweep.
+    /// Returns true if a variant, a scene or the sweep sets a top-level key or a key below it.
     pub fn changes(&self, name: &str) -> bool {
         let set = self.variants.iter().chain(&self.scenes).flat_map(|entry| &entry.set).map(|(key, ..)| key.as_str());
         set.chain(self.swept()).any(|key| segments(key).first().is_some_and(|first| first == name))
     }
 
-    /// Keys that are swept.
+    /// Returns the swept keys.
     pub fn swept(&self) -> impl Iterator<Item = &str> {
         self.axes.iter().flat_map(|axis| &axis.keys).map(|(key, _)| key.as_str())
     }
 
-    /// Each axis of the sweep: its keys, and whether the values of the first are numbers.
+    /// Returns the keys of each axis of the sweep, with true if the values of the first key are numbers.
     pub fn axes(&self) -> Vec<(Vec<String>, bool)> {
         let keys = |axis: &Axis| axis.keys.iter().map(|(key, _)| key.clone()).collect();
         (0..self.axes.len()).map(|axis| (keys(&self.axes[axis]), self.is_number(axis, 0))).collect()
     }
 
-    /// Keys that are swept, and whether all values of each are numbers.
+    /// Returns the swept keys, each with true if all its values are numbers.
     pub fn number_keys(&self) -> Vec<(String, bool)> {
         let keys = |axis: usize| {
             let keys = self.axes[axis].keys.iter().enumerate();
@@ -154,29 +153,30 @@ impl Expansion {
         let key = &own.keys[place].0;
         let in_case = |id: usize| self.case(id).is_ok_and(|case| case.parameters[key].is_number());
         let texts = own.values.iter().enumerate().filter(|(_, step)| step[place].number().is_none());
-        // The axes outside of this one do not change the unit.
+        // The axes outside this axis do not change the unit.
         let stride = self.axes[..axis].iter().map(|axis| axis.values.len()).product::<usize>().max(1);
         texts
             .map(|(step, _)| step)
             .all(|step| (0..outer).step_by(stride).all(|outer| in_case((outer * own.values.len() + step) * inner)))
     }
 
-    /// Names of the variants; empty where the study has none.
+    /// Returns the names of the variants; empty if the study has none.
     pub fn variants(&self) -> Vec<String> {
         self.variants.iter().filter_map(|variant| variant.name.clone()).collect()
     }
 
-    /// Names of the scenes compared; empty where the study has only its own.
+    /// Returns the names of the compared scenes; empty if the study has a single scene.
     pub fn scenes(&self) -> Vec<String> {
         self.scenes.iter().filter_map(|scene| scene.name.clone()).collect()
     }
 
-    /// Number of cases.
+    /// Returns the number of cases.
     pub fn count(&self) -> usize {
         self.axes.iter().map(|axis| axis.values.len()).product::<usize>() * self.variants.len() * self.scenes.len()
     }
 
-    /// Ids of up to `most` cases: one for each variant, scene and text of an axis. Axes of numbers stay at their first value.
+    /// Returns the ids of up to `most` cases: one for each variant, scene and text of an axis. Axes of numbers stay at their
+    /// first value.
     pub fn one_of_each(&self, most: usize) -> Vec<usize> {
         let mut ids: Vec<usize> = (0..self.variants.len() * self.scenes.len()).take(most).collect();
         for axis in &self.axes {
@@ -188,7 +188,7 @@ impl Expansion {
         ids
     }
 
-    /// Case `id < count()`.
+    /// Returns case `id < count()`.
     pub fn case(&self, id: usize) -> Result<Expanded, Vec<LocatedDiagnostic>> {
         let mut rest = id;
         let mut steps = vec![0; self.axes.len()];
@@ -233,7 +233,7 @@ impl Expansion {
     }
 }
 
-/// The entries of a list of overrides: `key` is where it stands, `what` how its entries are called.
+/// Reads the entries of a list of overrides: `key` is its key, `what` the name of its entries in messages.
 fn read_variants(node: &Node, key: &str, what: &str, mistakes: &mut Vec<LocatedDiagnostic>) -> Vec<Variant> {
     let mut out: Vec<Variant> = Vec::new();
     for (index, node) in node.array().unwrap_or_default().iter().enumerate() {
@@ -310,7 +310,7 @@ fn keys_name(keys: &[(String, Origin)]) -> &str {
 
 const FORMS: &str = "write { list = [1.0, 2.0] }, { from = 1.0, to = 2.0, step = 0.5 } or { from = 1.0, to = 2.0, count = 3 }, and the swept key in quotes: \"scene.profile.rise\"";
 
-/// The values of one axis; `None` where it has mistakes.
+/// Returns the values of one axis; `None` if it has mistakes.
 fn axis(node: &Node, path: &str, mistakes: &mut Vec<LocatedDiagnostic>) -> Option<Vec<Node>> {
     let before = mistakes.len();
     let Some(table) = node.table() else {
@@ -423,7 +423,7 @@ fn spaced(node: &Node, table: &Table, path: &str, mistakes: &mut Vec<LocatedDiag
         None if last == 0.0 => from,
         None => from + (to - from) * (i / last),
     };
-    // What is left of a difference that should be 0 is 0.
+    // A rounding error around zero becomes 0.
     let size = at(0.0).abs().max(at(last).abs());
     let whole = |x: f64| if x.abs() < 1e-12 * size { 0.0 } else { rounded(x) };
     let numbers: Vec<f64> = (0..=last as usize).map(|i| whole(at(i as f64))).collect();

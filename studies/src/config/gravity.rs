@@ -1,9 +1,9 @@
-//! The gravity of a study, by which specific weights become densities.
+//! The gravity of a study, which converts specific weights into densities.
 
 use crate::config::document::{Node, Value};
 use voussoir_core::plugin::{Quantity, STANDARD_GRAVITY};
 
-/// The magnitude of the first gravity in the study's stages; standard gravity where there is none.
+/// Returns the magnitude of the first gravity in the stages of the study; standard gravity if no stage has one.
 pub fn gravity_of(root: &Node) -> f64 {
     let number = |node: &Node| match &node.value {
         Value::String(text) => Quantity::Acceleration.parse(text, STANDARD_GRAVITY).ok(),

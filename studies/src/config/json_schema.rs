@@ -7,7 +7,7 @@ use crate::config::origin::Origin;
 use serde_json::{Map, Value as Json, json};
 use voussoir_core::plugin::{Card, Need, Parameter, PluginKind, Quantity, Range, Shape, candidates};
 
-/// Definitions of all plug-ins that study files configure, by name.
+/// Returns the definitions of all plug-ins that study files configure, by name.
 pub fn definitions() -> Map<String, Json> {
     let mut definitions = Map::new();
     for kind in [
@@ -38,7 +38,7 @@ fn name_of(kind: PluginKind) -> String {
 fn plugin(defs: &mut Map<String, Json>, kind: PluginKind, tag: &str, summary: &str, own: &[Parameter]) -> Json {
     let common = common_parameters(kind).iter().filter(|p| own.iter().all(|o| o.name != p.name));
     let mut parameters: Vec<Parameter> = own.iter().chain(common).copied().collect();
-    // Keys of other plug-ins of the kind are accepted, so that swapping one is a single line.
+    // Keys of other plug-ins of the kind are accepted, so that you can change the plug-in in a single line.
     for other in candidates(kind).iter().flat_map(|card| card.parameters) {
         if parameters.iter().all(|p| p.name != other.name) {
             parameters.push(other.optional("not used here"));
@@ -51,7 +51,7 @@ fn plugin(defs: &mut Map<String, Json>, kind: PluginKind, tag: &str, summary: &s
     json!({ "$ref": format!("#/$defs/{name}") })
 }
 
-/// The schema of a table with these keys; `tag` is the key that names it, with its word.
+/// Returns the schema of a table with these keys; `tag` is the key of the plug-in's tag, with its value.
 pub fn table(parameters: &[Parameter], tag: Option<(&str, &str)>) -> Json {
     let mut properties = Map::new();
     let mut required = Vec::new();

@@ -1,14 +1,14 @@
-//! The unit and the words of a key, from the schema of the plug-in that owns it: the only lookup of both.
+//! The unit and the description of a key, from the schema of the plug-in that owns it. Both are looked up only here.
 //!
-//! The key is followed segment by segment, through the schema and through the values of a study at once. Only the values
-//! name the owner: the law of this joint, the kind of this load, the shape of this profile.
+//! The key is followed segment by segment, through the schema and through the values of a study at the same time. Only the
+//! values name the owner: the law of this joint, the kind of this load, the shape of this profile.
 
 use super::common_keys::{common_parameters, word_for};
 use super::dotted_key::segments;
 use serde_json::Value as Json;
 use voussoir_core::plugin::{Parameter, PluginKind, Quantity, Shape, candidate, candidates};
 
-/// Longest words of a key, in bytes.
+/// Greatest length of the description of a key \[bytes\].
 const MAX_WORDS: usize = 60;
 
 /// The meaning of a key by the schema.
@@ -33,12 +33,12 @@ pub struct KeyMeaning {
 }
 
 impl KeyMeaning {
-    /// The unit; `None` for pure numbers, texts and tables.
+    /// Returns the unit; `None` for pure numbers, texts and tables.
     pub fn unit(&self) -> Option<&'static str> {
         self.quantity.map(Quantity::unit).filter(|unit| !unit.is_empty())
     }
 
-    /// Short words for an axis or a row: `rise of the intrados`.
+    /// Returns a short description for an axis or a row: `rise of the intrados`.
     pub fn words(&self) -> String {
         if self.tag {
             return self.doc.into();
@@ -47,24 +47,24 @@ impl KeyMeaning {
         short_words(self.name, self.doc) + &entries.collect::<String>()
     }
 
-    /// The same after the names of the tables above: `live: vehicle: at, x of the vehicle's origin`.
+    /// Returns the description after the names of the tables above: `live: vehicle: at, x of the vehicle's origin`.
     pub fn words_in_place(&self) -> String {
         self.place.iter().cloned().chain([self.words()]).collect::<Vec<_>>().join(": ")
     }
 
-    /// The same with the unit.
+    /// Returns the description with the unit.
     pub fn title(&self) -> String {
         self.unit().map_or(self.words_in_place(), |unit| format!("{} [{unit}]", self.words_in_place()))
     }
 
-    /// The name of the key without the tables above, for lists of values: `rise`, `force, y`.
+    /// Returns the name of the key without the tables above, for lists of values: `rise`, `force, y`.
     pub fn short_name(&self) -> String {
         let entries = self.entries.iter().map(|entry| format!(", {entry}"));
         self.name.to_string() + &entries.collect::<String>()
     }
 }
 
-/// The first clause of the schema's text, with the name of the key if the clause does not contain it.
+/// Returns the first clause of the schema's text, with the name of the key if the clause does not contain it.
 fn short_words(name: &str, doc: &str) -> String {
     let end = doc.find([',', ':', ';', '(']).unwrap_or(doc.len());
     let (clause, name) = (doc[..end].trim(), name.replace('_', " "));
@@ -81,7 +81,7 @@ fn short_words(name: &str, doc: &str) -> String {
     if named { clause.into() } else { format!("{name}, {clause}") }
 }
 
-/// The quantity of a number or of a list whose numbers have all the same one; whole numbers are ratios.
+/// Returns the quantity of a number, or of a list if all its numbers have the same one; whole numbers are ratios.
 pub fn quantity_of(shape: &Shape) -> Option<Quantity> {
     match shape {
         Shape::Number(quantity, _) => Some(*quantity),
@@ -96,8 +96,8 @@ pub fn quantity_of(shape: &Shape) -> Option<Quantity> {
     }
 }
 
-/// The meaning of a key in a study with these tables. `parameters` are the top-level keys of the study file, `table` gives
-/// their values, checked or as written. `None` if the schema does not know the key.
+/// Returns the meaning of a key in a study with these tables. `parameters` are the top-level keys of the study file, `table`
+/// has their values, checked or as written. `None` if the schema does not have the key.
 pub fn key_meaning<'a>(
     parameters: &'static [Parameter],
     table: &dyn Fn(&str) -> Option<&'a Json>,
@@ -111,7 +111,7 @@ pub fn key_meaning<'a>(
     Some(walk.meaning())
 }
 
-/// A place in the schema and in the values.
+/// A position in the schema and in the values.
 #[derive(Clone)]
 struct Walk<'a> {
     shape: Shape,
@@ -123,7 +123,7 @@ struct Walk<'a> {
     entries: Vec<String>,
     used: bool,
     tag: bool,
-    /// True if the parameter itself is a table whose name belongs to the place of keys below.
+    /// True if the parameter itself is a table whose name belongs to the position of keys below.
     named: bool,
 }
 
@@ -165,7 +165,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// One segment further; `None` if the schema has no such key here.
+    /// Moves one segment further; `None` if the schema has no such key here.
     fn step(&mut self, segment: &str) -> Option<()> {
         match self.shape {
             Shape::Table(parameters) => self.parameter(parameters, segment),
@@ -205,7 +205,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// A key of a table.
+    /// Moves to a key of a table.
     fn parameter(&mut self, parameters: &'static [Parameter], segment: &str) -> Option<()> {
         let parameter = parameters.iter().find(|parameter| parameter.name == segment)?;
         if self.named {
@@ -218,7 +218,7 @@ impl<'a> Walk<'a> {
         Some(())
     }
 
-    /// The key whose word chooses the keys of its table.
+    /// Moves to the tag of a table.
     fn tag(&mut self, key: &'static str, words: &'static str) -> Option<()> {
         if self.named {
             self.place.push(self.name.replace('_', " "));
@@ -228,7 +228,7 @@ impl<'a> Walk<'a> {
         Some(())
     }
 
-    /// A key of the chosen plug-in, of all plug-ins of its kind, or, without use, of another plug-in of its kind.
+    /// Moves to a key of the chosen plug-in or of all plug-ins of its kind, or, marked as unused, of another plug-in of its kind.
     fn plugin(&mut self, kind: PluginKind, segment: &str) -> Option<()> {
         let tag = self.value.and_then(|value| value.get(kind.tag_key())?.as_str()).unwrap_or_default();
         let own = candidate(kind, tag).map_or(&[][..], |card| card.parameters);
@@ -239,14 +239,14 @@ impl<'a> Walk<'a> {
         candidates(kind).into_iter().find_map(|other| self.parameter(other.parameters, segment))
     }
 
-    /// The index of a list's entry, which its name may give.
+    /// Returns the index of a list entry; the segment may be its name.
     fn index(&self, segment: &str) -> Option<usize> {
         let named = |entry: &Json| entry.get("name").and_then(Json::as_str) == Some(segment);
         let by_name = || self.value?.as_array()?.iter().position(named);
         segment.parse().ok().or_else(by_name)
     }
 
-    /// An entry of a list: tables are named in the place of the keys below, numbers after the words.
+    /// Moves to an entry of a list: tables add a name to the position of the keys below, numbers add to the description.
     fn entry(&mut self, of: Shape, index: usize, number: String) {
         let list = self.value.and_then(Json::as_array);
         let value = list.and_then(|list| list.get(index));
@@ -270,12 +270,12 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// One entry of a list with this name.
+/// Returns the name of one entry of a list with this name.
 fn singular(list: &str) -> String {
     list.strip_suffix('s').unwrap_or(list).replace('_', " ")
 }
 
-/// The alternatives in the form of a value first, then the others.
+/// Returns the alternatives with the form of the value first, then the others.
 fn fitting<'s>(shapes: &'s [Shape], value: Option<&Json>) -> impl Iterator<Item = &'s Shape> {
     let fits = move |shape: &&Shape| value.is_some_and(|value| outer_form(shape, value));
     let others = move |shape: &&Shape| !value.is_some_and(|value| outer_form(shape, value));

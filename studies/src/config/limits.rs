@@ -6,5 +6,5 @@ pub const MAX_DEPTH: usize = 64;
 pub const MAX_FILE_BYTES: u64 = 256 << 20;
 /// Greatest number of mistakes that are printed for one file.
 pub const MAX_MISTAKES_PRINTED: usize = 100;
-/// Greatest length of a message or a key in a message \[characters\]; longer ones lose their middle.
+/// Greatest length of a message or a key in a message \[characters\]; longer ones are shortened in the middle.
 pub const MAX_MESSAGE: usize = 1000;

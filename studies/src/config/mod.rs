@@ -1,9 +1,9 @@
-//! The study file: from TOML text to checked values, each with the place it was written at.
+//! The study file: from TOML text to checked values, each with its place.
 //!
-//! [`document`] reads the text, [`overlay`] sets single keys in it, [`expand`] makes the cases of
-//! variants and sweeps, [`check`] compares a case with the schema, [`checked_keys`] what its cases share once, [`diagnostic`] says what is wrong
-//! and [`origin`] where, [`json_schema`] hands the same schema to editors. What the keys mean is not
-//! known here: that is [`crate::study`].
+//! [`document`] reads the text, [`overlay`] sets single keys in it, and [`expand`] makes the cases of variants and sweeps.
+//! [`check`] compares a case with the schema; [`checked_keys`] stores the checks that cases share. [`diagnostic`] describes a
+//! mistake and [`origin`] its place. [`json_schema`] exports the schema to editors. The meaning of the keys is defined in
+//! [`crate::study`], not here.
 
 pub mod characters;
 pub mod check;

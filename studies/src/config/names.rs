@@ -1,11 +1,11 @@
-//! Names, keys and texts of a study without characters that a reader cannot see.
+//! Checks that names, keys and texts of a study have no characters that a reader cannot see.
 
 use crate::config::characters::{changes_direction, is_invisible};
 use crate::config::diagnostic::LocatedDiagnostic;
 use crate::config::document::{Node, Value};
 use crate::config::dotted_key::join;
 
-/// Adds a mistake for every key and every name of a study that holds an invisible character, and for every other text
+/// Adds a mistake for every key and every name of a study that contains an invisible character, and for every other text
 /// with a control character or a change of direction. Line breaks and tabs may occur in texts, not in names.
 pub fn check_texts(root: &Node, mistakes: &mut Vec<LocatedDiagnostic>) {
     check_node(root, "", mistakes);

@@ -1,10 +1,11 @@
-//! The depth of a TOML document, measured before its tree is built: building and dropping a deep tree both recurse.
+//! The depth of a TOML document. It is measured before the tree is built, because building and dropping a tree are
+//! recursive.
 
 use crate::config::limits::MAX_DEPTH;
 use toml_parser::parser::{EventReceiver, parse_document};
 use toml_parser::{ErrorSink, Source, Span, decoder::Encoding};
 
-/// The byte at which a document is nested more than [`MAX_DEPTH`] deep; `None` if it is not.
+/// Returns the byte at which a document is nested deeper than [`MAX_DEPTH`]; `None` if it is not.
 pub fn too_deep(text: &str) -> Option<usize> {
     let tokens = Source::new(text).lex().into_vec();
     let mut depth = Depth::default();

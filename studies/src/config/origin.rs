@@ -1,23 +1,23 @@
-//! Where a key or value was written: a place in a file, the command line, or a value of a program.
+//! The place of a key or value: in a file, on the command line, or in a value of a program.
 
 use std::fmt;
 use std::sync::Arc;
 
-/// Where something was written.
+/// Place of a key or value.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum Origin {
-    /// In a file; line and column count from 1, columns in characters.
+    /// In a file; lines and columns count from 1, columns in characters.
     File {
-        /// Its name as it was given.
+        /// Name of the file, as it was given.
         file: Arc<str>,
-        /// From 1.
+        /// Line, from 1.
         line: usize,
-        /// From 1.
+        /// Column, from 1.
         column: usize,
     },
     /// On the command line, as `--set KEY=…`.
     Set(Arc<str>),
-    /// In a value that a program has made; its key says where.
+    /// In a value that a program has made; its key gives the position.
     Value,
 }
 

@@ -1,4 +1,4 @@
-//! Setting single keys of a document: `--set`, variants and sweeps.
+//! Sets single keys of a document: `--set`, variants and sweeps.
 
 use crate::config::diagnostic::{LocatedDiagnostic, suggest};
 use crate::config::document::{Entry, Node, Table, Value};
@@ -6,10 +6,9 @@ use crate::config::dotted_key::{join, segments};
 use crate::config::limits::MAX_DEPTH;
 use crate::config::origin::Origin;
 
-/// Sets the key at a dotted path. List entries are found by index from 0 or, where they are tables
-/// with a `name`, by that name. Tables and keys that are missing are created, so that a misspelt
-/// key is found by the check of the whole; a list entry is never created. `key_origin` is where
-/// the path was written.
+/// Sets the key at a dotted path. List entries are found by index from 0, or by `name` if they are tables with this key.
+/// Missing tables and keys are created, so that the check of the whole study finds a misspelt key; list entries are never
+/// created. `key_origin` is the place of the path.
 pub fn set(root: &mut Node, path: &str, value: Node, key_origin: &Origin) -> Result<(), Box<LocatedDiagnostic>> {
     let wrong = |message: String| LocatedDiagnostic::new(key_origin, path, message);
     let segments = segments(path);
@@ -42,7 +41,7 @@ pub fn set(root: &mut Node, path: &str, value: Node, key_origin: &Origin) -> Res
     Ok(())
 }
 
-/// The value under a key; a new empty table where there is none.
+/// Returns the value under a key; adds an empty table if the key is missing.
 fn child<'a>(table: &'a mut Table, key: &str, origin: &Origin) -> &'a mut Node {
     let index = table.entries.iter().position(|entry| entry.key == key).unwrap_or_else(|| {
         let node = Node { value: Value::Table(Table::default()), origin: origin.clone() };
@@ -52,7 +51,7 @@ fn child<'a>(table: &'a mut Table, key: &str, origin: &Origin) -> &'a mut Node {
     &mut table.entries[index].node
 }
 
-/// The index of a list entry by index or name; else advice.
+/// Returns the position of a list entry by index or name. The error is advice.
 fn find(nodes: &[Node], segment: &str) -> Result<usize, String> {
     let name = |node: &Node| node.table().and_then(|table| table.get("name")?.text().map(str::to_string));
     if let Ok(index) = segment.parse::<usize>() {

@@ -1,10 +1,10 @@
-//! Shapes of values in words, and whether a value has the outer form of one.
+//! Shapes of values in words, and the check that a value has the outer form of a shape.
 
 use crate::config::diagnostic::any_of;
 use crate::config::document::{Node, Value};
 use voussoir_core::plugin::{Quantity, Shape};
 
-/// What a shape takes, in words.
+/// Describes the values that a shape accepts.
 pub fn describe(shape: &Shape) -> String {
     match shape {
         Shape::Number(Quantity::Ratio, _) => "a number".into(),
@@ -37,12 +37,12 @@ pub fn describe(shape: &Shape) -> String {
     }
 }
 
-/// What one of several shapes takes, in words.
+/// Describes the values that one of several shapes accepts.
 pub fn any_shape(shapes: &[Shape]) -> String {
     shapes.iter().map(describe).collect::<Vec<_>>().join(", or ")
 }
 
-/// Whether a value has the outer form of a shape.
+/// Returns true if a value has the outer form of a shape.
 pub fn fits(node: &Node, shape: &Shape) -> bool {
     match (shape, &node.value) {
         (Shape::Free, _) => true,

@@ -1,4 +1,4 @@
-//! Energy: work = what is stored + what is dissipated, and no closed path gives work away.
+//! Energy: work = stored energy + dissipation, and no closed path releases work.
 
 use super::findings::Recorder;
 use super::point::Point;
@@ -6,7 +6,7 @@ use super::random::Random;
 use super::subject::Subject;
 use voussoir_core::plugin::Property;
 
-/// Closed paths of each sample, corners of each, steps between two corners.
+/// Number of closed paths of each sample, of corners of each path, and of steps between two corners.
 const CYCLES: usize = 20;
 const CORNERS: usize = 3;
 const STEPS: usize = 150;
@@ -17,7 +17,7 @@ pub(super) fn check(recorder: &mut Recorder, subject: &Subject) {
     cycles(recorder, subject);
 }
 
-/// What a path of small steps takes, by the trapezoidal rule.
+/// Work along a path of small steps, by the trapezoidal rule.
 struct Driven {
     work: f64,
     stored: f64,
@@ -75,7 +75,7 @@ fn balance(recorder: &mut Recorder, subject: &Subject) {
     });
 }
 
-/// Work over a closed path from the untouched point is not negative: nothing was stored there to be given away.
+/// The work over a closed path from the untouched point is not negative: this point stores no energy that it could release.
 fn cycles(recorder: &mut Recorder, subject: &Subject) {
     if !subject.card.claims(Property::DISSIPATIVE) {
         return;

@@ -1,4 +1,4 @@
-//! Facets: what they admit, how they flow, and whether tractions from gaps say the same.
+//! Facets: admissible tractions, flow, and agreement with the tractions from gaps.
 
 use super::findings::Recorder;
 use super::point::Point;
@@ -15,7 +15,7 @@ fn length(a: [f64; 2]) -> f64 {
     a[0].hypot(a[1])
 }
 
-/// The facets alone.
+/// Checks the facets alone.
 pub(super) fn check(recorder: &mut Recorder, card: &Card, facets: &[Facet]) {
     for facet in facets {
         one(recorder, card, facet);
@@ -65,7 +65,7 @@ fn one(recorder: &mut Recorder, card: &Card, facet: &Facet) {
     });
 }
 
-/// Whether v = Σ γ r with γ ≥ 0 over at most two of the rays.
+/// Returns true if v = Σ γ r with γ ≥ 0 over at most two of the rays.
 fn in_cone(v: [f64; 2], rays: &[[f64; 2]], tolerance: f64) -> bool {
     let cross = |a: [f64; 2], b: [f64; 2]| a[0] * b[1] - a[1] * b[0];
     let alone = |r: &[f64; 2]| cross(v, *r).abs() <= tolerance * length(*r) && dot(v, *r) >= 0.0;
@@ -76,8 +76,8 @@ fn in_cone(v: [f64; 2], rays: &[[f64; 2]], tolerance: f64) -> bool {
     length(v) <= tolerance || rays.iter().any(|r| alone(r) || rays.iter().any(|s| pair(r, s)))
 }
 
-/// Where a law has both forms they say the same: tractions lie within the facets, and the gap that stiffness does
-/// not explain grows along the flow of facets that are reached. A facet without tensile strength opens and closes.
+/// If a law has both forms, they must agree: tractions lie within the facets, and the part of the gap that stiffness does
+/// not explain grows along the flow of active facets. A facet without tensile strength opens and closes.
 pub(super) fn against_response(recorder: &mut Recorder, subject: &Subject, facets: &[Facet], k: [f64; 2]) {
     let (Point::Joint(_), size) = (&subject.point, subject.sample.size) else { return };
     let (mut random, tolerance, mut flows) = (Random::new(17), 1e-9 * size, 0);

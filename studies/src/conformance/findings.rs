@@ -1,22 +1,22 @@
-//! What the checks of a law have found.
+//! Findings of the checks of a law.
 
 use super::reproduce::reproduce;
 use std::collections::BTreeMap;
 use std::fmt;
 use voussoir_core::plugin::{Card, PluginKind, Sample};
 
-/// Something that a law does not keep.
+/// A promise that a law does not keep.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finding {
     /// Name of the check.
     pub check: &'static str,
-    /// What is wrong.
+    /// Description of the violation.
     pub what: String,
-    /// A study of `kind = "point"` that shows it, where a path leads to it.
+    /// A study of `kind = "point"` that reproduces it, if a path leads to it.
     pub study: Option<String>,
 }
 
-/// What the checks of one law have found.
+/// Report of the checks of one law.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
     /// The law's tag.
@@ -25,19 +25,19 @@ pub struct Report {
     pub kind: PluginKind,
     /// Each check by name with the number of times it was made.
     pub done: BTreeMap<&'static str, usize>,
-    /// What was not checked, and why.
+    /// Checks that were skipped, with the reason.
     pub left_out: Vec<String>,
-    /// What is wrong; each check once for each sample.
+    /// Findings; at most one for each check and sample.
     pub findings: Vec<Finding>,
 }
 
 impl Report {
-    /// Whether the law conforms.
+    /// Returns true if the law conforms.
     pub fn passed(&self) -> bool {
         self.findings.is_empty()
     }
 
-    /// Whether a check of this name has found something.
+    /// Returns true if the check of this name has a finding.
     pub fn fails(&self, check: &str) -> bool {
         self.findings.iter().any(|finding| finding.check == check)
     }
@@ -56,7 +56,7 @@ impl fmt::Display for Report {
     }
 }
 
-/// Gathers findings: the first of each check in each sample.
+/// Collects findings: the first of each check in each sample.
 pub(super) struct Recorder<'a> {
     card: &'a Card,
     sample: Option<Sample>,
@@ -76,24 +76,24 @@ impl<'a> Recorder<'a> {
         Recorder { card, sample: None, report, seen: Vec::new() }
     }
 
-    /// The next checks are those of this sample.
+    /// Begins the checks of a sample.
     pub(super) fn sample(&mut self, sample: &Sample) {
         self.sample = Some(*sample);
         self.seen.clear();
     }
 
-    /// The next checks are those of the whole law.
+    /// Begins the checks of the whole law.
     pub(super) fn whole(&mut self) {
         self.sample = None;
         self.seen.clear();
     }
 
-    /// A check is made.
+    /// Records a check.
     pub(super) fn hold(&mut self, check: &'static str, holds: bool, what: impl FnOnce() -> String) {
         self.hold_on(check, holds, &[], what);
     }
 
-    /// A check is made at the end of a path through gaps or strains.
+    /// Records a check at the end of a path through gaps or strains.
     pub(super) fn hold_on(
         &mut self,
         check: &'static str,
@@ -112,12 +112,12 @@ impl<'a> Recorder<'a> {
         self.report.findings.push(Finding { check, what: what() + &at, study });
     }
 
-    /// A check is made and fails.
+    /// Records a check that fails.
     pub(super) fn fail(&mut self, check: &'static str, what: String) {
         self.hold(check, false, || what);
     }
 
-    /// Something is not checked.
+    /// Records a check that was skipped.
     pub(super) fn leave_out(&mut self, why: &str) {
         if !self.report.left_out.iter().any(|known| known == why) {
             self.report.left_out.push(why.into());

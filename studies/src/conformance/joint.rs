@@ -1,4 +1,4 @@
-//! Laws of joints: facets, tractions from gaps, and both against each other.
+//! Laws of joints: facets, tractions from gaps, and their agreement.
 
 use super::findings::Recorder;
 use super::options::Options;
@@ -10,7 +10,7 @@ use super::{energy, facets, sign, units};
 use voussoir_core::law::InterfaceLaw;
 use voussoir_core::plugin::{Capability, Card, PluginKind, Sample};
 
-/// Every sample of a law of joints; nothing for other plug-ins.
+/// Checks every sample of a law of joints; does nothing for other plug-ins.
 pub(super) fn check(recorder: &mut Recorder, card: &Card, options: &Options) {
     if card.kind != PluginKind::InterfaceLaw {
         return;

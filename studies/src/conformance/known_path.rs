@@ -1,4 +1,4 @@
-//! Paths whose answers are known from elsewhere, as the card brings them.
+//! Known paths: their tractions or stresses come from an independent source; the card of a law contains them.
 
 use super::findings::Recorder;
 use super::options::Options;
@@ -6,8 +6,8 @@ use super::point::Point;
 use super::samples::{Law, is_law, laws, table};
 use voussoir_core::plugin::{Card, KnownPath, Sample};
 
-/// Every known path of a law; one at least where it answers at a point, and one that goes back after something
-/// irreversible where it has a memory.
+/// Checks every known path of a law. A law that answers at a point needs at least one; a law with a memory needs one that
+/// unloads after an irreversible change.
 pub(super) fn check(recorder: &mut Recorder, card: &Card, _: &Options) {
     if !is_law(card) {
         return;
@@ -38,7 +38,7 @@ fn point(law: &Law) -> Option<Point> {
     }
 }
 
-/// The law at a point; materials over a length of one metre.
+/// Returns the law at a point; materials get a characteristic length of one metre.
 fn metre(law: &Law) -> Option<Point> {
     match point(law)? {
         Point::Material(law, _) => Some(Point::Material(law, 1.0)),
@@ -46,7 +46,7 @@ fn metre(law: &Law) -> Option<Point> {
     }
 }
 
-/// Whether the path goes back elastically after something irreversible.
+/// Checks a path. Returns true if the path unloads elastically after an irreversible change.
 fn check_path(recorder: &mut Recorder, card: &Card, known: &KnownPath) -> bool {
     recorder.sample(&Sample::new(known.table, 1.0, &[]));
     let law =

@@ -11,7 +11,7 @@ use super::{energy, sign, units};
 use voussoir_core::law::{BulkMaterial, Elasticity, PlanarPoint, PlanarUpdate, Plane, UpdateContext};
 use voussoir_core::plugin::{Capability, Card, PluginKind, Property, Sample};
 
-/// Every sample of a material; nothing for other plug-ins.
+/// Checks every sample of a material; does nothing for other plug-ins.
 pub(super) fn check(recorder: &mut Recorder, card: &Card, options: &Options) {
     if card.kind != PluginKind::BulkMaterial {
         return;
@@ -72,7 +72,7 @@ fn check_sample(
     }
 }
 
-/// A step that is called elastic has the elastic tangent: solvers use that of `elasticity()` for it.
+/// A step that is reported as elastic has the elastic tangent: solvers use `elasticity()` for it.
 fn elastic_branch(recorder: &mut Recorder, subject: &Subject, elasticity: &Elasticity) {
     let (elastic, mut random) = (elasticity.stiffness(), Random::new(19));
     for _ in 0..40 {
@@ -92,8 +92,8 @@ fn elastic_branch(recorder: &mut Recorder, subject: &Subject, elasticity: &Elast
     }
 }
 
-/// Strains turned together with the block give turned stresses; with the block left where it is only where the
-/// material has no axes.
+/// Strains that rotate together with the block give rotated stresses. If the block does not rotate, this holds only for a
+/// material without axes.
 fn axes(recorder: &mut Recorder, subject: &Subject) {
     let Point::Material(law, length) = &subject.point else { return };
     let (mut random, mut turned_alone) = (Random::new(23), 0.0_f64);
@@ -126,7 +126,7 @@ fn axes(recorder: &mut Recorder, subject: &Subject) {
     });
 }
 
-/// A strain (`shear` = ½, because engineering shears count twice) or stress (1) along turned axes.
+/// Returns a strain (`shear` = ½, because engineering shear strains count twice) or stress (1) in rotated axes.
 fn turned(v: [f64; 6], axes: &[[f64; 3]; 3], shear: f64) -> [f64; 6] {
     let t =
         [[v[0], v[3] * shear, v[5] * shear], [v[3] * shear, v[1], v[4] * shear], [v[5] * shear, v[4] * shear, v[2]]];
@@ -134,7 +134,7 @@ fn turned(v: [f64; 6], axes: &[[f64; 3]; 3], shear: f64) -> [f64; 6] {
     [entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1) / shear, entry(1, 2) / shear, entry(2, 0) / shear]
 }
 
-/// In a plane it answers too, and allocates nothing there.
+/// The plane form gives the same stresses and does not allocate.
 fn planar(recorder: &mut Recorder, subject: &Subject, options: &Options) {
     let Point::Material(law, length) = &subject.point else { return };
     let (mut random, context) = (Random::new(29), [UpdateContext::of_length(*length)]);

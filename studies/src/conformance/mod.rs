@@ -1,7 +1,7 @@
-//! Conformance: whether a law keeps what its trait and its card promise, found out without knowing the law.
+//! Conformance: checks that a law keeps the promises of its trait and its card, without knowledge of the law.
 //!
-//! [`conform`] takes a card, walks through its samples and reports every check with the number of times it was made and
-//! what it found; `voussoir conform TAG` prints that. A law of another crate calls it in a test of its own:
+//! [`conform`] takes a card, walks through its samples and reports every check with its number of repetitions and its
+//! findings; `voussoir conform TAG` prints the report. A law of another crate calls it in its own test:
 //!
 //! ```
 //! use voussoir::conformance::{Options, conform};
@@ -10,8 +10,8 @@
 //! assert!(report.passed(), "{report}");
 //! ```
 //!
-//! What is checked, by name, stands in `docs/reference/conformance.md`. Generic checks cannot see a memory that is missing in a
-//! consistent way: each law that answers at a point brings a [known path](voussoir_core::plugin::KnownPath).
+//! The page `docs/reference/conformance.md` lists the checks by name. Generic checks cannot find a memory that is missing in
+//! a consistent way. Therefore each law that answers at a point has a [known path](voussoir_core::plugin::KnownPath).
 
 mod energy;
 mod facets;
@@ -40,7 +40,7 @@ use voussoir_core::plugin::{Card, PluginKind, cards_of};
 /// Checks one law, solver or continuation strategy by its card. Other plug-ins have no checks.
 pub fn conform(card: &Card, options: &Options) -> Report {
     let mut recorder = Recorder::new(card);
-    // A law that panics fails; the others go on.
+    // A law that panics fails; the other laws are still checked.
     let solver = |recorder: &mut Recorder, card: &Card, _: &Options| lies::check(recorder, card);
     let checks: [fn(&mut Recorder, &Card, &Options); 5] =
         [samples::check, joint::check, material::check, known_path::check, solver];
@@ -54,7 +54,7 @@ pub fn conform(card: &Card, options: &Options) -> Report {
     recorder.report()
 }
 
-/// Checks every registered law of joints and materials; one report each, in the order of `voussoir list`.
+/// Checks every registered law of joints and materials. Returns one report for each, in the order of `voussoir list`.
 pub fn conform_all(options: &Options) -> Vec<Report> {
     let kinds = [PluginKind::InterfaceLaw, PluginKind::BulkMaterial];
     kinds.into_iter().flat_map(cards_of).map(|card| conform(card, options)).collect()

@@ -1,11 +1,11 @@
-//! A law at a point, of joints and of materials in one form, so that each check is written once.
+//! A law at a point, in one form for joints and materials, so that each check is written once.
 
 use std::sync::Arc;
 use voussoir_core::law::{
     InterfaceResponse, StressPoint, StressUpdate, TractionPoint, UpdateBranch, UpdateContext, UpdateFailure,
 };
 
-/// What an update says, in as many components as the law has.
+/// The result of an update, with as many components as the law has.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Said {
     /// Tractions or stresses.
@@ -25,7 +25,7 @@ pub(super) enum Point {
 }
 
 impl Point {
-    /// A material at a length it can have.
+    /// Returns a material with a characteristic length that it supports.
     pub(super) fn material(law: Arc<dyn StressUpdate>) -> Self {
         let length = if law.largest_length().is_finite() { 0.3 * law.largest_length() } else { 1.0 };
         Point::Material(law, length)
@@ -38,7 +38,8 @@ impl Point {
         }
     }
 
-    /// Of the work that the point takes up: σ·dε, but −t·dg, because tractions press positive and gaps open positive.
+    /// Returns the sign of the work that the point absorbs: σ·dε, but −t·dg, because compressive tractions and opening gaps are
+    /// positive.
     pub(super) fn sign(&self) -> f64 {
         match self {
             Point::Joint(_) => -1.0,
@@ -60,7 +61,7 @@ impl Point {
         }
     }
 
-    /// The state of the untouched point; numbers that the law does not write are not numbers.
+    /// Returns the state of the untouched point; numbers that the law does not write are NaN.
     pub(super) fn untouched(&self) -> Vec<f64> {
         let mut state = vec![f64::NAN; self.state_size()];
         match self {
@@ -79,7 +80,7 @@ impl Point {
         }
     }
 
-    /// The same through the law's own loop over points.
+    /// Returns the same updates through the law's own loop over points.
     pub(super) fn batch(&self, at: &[[f64; 6]], old: &[f64], new: &mut [f64]) -> Result<Vec<Said>, UpdateFailure> {
         match self {
             Point::Joint(law) => {
@@ -97,8 +98,8 @@ impl Point {
         }
     }
 
-    /// The greatest entry of the tangent at the untouched point, pressed a little: what stiffnesses and stresses are
-    /// measured by.
+    /// Returns the greatest entry of the tangent at the untouched point under a small compression: the scale of stiffnesses
+    /// and stresses.
     pub(super) fn stiffness(&self, size: f64) -> Option<f64> {
         let (old, mut new) = (self.untouched(), vec![0.0; self.state_size()]);
         let mut at = [0.0; 6];

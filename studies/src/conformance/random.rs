@@ -1,4 +1,4 @@
-//! Numbers that look random and are the same on every machine.
+//! Pseudo-random numbers that are the same on every machine.
 
 /// A linear congruential generator (Knuth's MMIX constants); its upper bits are used.
 pub(super) struct Random(u64);
@@ -12,7 +12,7 @@ impl Random {
         random
     }
 
-    /// In [0, 1).
+    /// Returns a number in [0, 1).
     fn unit(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
@@ -22,7 +22,7 @@ impl Random {
         low + (high - low) * self.unit()
     }
 
-    /// A step of a walk through `components` numbers: sizes over two decades around `size`.
+    /// Makes one step of a walk through `components` numbers, with sizes over two decades around `size`.
     pub(super) fn step(&mut self, at: &mut [f64; 6], components: usize, size: f64) {
         let step = size * 10f64.powf(self.between(-1.5, 0.5));
         at[..components].iter_mut().for_each(|x| *x += step * self.between(-1.0, 1.0));

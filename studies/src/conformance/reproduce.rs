@@ -1,8 +1,8 @@
-//! A study that shows what was found: the law driven along the path that led there.
+//! A study that reproduces a finding: it drives the law along the path that led to it.
 
 use voussoir_core::plugin::{Card, PluginKind};
 
-/// The study file of `kind = "point"` that drives a law with these keys through gaps or strains.
+/// Returns the study file of `kind = "point"` that drives a law with these keys through gaps or strains.
 pub(super) fn reproduce(card: &Card, check: &str, table: &str, path: &[[f64; 6]]) -> String {
     let joint = card.kind == PluginKind::InterfaceLaw;
     let (tables, word, quantity) = if joint { ("joints", "joint", "gap") } else { ("materials", "material", "strain") };

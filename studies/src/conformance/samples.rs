@@ -1,4 +1,5 @@
-//! The card itself, and its samples as tables: legal, read back unchanged, unknown and missing keys refused.
+//! The card itself, and its samples as tables: they are legal, are read back unchanged, and unknown or missing keys are
+//! refused.
 
 use super::findings::Recorder;
 use super::options::Options;
@@ -14,7 +15,7 @@ pub(super) enum Law {
 }
 
 impl Law {
-    /// The law that a table configures.
+    /// Returns the law that a table configures.
     pub(super) fn read(kind: PluginKind, table: &Json) -> Result<Law, String> {
         let wrong = |error: serde_json::Error| error.to_string();
         match kind {
@@ -23,7 +24,7 @@ impl Law {
         }
     }
 
-    /// Its table.
+    /// Returns the table of the law.
     fn write(&self) -> Result<Json, String> {
         match self {
             Law::Joint(law) => serde_json::to_value(law),
@@ -32,7 +33,7 @@ impl Law {
         .map_err(|error| error.to_string())
     }
 
-    /// All it says without being driven.
+    /// Returns all properties of the law that need no path.
     fn says(&self) -> String {
         match self {
             Law::Joint(law) => format!("{law:?} {:?} {:?}", law.facets(), law.stiffness()),
@@ -41,12 +42,12 @@ impl Law {
     }
 }
 
-/// Whether a card is one of a law.
+/// Returns true if a card belongs to a law.
 pub(super) fn is_law(card: &Card) -> bool {
     matches!(card.kind, PluginKind::InterfaceLaw | PluginKind::BulkMaterial)
 }
 
-/// A table in TOML as a law's configuration; `None` where it is no TOML.
+/// Returns a TOML table as a law's configuration; `None` if it is not valid TOML.
 pub(super) fn table(card: &Card, keys: &str) -> Option<Json> {
     let keys: toml::Table = keys.parse().ok()?;
     let mut value = serde_json::to_value(keys).ok()?;
@@ -54,14 +55,14 @@ pub(super) fn table(card: &Card, keys: &str) -> Option<Json> {
     Some(value)
 }
 
-/// What the card's own check finds wrong with a table.
+/// Returns the mistakes that the card's own check finds in a table.
 pub(super) fn own_check(card: &Card, table: &Json) -> Vec<(String, String)> {
     let mut keys = table.clone();
     keys.as_object_mut().and_then(|keys| keys.shift_remove(card.kind.tag_key()));
     (card.check)(&keys)
 }
 
-/// Every sample with the law that it makes; those that make none are reported by [`check`].
+/// Returns every sample with its law; [`check`] reports samples that give no law.
 pub(super) fn laws(card: &Card) -> Vec<(Sample, Json, Law)> {
     let read = |sample: &Sample| {
         let table = table(card, sample.table)?;
@@ -71,7 +72,7 @@ pub(super) fn laws(card: &Card) -> Vec<(Sample, Json, Law)> {
     card.samples.iter().filter_map(read).collect()
 }
 
-/// The card, and what its samples are as tables.
+/// Checks the card, and its samples as tables.
 pub(super) fn check(recorder: &mut Recorder, card: &Card, _: &Options) {
     recorder.hold("card", !card.summary.is_empty() && !card.page.is_empty(), || "has no summary or no page".into());
     for parameter in card.parameters {
@@ -129,7 +130,7 @@ fn check_sample(recorder: &mut Recorder, card: &Card, sample: &Sample) {
     }
 }
 
-/// A required key that is missing is refused; one with a default means the default.
+/// A missing key is refused if it is required, and is replaced by its default otherwise.
 fn check_need(recorder: &mut Recorder, card: &Card, table: &Json, parameter: &Parameter, law: &Law) {
     let mut without = table.clone();
     let given = without.as_object_mut().and_then(|table| table.shift_remove(parameter.name));

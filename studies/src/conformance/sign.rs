@@ -1,11 +1,11 @@
-//! Signs: closing presses, opening never does, slip is resisted, and pressing a joint harder does not make it slide
+//! Signs: closing gives compression, opening never does, slip is resisted, and more compression does not make a joint slide
 //! more easily.
 
 use super::findings::Recorder;
 use super::subject::Subject;
 use voussoir_core::law::InterfaceLaw;
 
-/// Signs of tractions from gaps.
+/// Checks the signs of tractions from gaps.
 pub(super) fn check_joint(recorder: &mut Recorder, subject: &Subject, law: &dyn InterfaceLaw) {
     let (size, scale) = (subject.sample.size, subject.stiffness * subject.sample.size);
     let driven = |path: &[[f64; 6]]| {
@@ -45,7 +45,7 @@ pub(super) fn check_joint(recorder: &mut Recorder, subject: &Subject, law: &dyn 
     stiffness(recorder, subject, law, driven(&[at(-1e-6, 0.0)]).map(|said| said.tangent));
 }
 
-/// A joint that is pressed twice as much meets every slip with as much shear at least.
+/// A joint with twice the compression resists every slip with at least as much shear.
 fn firm_and_light(recorder: &mut Recorder, subject: &Subject, sense: f64) {
     const STEPS: u16 = 400;
     let (point, size) = (&subject.point, subject.sample.size);
@@ -73,7 +73,7 @@ fn firm_and_light(recorder: &mut Recorder, subject: &Subject, sense: f64) {
     }
 }
 
-/// `stiffness()` is that of the untouched joint.
+/// `stiffness()` is the tangent of the untouched joint.
 fn stiffness(recorder: &mut Recorder, subject: &Subject, law: &dyn InterfaceLaw, tangent: Option<[[f64; 6]; 6]>) {
     let Some(k) = law.stiffness() else {
         return recorder.fail("stiffness", "gives tractions from gaps, but stiffness() is None".into());
@@ -93,7 +93,7 @@ fn stiffness(recorder: &mut Recorder, subject: &Subject, law: &dyn InterfaceLaw,
     });
 }
 
-/// Signs of stresses from strains: squeezing presses, stretching pulls.
+/// Checks the signs of stresses from strains: shortening gives compression, stretching gives tension.
 pub(super) fn check_material(recorder: &mut Recorder, subject: &Subject) {
     let (size, mut new) = (subject.sample.size, vec![0.0; subject.point.state_size()]);
     for axis in 0..3 {

@@ -1,15 +1,15 @@
-//! A law as one of its samples makes it.
+//! A law with the keys of one of its samples.
 
 use super::point::Point;
 use voussoir_core::plugin::{Card, Sample};
 
-/// What is checked: a law at a point, as one of its samples makes it.
+/// The subject of a check: a law at a point, with the keys of one of its samples.
 pub(super) struct Subject<'a> {
     pub card: &'a Card,
     pub sample: &'a Sample,
     pub point: Point,
-    /// The same after its table was written and read again.
+    /// The same law after its table was written and read back.
     pub again: Point,
-    /// What stiffnesses are measured by \[Pa/m\] or \[Pa\].
+    /// Scale of stiffnesses \[Pa/m\] or \[Pa\].
     pub stiffness: f64,
 }

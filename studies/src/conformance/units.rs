@@ -1,4 +1,4 @@
-//! Units: the same joint measured in other units is the same joint. A parameter whose unit is missing or wrong shows.
+//! Units: a joint described in other units behaves in the same way. This finds parameters with a missing or wrong unit.
 
 use super::findings::Recorder;
 use super::random::Random;
@@ -7,11 +7,11 @@ use super::subject::Subject;
 use serde_json::Value as Json;
 use voussoir_core::plugin::{Card, Parameter, Quantity, Shape};
 
-/// The units that are tried: a length and a stress, powers of two so that nothing is rounded.
+/// The other units: a length and a stress. They are powers of two, so that nothing is rounded.
 pub(super) const LENGTH: f64 = 8.0;
 const STRESS: f64 = 0.25;
 
-/// Factor of a number in these units.
+/// Returns the factor that converts a quantity into these units.
 fn factor(quantity: Quantity) -> f64 {
     match quantity {
         Quantity::Length => LENGTH,
@@ -28,7 +28,7 @@ fn factor(quantity: Quantity) -> f64 {
     }
 }
 
-/// Factor of a number of a state, from the unit in its name, such as `"slip [m]"`; `None` where it names none.
+/// Returns the factor of a state number, from the unit in its name, such as `"slip [m]"`; `None` if the name has no unit.
 pub(super) fn state_unit(name: &str) -> Option<f64> {
     let (_, unit) = name.trim_end().strip_suffix(']')?.rsplit_once('[')?;
     match unit {
@@ -42,7 +42,7 @@ pub(super) fn state_unit(name: &str) -> Option<f64> {
     }
 }
 
-/// A value in the other units.
+/// Returns a value in the other units.
 fn scaled(value: &Json, shape: &Shape) -> Json {
     match (shape, value) {
         (Shape::Number(quantity, _), value) => value.as_f64().map_or(value.clone(), |x| (x * factor(*quantity)).into()),
@@ -81,7 +81,7 @@ fn scaled_table(table: &Json, parameters: &[Parameter]) -> Json {
     table
 }
 
-/// The law of a sample in the other units; a finding where there is none.
+/// Returns the law of a sample in the other units; records a finding if there is no such law.
 pub(super) fn other_units(recorder: &mut Recorder, card: &Card, table: &Json) -> Option<Law> {
     let table = scaled_table(table, card.parameters);
     let wrong = own_check(card, &table);
@@ -96,7 +96,7 @@ pub(super) fn other_units(recorder: &mut Recorder, card: &Card, table: &Json) ->
     law.ok()
 }
 
-/// Walks in both units side by side.
+/// Compares walks in both units.
 pub(super) fn check(recorder: &mut Recorder, subject: &Subject, other: &super::point::Point) {
     let Subject { point, sample, stiffness, .. } = subject;
     let joint = point.components() == 2;

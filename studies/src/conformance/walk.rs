@@ -1,5 +1,5 @@
-//! Random walks of a law at a point: pure, finite, the same in batches; its tangent is the derivative; branches say what
-//! happens; the state is what it is told to be.
+//! Random walks of a law at a point. Updates must be pure, finite, and the same in batches; the tangent is the derivative;
+//! branches describe the step; the state has only the declared content.
 
 use super::findings::Recorder;
 use super::options::{CountAllocations, Options};
@@ -9,15 +9,15 @@ use super::subject::Subject;
 use std::collections::BTreeMap;
 use voussoir_core::plugin::{Property, Sample};
 
-/// Walks of each sample, and steps of each walk.
+/// Number of walks of each sample, and of steps of each walk.
 const WALKS: usize = 200;
 const STEPS: usize = 25;
-/// How often each branch of a sample must be met, and its tangent compared.
+/// Least number of visits of each branch of a sample, and of comparisons of its tangent.
 const LEAST: usize = 50;
 /// Points of a batch.
 const BATCH: usize = 64;
 
-/// What a campaign of walks has seen.
+/// Counts of the walks of a sample.
 #[derive(Default)]
 struct Seen {
     met: BTreeMap<&'static str, usize>,
@@ -26,7 +26,7 @@ struct Seen {
     depends_on_state: bool,
 }
 
-/// What the stiffnesses of a point are measured by; `None` where there is nothing that can be walked, which is recorded.
+/// Returns the scale of stiffnesses of a point. Records a finding and returns `None` if the law cannot be walked.
 pub(super) fn measure(recorder: &mut Recorder, point: &Point, sample: &Sample) -> Option<f64> {
     let untouched = point.untouched();
     let written = untouched.iter().all(|x| x.is_finite());
@@ -40,7 +40,7 @@ pub(super) fn measure(recorder: &mut Recorder, point: &Point, sample: &Sample) -
     stiffness
 }
 
-/// All walks of a subject, then what they have seen.
+/// Makes all walks of a subject, then checks their counts.
 pub(super) fn check(recorder: &mut Recorder, subject: &Subject, options: &Options) {
     state(recorder, subject);
     extremes(recorder, subject);
@@ -71,7 +71,7 @@ pub(super) fn check(recorder: &mut Recorder, subject: &Subject, options: &Option
     }
 }
 
-/// The state of the untouched point.
+/// Checks the state of the untouched point.
 fn state(recorder: &mut Recorder, subject: &Subject) {
     let Subject { point, .. } = subject;
     let (size, names) = (point.state_size(), point.state_names());
@@ -107,7 +107,7 @@ fn numbers(said: &Said, state: &[f64]) -> Vec<f64> {
     own.chain(state).copied().collect()
 }
 
-/// Places where formulas break: no gap in one component, far away, nearly nothing, no number.
+/// Checks arguments at which formulas often fail: a zero gap in one component, very large, very small, not a number.
 fn extremes(recorder: &mut Recorder, subject: &Subject) {
     let Subject { point, sample, .. } = subject;
     let (untouched, n) = (point.untouched(), point.components());
@@ -124,7 +124,7 @@ fn extremes(recorder: &mut Recorder, subject: &Subject) {
                             let finite = numbers(&said, &new).iter().all(|x| x.is_finite());
                             recorder.hold_on("finite", finite, &[at], || format!("at {:?} it says {said:?}", &at[..n]));
                         }
-                        // Far away a law may say that it cannot follow; it must say so.
+                        // For very large arguments a law may return an error, but it must name one.
                         Err(why) => {
                             recorder.hold_on("finite", size > 1.0, &[at], || format!("refuses {:?}: {why}", &at[..n]))
                         }
@@ -183,7 +183,7 @@ fn walk(recorder: &mut Recorder, subject: &Subject, random: &mut Random, seen: &
     }
 }
 
-/// Dissipation, stored energy, symmetry and branch of one step.
+/// Checks dissipation, stored energy, symmetry and branch of one step.
 fn said_of_itself(
     recorder: &mut Recorder,
     subject: &Subject,
@@ -204,7 +204,7 @@ fn said_of_itself(
     recorder.hold_on("symmetry", skew <= 1e-12 * stiffness || !card.claims(Property::SYMMETRIC_TANGENT), path, || {
         format!("claims a symmetric tangent; in \"{}\" it is skew by {skew:e}", here.branch.name)
     });
-    // What is not normal to a surface of strength has a tangent that is not symmetric.
+    // If the flow is not normal to the yield surface, the tangent is not symmetric.
     recorder.hold_on("associated", skew <= 1e-9 * stiffness || !card.claims(Property::ASSOCIATED), path, || {
         format!("claims associated flow; in \"{}\" the tangent is skew by {skew:e}", here.branch.name)
     });
@@ -217,7 +217,7 @@ fn said_of_itself(
     });
 }
 
-/// The same place again, from the state that the step has left, gives the same answer and leaves the state as it is.
+/// A second update to the same point, from the state after the step, gives the same result and does not change the state.
 fn remembers(recorder: &mut Recorder, subject: &Subject, here: &Said, new: &[f64], path: &[[f64; 6]]) {
     let (Some(at), mut after) = (path.last(), vec![9.0; new.len()]) else { return };
     let n = subject.point.components();
@@ -237,8 +237,8 @@ fn remembers(recorder: &mut Recorder, subject: &Subject, here: &Said, new: &[f64
     });
 }
 
-/// Compares the tangent in a random direction with central differences, where ±h stays in one branch and two widths of
-/// them agree. Whether it could be compared.
+/// Compares the tangent in a random direction with central differences, if ±h stays in one branch and two step widths agree.
+/// Returns true if the comparison was possible.
 fn tangent(
     recorder: &mut Recorder,
     subject: &Subject,
@@ -246,7 +246,7 @@ fn tangent(
     (here, old): (&Said, &[f64]),
     path: &[[f64; 6]],
 ) -> bool {
-    /// How far differences may be from the tangent, as a share of the stiffness.
+    /// Greatest difference between differences and tangent, as a share of the stiffness.
     const SHARE: f64 = 4e-6;
     let Subject { point, sample, stiffness, .. } = subject;
     let (Some(at), n) = (path.last(), point.components()) else { return false };
@@ -274,7 +274,7 @@ fn tangent(
     true
 }
 
-/// No update allocates, whatever happens in it.
+/// No update may allocate, in any branch.
 fn allocations(recorder: &mut Recorder, subject: &Subject, count: CountAllocations) {
     let Subject { point, sample, .. } = subject;
     let mut random = Random::new(7);

@@ -8,10 +8,10 @@ use std::time::Duration;
 use voussoir_core::limit::Status;
 use voussoir_core::plugin::{Card, PluginKind};
 
-/// Time for one scene.
+/// Time limit for one scene.
 const TIME_LIMIT: Duration = Duration::from_secs(60);
 
-/// Checks a solver or strategy; nothing of other plug-ins.
+/// Checks a solver or strategy; does nothing for other plug-ins.
 pub fn check(recorder: &mut Recorder, card: &Card) {
     let kinds = [PluginKind::LimitSolver, PluginKind::PathSolver, PluginKind::Continuation];
     if !kinds.contains(&card.kind) {

@@ -18,7 +18,7 @@ impl LastAnswer {
         }
     }
 
-    /// The last answer.
+    /// Returns the last answer.
     pub(super) fn get(&self) -> Option<Answered> {
         self.0.lock().ok().and_then(|last| *last)
     }

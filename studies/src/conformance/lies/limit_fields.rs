@@ -10,28 +10,28 @@ fn scale(field: &mut Option<Vec<JointForce>>, by: f64) {
     }
 }
 
-/// A collapse with its field changed.
+/// Returns a collapse with its field changed.
 fn field(asked: &LimitAsked, change: impl FnOnce(&mut Vec<JointForce>)) -> Option<LimitAnswer> {
     let mut answer = asked.collapse()?;
     change(answer.field.as_mut()?);
     Some(answer)
 }
 
-/// A collapse with its motion changed.
+/// Returns a collapse with its motion changed.
 fn motion(asked: &LimitAsked, change: impl FnOnce(&mut Vec<Velocity>)) -> Option<LimitAnswer> {
     let mut answer = asked.collapse()?;
     change(answer.motion.as_mut()?);
     Some(answer)
 }
 
-/// A collapse with its factor changed.
+/// Returns a collapse with its factor changed.
 fn factor(asked: &LimitAsked, change: impl FnOnce(f64) -> f64) -> Option<LimitAnswer> {
     let mut answer = asked.collapse()?;
     answer.factor = Some(change(answer.factor?));
     Some(answer)
 }
 
-/// A collapse with a false answer of non-associated flow.
+/// Returns a collapse with a false answer for non-associated flow.
 fn lower(asked: &LimitAsked, proved: f64, proof: Option<LowerProof>) -> Option<LimitAnswer> {
     let mut answer = asked.collapse()?;
     let factor = answer.factor?;

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use voussoir_core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, SettlementAnswer};
 use voussoir_core::model::Wrenches;
 
-/// All dishonest limit solvers.
+/// Returns all dishonest limit solvers.
 pub fn limit_lies() -> impl Iterator<Item = &'static LimitLie> {
     limit_status::LIES.iter().chain(limit_fields::LIES).chain(limit_substitutes::LIES)
 }
@@ -17,7 +17,7 @@ pub fn limit_lies() -> impl Iterator<Item = &'static LimitLie> {
 /// A limit solver that tells one lie.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub struct DishonestLimit {
-    /// The honest solver; without one every question is refused.
+    /// The honest solver; without it every question is refused.
     #[serde(skip)]
     pub honest: Option<Arc<dyn LimitSolver>>,
     /// The lie.

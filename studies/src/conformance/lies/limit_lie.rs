@@ -14,22 +14,22 @@ pub struct LimitAsked<'a> {
 }
 
 impl LimitAsked<'_> {
-    /// The honest answer.
+    /// Returns the honest answer.
     pub fn answer(&self) -> LimitAnswer {
         self.honest.solve(self.problem, self.question)
     }
 
-    /// The honest answer if it has this status.
+    /// Returns the honest answer if it has this status.
     pub fn ending(&self, status: Status) -> Option<LimitAnswer> {
         Some(self.answer()).filter(|answer| answer.status == status)
     }
 
-    /// The honest answer if it is a collapse.
+    /// Returns the honest answer if it is a collapse.
     pub fn collapse(&self) -> Option<LimitAnswer> {
         self.ending(Status::Collapse)
     }
 
-    /// The collapse of another problem, asked without a greatest factor.
+    /// Returns the collapse of another problem, without a greatest factor.
     pub fn collapse_of(&self, problem: &LimitProblem) -> Option<LimitAnswer> {
         let start = match self.question {
             LimitQuestion::Collapse { start, .. } => start,
@@ -39,7 +39,7 @@ impl LimitAsked<'_> {
         Some(answer).filter(|answer| answer.status == Status::Collapse)
     }
 
-    /// The field of the honest solver at a factor.
+    /// Returns the field of the honest solver at a factor.
     pub fn field_at(&self, factor: f64) -> Option<LimitAnswer> {
         let answer = self.honest.solve(self.problem, LimitQuestion::Admissible(factor));
         Some(answer).filter(|answer| answer.status == Status::Stands)

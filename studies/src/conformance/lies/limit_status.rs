@@ -1,9 +1,9 @@
-//! Limit solvers that name a status that is not true, or give no answer.
+//! Limit solvers that return a false status or no answer.
 
 use super::limit_lie::LimitLie;
 use voussoir_core::limit::{LimitAnswer, LimitQuestion, Status};
 
-/// A collapse that is called `stands`.
+/// Reports a collapse as `stands`.
 fn stands(answer: &mut LimitAnswer) {
     answer.status = Status::Stands;
     (answer.factor, answer.motion, answer.unique) = (None, None, None);

@@ -1,9 +1,9 @@
-//! Limit solvers that answer another question than the one that was asked.
+//! Limit solvers that answer a different question.
 
 use super::limit_lie::{LimitAsked, LimitLie};
 use voussoir_core::limit::{LimitAnswer, LimitProblem, LowerProof, LowerProofKind, Status};
 
-/// The answer of another problem.
+/// Returns the answer of another problem.
 fn other(asked: &LimitAsked, change: impl FnOnce(&mut LimitProblem)) -> Option<LimitAnswer> {
     asked.collapse()?;
     let mut problem = asked.problem.clone();
@@ -11,7 +11,7 @@ fn other(asked: &LimitAsked, change: impl FnOnce(&mut LimitProblem)) -> Option<L
     asked.collapse_of(&problem)
 }
 
-/// The motion of another problem, scaled to the loads of this one.
+/// Returns the motion of another problem, scaled to the loads of this one.
 fn foreign_motion(asked: &LimitAsked, change: impl FnOnce(&mut LimitProblem)) -> Option<LimitAnswer> {
     let mut answer = asked.collapse()?;
     let mut motion = other(asked, change)?.motion?;
@@ -30,8 +30,8 @@ fn turn_the_load(problem: &mut LimitProblem) {
     problem.varying.iter_mut().for_each(|[x, y, _]| (*x, *y) = (*y, *x));
 }
 
-/// A state of the laws' own flow with forces that two joints hold against each other, at a greater factor; called the least
-/// one.
+/// Returns a state of the laws' own flow at a greater factor, in which two joints lock forces against each other, and claims
+/// that this factor is the least one.
 fn locked_in(asked: &LimitAsked) -> Option<LimitAnswer> {
     const PRESSURE: f64 = 2000.0;
     let mut answer = asked.ending(Status::Collapse)?;

@@ -1,7 +1,7 @@
 //! Dishonest solvers and strategies, and scenes with known answers: no certificate may accept a false statement.
 //!
 //! A lie is made from the answer of an honest plug-in, so the suite runs with any solver. [`Truth::contradictions`] is the
-//! criterion: which claims of a result are false. Statements that are true are allowed, however they were found.
+//! criterion: it lists the false claims of a result. True statements are allowed, for any origin.
 
 mod check;
 mod last_answer;

@@ -9,8 +9,8 @@ use crate::study::{Case, SelectedSolver};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// The false statement in the solver's own answer to a case, if it makes one. Certificates do not believe it, but a solver
-/// with a false statement does not conform.
+/// Returns the false statement in the solver's own answer to a case, if it makes one. Certificates do not rely on this
+/// answer, but a solver with a false statement does not conform.
 pub(super) fn false_statement(mut case: Case, truth: &Truth, time: Duration) -> Option<String> {
     let last_answer = LastAnswer::default();
     case.solver.solver = match &case.solver.solver {

@@ -3,21 +3,21 @@
 use super::path_lie::{PathAsked, PathLie, Story};
 use voussoir_core::path::{Branching, ContactEvent, PathEvent, ProvenPeak, StageStability};
 
-/// A collapse or limit point with its factor changed.
+/// Changes the factor of a collapse or limit point.
 fn factor(story: &mut Story, change: impl FnOnce(f64) -> f64) -> Option<()> {
     story.falls()?;
     story.answer.factor = Some(change(story.answer.factor?));
     Some(())
 }
 
-/// A collapse with the rate at its end changed.
+/// Changes the rate at the end of a collapse.
 fn motion(story: &mut Story, change: impl FnOnce(&mut Vec<[f64; 3]>)) -> Option<()> {
     story.falls()?;
     change(story.answer.motion.as_mut()?);
     Some(())
 }
 
-/// A limit point at a share of the greatest factor.
+/// Returns a limit point at a share of the greatest factor.
 fn forged_peak(asked: &PathAsked, story: &mut Story, share: f64) -> Option<ProvenPeak> {
     story.falls()?;
     let load_step = asked.problem.load_steps.len() - 1;
@@ -25,7 +25,7 @@ fn forged_peak(asked: &PathAsked, story: &mut Story, share: f64) -> Option<Prove
     Some(ProvenPeak { load_step, factor: share * story.answer.factor?, displacement, lowest: 0.1 })
 }
 
-/// Stability that is claimed for every stage.
+/// Claims that every stage is stable, or unstable.
 fn stability(asked: &PathAsked, story: &mut Story, stable: bool) -> Option<()> {
     let stages = asked.problem.load_steps.last()?.stage + 1;
     let claim =

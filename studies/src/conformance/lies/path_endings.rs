@@ -4,7 +4,7 @@ use super::path_lie::{PathAsked, PathLie, Story};
 use voussoir_core::limit::Status;
 use voussoir_core::path::{LoadStepEnd, PathState, ProvenPeak};
 
-/// The path ends at a share of its greatest factor, with a status.
+/// Ends the path at a share of its greatest factor, with a status.
 fn ends_early(asked: &PathAsked, story: &mut Story, status: Status) -> Option<()> {
     story.falls()?;
     let index = story.below(0.6)?;
@@ -15,12 +15,12 @@ fn ends_early(asked: &PathAsked, story: &mut Story, status: Status) -> Option<()
     Some(())
 }
 
-/// A peak at a state.
+/// Returns a peak at a state.
 fn peak(state: &PathState, lowest: f64) -> ProvenPeak {
     ProvenPeak { load_step: state.load_step, factor: state.factor, displacement: state.displacement, lowest }
 }
 
-/// The path rises to a share of its greatest factor and goes back along itself.
+/// The path rises to a share of its greatest factor and then returns along the same states.
 fn retrace(asked: &PathAsked, story: &mut Story, status: Status) -> Option<()> {
     story.falls()?;
     let index = story.below(0.7)?;
@@ -37,7 +37,7 @@ fn retrace(asked: &PathAsked, story: &mut Story, status: Status) -> Option<()> {
     Some(())
 }
 
-/// Every state and the answer are of the target by name.
+/// Renames the target in all states and in the answer.
 fn claim_target(asked: &PathAsked, story: &mut Story, keep: f64) -> Option<()> {
     story.falls()?;
     let index = story.below(keep)?;

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use voussoir_core::path::{PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver};
 
-/// All dishonest path solvers.
+/// Returns all dishonest path solvers.
 pub fn path_lies() -> impl Iterator<Item = &'static PathLie> {
     path_endings::LIES.iter().chain(path_states::LIES).chain(path_answers::LIES).chain(path_witnesses::LIES)
 }
@@ -16,7 +16,7 @@ pub fn path_lies() -> impl Iterator<Item = &'static PathLie> {
 /// A path solver that tells one lie.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub struct DishonestPath {
-    /// The honest solver; without one every question is refused.
+    /// The honest solver; without it every question is refused.
     #[serde(skip)]
     pub honest: Option<Arc<dyn PathSolver>>,
     /// The lie.

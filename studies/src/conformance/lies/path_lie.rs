@@ -14,7 +14,7 @@ pub struct PathAsked<'a> {
     pub settings: &'a PathSettings,
 }
 
-/// The states that an observer is shown, and the answer.
+/// The states that an observer gets, and the answer.
 #[derive(Debug, Clone)]
 pub struct Story {
     /// States in order.
@@ -44,19 +44,19 @@ impl PathObserver for Recorder {
 }
 
 impl PathAsked<'_> {
-    /// The honest story.
+    /// Returns the honest story.
     pub fn story(&self) -> Story {
         self.story_of(self.problem, self.settings)
     }
 
-    /// The honest story of another problem or other settings.
+    /// Returns the honest story of another problem or other settings.
     pub fn story_of(&self, problem: &PathProblem, settings: &PathSettings) -> Story {
         let mut recorder = Recorder::default();
         let answer = self.honest.trace(problem, settings, &mut recorder);
         Story { states: recorder.0, answer }
     }
 
-    /// The rate of all bodies between two states, scaled to p·q̇ = 1 if the load does work on it.
+    /// Returns the rate of all bodies between two states, scaled to p·q̇ = 1 if the load does work on it.
     pub fn rate(&self, from: &PathState, to: &PathState) -> Vec<[f64; 3]> {
         let mut rate: Vec<[f64; 3]> =
             to.motion.iter().zip(&from.motion).map(|(to, from)| [0, 1, 2].map(|i| to[i] - from[i])).collect();
@@ -70,18 +70,18 @@ impl PathAsked<'_> {
 }
 
 impl Story {
-    /// Returns if the honest path ends at its collapse or limit point.
+    /// Returns `Some` if the honest path ends at its collapse or limit point.
     pub fn falls(&self) -> Option<()> {
         matches!(self.answer.status, Status::Collapse | Status::LimitPoint).then_some(())
     }
 
-    /// Indices of the states of the last load step.
+    /// Returns the indices of the states of the last load step.
     pub fn last_step(&self) -> Vec<usize> {
         let last = self.states.last().map_or(0, |state| state.load_step);
         (0..self.states.len()).filter(|state| self.states[*state].load_step == last).collect()
     }
 
-    /// Index of the last state of the last load step that lies below a share of the greatest factor, before the peak.
+    /// Returns the index of the last state of the last load step below a share of the greatest factor, before the peak.
     pub fn below(&self, share: f64) -> Option<usize> {
         let steps = self.last_step();
         let factor = |index: usize| self.states[index].factor;
@@ -89,7 +89,7 @@ impl Story {
         steps.into_iter().take_while(|index| *index < peak).filter(|i| factor(*i) <= share * factor(peak)).last()
     }
 
-    /// The states after an index are forgotten; the answer ends at it.
+    /// Removes the states after an index; the answer ends at it.
     pub fn stop_at(&mut self, index: usize) {
         self.states.truncate(index + 1);
         let state = &self.states[index];

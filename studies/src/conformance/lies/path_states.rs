@@ -4,7 +4,7 @@ use super::path_lie::{PathAsked, PathLie, Story};
 use voussoir_core::limit::Status;
 use voussoir_core::path::PathProblem;
 
-/// The story of another problem, told as that of this one.
+/// Replaces the story by the story of another problem.
 fn other(asked: &PathAsked, story: &mut Story, change: impl FnOnce(&mut PathProblem)) -> Option<()> {
     story.falls()?;
     let mut problem = asked.problem.clone();
@@ -13,7 +13,7 @@ fn other(asked: &PathAsked, story: &mut Story, change: impl FnOnce(&mut PathProb
     story.falls()
 }
 
-/// The same with displacements read as finite or small.
+/// Replaces the story by the story with displacements read as finite or small.
 fn otherwise_finite(asked: &PathAsked, story: &mut Story, finite: bool) -> Option<()> {
     if asked.settings.finite == finite {
         return None;

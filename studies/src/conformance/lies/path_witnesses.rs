@@ -6,7 +6,7 @@ use voussoir_core::path::{
     FarkasVector, LimitPointEnd, ModeTree, NoneContinues, PathRate, PathState, ProvenPeak, RateClaim, Witness,
 };
 
-/// The path ends at a share of its greatest factor, with the witnesses that `forge` makes of the true ones.
+/// Ends the path at a share of its greatest factor, with witnesses that `forge` makes from the true ones.
 fn witnessed_early(
     asked: &PathAsked,
     story: &mut Story,
@@ -43,7 +43,7 @@ fn witnessed_early(
     Some(())
 }
 
-/// The same tree with other numbers in its leaves.
+/// Returns the same tree with changed numbers in its leaves.
 fn with_leaves(tree: ModeTree, change: fn(f64) -> f64) -> ModeTree {
     match tree {
         ModeTree::Leaf(mut vector) => {
@@ -59,12 +59,12 @@ fn with_leaves(tree: ModeTree, change: fn(f64) -> f64) -> ModeTree {
     }
 }
 
-/// A tree whose first decision has no branch.
+/// Returns a tree whose first decision has no branch.
 fn without_branches(_: ModeTree) -> ModeTree {
     ModeTree::Split { contact: 0, branches: Vec::new() }
 }
 
-/// The path ends at a share of its greatest factor for a reason that the question does not give, with these statements there.
+/// Ends the path at a share of its greatest factor for a reason that the question does not give, with these statements.
 fn ends_for_another_reason(
     asked: &PathAsked,
     story: &mut Story,
@@ -82,7 +82,7 @@ fn ends_for_another_reason(
     Some(())
 }
 
-/// The rate from one state to another, times a factor.
+/// Returns the rate from one state to another, times a factor.
 fn rate_between(from: &PathState, to: &PathState, by: f64) -> RateClaim {
     let pairs = |to: &[[f64; 2]], from: &[[f64; 2]]| {
         to.iter().zip(from).map(|(to, from)| [0, 1].map(|i| by * (to[i] - from[i]))).collect()
@@ -96,7 +96,7 @@ fn rate_between(from: &PathState, to: &PathState, by: f64) -> RateClaim {
     })
 }
 
-/// The load on the bodies alone as multipliers: κ p is left, which only forces can carry.
+/// Uses the load on the bodies alone as multipliers: the remainder κ p can be carried only by forces.
 fn nothing_carries(asked: &PathAsked) -> ModeTree {
     ModeTree::Leaf(FarkasVector {
         equilibrium: vec![[0.0; 3]; asked.problem.bodies.len()],
@@ -105,7 +105,7 @@ fn nothing_carries(asked: &PathAsked) -> ModeTree {
     })
 }
 
-/// Proofs that no rate continues: of the true proof at the end, of the modes before, of nothing.
+/// Returns proofs that no rate continues: from the true proof at the end, from earlier modes, or empty.
 fn none_continues(asked: &PathAsked, story: &Story, _: usize) -> Vec<RateClaim> {
     let rising = story.answer.witnesses.iter().filter_map(|witness| match &witness.claim {
         RateClaim::NoneRises(tree) => Some(tree.clone()),
@@ -117,7 +117,7 @@ fn none_continues(asked: &PathAsked, story: &Story, _: usize) -> Vec<RateClaim> 
     trees.map(claim).map(RateClaim::NoneContinues).collect()
 }
 
-/// The path ends early at its first limit point, with the rates to other states as witnesses.
+/// Ends the path early at its first limit point, with the rates to other states as witnesses.
 fn rate_as_a_limit_point(_: &PathAsked, story: &mut Story, by: f64) -> Option<()> {
     story.falls()?;
     let index = story.below(0.7)?;

@@ -19,12 +19,12 @@ pub struct KnownScene {
     solver: &'static str,
     /// The answer.
     pub truth: Truth,
-    /// The solver of ours whose curve, events and stability a path is compared with.
+    /// Our solver whose curve, events and stability are compared with the path.
     pub reference: Option<&'static str>,
 }
 
 impl KnownScene {
-    /// The study with a solver: the keys of `[solver]` as TOML.
+    /// Returns the study with a solver, given as the TOML keys of `[solver]`.
     pub fn study(&self, solver: &str) -> String {
         format!(
             "name = \"{}\"\n[scene]\nmaterial = \"stone\"\njoint = \"dry\"\n{}\n{}\n[solver]\n{solver}\n{}\n\
@@ -33,10 +33,10 @@ impl KnownScene {
         )
     }
 
-    /// The case with a solver; an error if the solver does not accept the scene.
+    /// Returns the case with a solver.
     ///
     /// # Errors
-    /// The mistakes of the study.
+    /// The mistakes of the study, also if the solver does not accept the scene.
     pub fn case(&self, solver: &str) -> Result<Case, StudyError> {
         Ok(load(&self.study(solver), "known_scene.toml", &[])?.cases.remove(0))
     }
@@ -57,7 +57,7 @@ macro_rules! block {
     };
 }
 
-/// Two such blocks of half the height on each other, pushed below the middle of the upper one.
+/// Two such blocks of half the height, one on the other. A force pushes the upper block below its middle.
 macro_rules! stack {
     ($dry:literal) => {
         concat!(
@@ -71,7 +71,7 @@ macro_rules! stack {
     };
 }
 
-/// Two such blocks beside each other, each pushed: any one of them may tip.
+/// Two such blocks side by side, each with a push: either can tip.
 macro_rules! pair {
     ($dry:literal) => {
         concat!(

@@ -18,7 +18,7 @@ pub struct StrategyLie {
     pub largest_step: fn(f64) -> f64,
     /// Changes the claim that limit points are passed.
     pub passes_limit_points: fn(bool) -> bool,
-    /// Monitors that it asks for.
+    /// Changes the requested monitors.
     pub monitors: fn(Vec<Monitor>) -> Vec<Monitor>,
 }
 
@@ -33,13 +33,13 @@ impl StrategyLie {
     };
 }
 
-/// A constraint on the load factor, with a sign.
+/// Returns a constraint on the load factor, with a sign.
 fn of_factor(sign: f64, increment: &Increment) -> Constraint {
     let derivative = Increment { factor: sign, ..Increment::default() };
     Constraint { value: sign * increment.factor, derivative }
 }
 
-/// A constraint times a number, with its derivatives or without.
+/// Multiplies a constraint by a number, with its derivatives or without.
 fn times(constraint: Constraint, value: f64, derivative: f64) -> Constraint {
     let d = constraint.derivative;
     Constraint {
@@ -81,7 +81,7 @@ pub const STRATEGY_LIES: &[StrategyLie] = &[
             if asked < 60 {
                 return c;
             }
-            // Any step on which the factor falls.
+            // Accepts any step on which the factor falls.
             let derivative = Increment { factor: -1.0, motion: 1e-6, ..Increment::default() };
             Constraint { value: 1e-6 * increment.motion - increment.factor, derivative }
         },
@@ -121,7 +121,7 @@ pub const STRATEGY_LIES: &[StrategyLie] = &[
 /// A strategy that tells one lie.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub struct DishonestStrategy {
-    /// The honest strategy; without one the constraint is always zero.
+    /// The honest strategy; without it the constraint is always zero.
     #[serde(skip)]
     pub honest: Option<Arc<dyn Continuation>>,
     /// The lie.

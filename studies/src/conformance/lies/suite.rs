@@ -1,4 +1,4 @@
-//! A solver or strategy under test: its own answers, and the answers of dishonest ones made from it.
+//! A solver or strategy under test: its own answers, and the answers of dishonest solvers made from it.
 
 use super::limit_liar::{DishonestLimit, limit_lies};
 use super::limit_lie::LimitLie;
@@ -15,7 +15,7 @@ use std::sync::mpsc::channel;
 use std::time::Duration;
 use voussoir_core::plugin::PluginKind;
 
-/// Stack of the thread in which a case is solved: as large as the stack of a program's first thread.
+/// Stack of the thread in which a case is solved \[bytes\]: the usual stack of a program's first thread.
 const STACK: usize = 8 << 20;
 
 /// A lie of any kind.
@@ -30,7 +30,7 @@ pub enum Lie {
 }
 
 impl Lie {
-    /// All lies that a kind of plug-in may tell.
+    /// Returns all lies for a kind of plug-in.
     pub fn of(kind: PluginKind) -> Vec<Lie> {
         match kind {
             PluginKind::LimitSolver => limit_lies().map(Lie::Limit).collect(),
@@ -40,7 +40,7 @@ impl Lie {
         }
     }
 
-    /// Its name.
+    /// Returns the name of the lie.
     pub fn name(&self) -> &'static str {
         match self {
             Lie::Limit(lie) => lie.name,
@@ -49,8 +49,8 @@ impl Lie {
         }
     }
 
-    /// Puts the dishonest plug-in in the place of the honest one; returns the number of times that it lies. `None` if the
-    /// case has no such plug-in.
+    /// Replaces the honest plug-in by the dishonest one and returns its counter of lies. Returns `None` if the case has no such
+    /// plug-in.
     pub fn put_into(self, case: &mut Case) -> Option<Arc<AtomicUsize>> {
         let told = Arc::<AtomicUsize>::default();
         let counter = told.clone();
@@ -75,7 +75,8 @@ impl Lie {
     }
 }
 
-/// Scenes for a kind of plug-in. Dishonest strategies take many steps, so they do without the ring, which is the first.
+/// Returns the scenes for a kind of plug-in. Dishonest strategies take many steps, so the ring, which is the first scene, is
+/// omitted for them.
 pub fn scenes(kind: PluginKind) -> &'static [KnownScene] {
     match kind {
         PluginKind::LimitSolver => LIMIT_SCENES,
@@ -84,7 +85,7 @@ pub fn scenes(kind: PluginKind) -> &'static [KnownScene] {
     }
 }
 
-/// The keys of `[solver]` that name a plug-in.
+/// Returns the keys of `[solver]` that name a plug-in.
 pub fn solver_keys(kind: PluginKind, tag: &str) -> String {
     match kind {
         PluginKind::Continuation => {
@@ -94,8 +95,8 @@ pub fn solver_keys(kind: PluginKind, tag: &str) -> String {
     }
 }
 
-/// The answer to a case; `None` if the time is over. A solver cannot be stopped from outside: its thread goes
-/// on until the program ends.
+/// Returns the answer to a case; `None` after the time limit. A solver cannot be stopped from outside: its thread runs until
+/// the program ends.
 pub fn answered_within(limit: Duration, case: Case) -> Option<CaseResult> {
     let (sender, receiver) = channel();
     let solve = move || _ = sender.send(solve_case(&case));
@@ -103,7 +104,7 @@ pub fn answered_within(limit: Duration, case: Case) -> Option<CaseResult> {
     receiver.recv_timeout(limit).ok()
 }
 
-/// The result of our own solver that a scene's paths are compared with.
+/// Returns the result of our own solver, which is compared with the paths of a scene.
 pub fn reference(scene: &KnownScene) -> Option<CaseResult> {
     let case = scene.case(&format!("solver = \"{}\"", scene.reference?)).ok()?;
     Some(solve_case(&case)).filter(|result| result.certificate.passed)

@@ -5,10 +5,10 @@ use std::fmt::Display;
 use voussoir_core::limit::Status;
 use voussoir_core::path::ContactEvent;
 
-/// Share of the range of a curve by which one of its points may lie off the known curve.
+/// Greatest distance of a point from the known curve, as a share of the range of the curve.
 const CURVE_TOLERANCE: f64 = 3e-2;
 
-/// The known truth of a scene: by hand, or by a program that shares nothing with this one.
+/// The known truth of a scene: computed by hand, or by a program that shares no code with this one.
 #[derive(Debug, Clone, Copy)]
 pub struct Truth {
     /// Statuses that are true.
@@ -20,7 +20,7 @@ pub struct Truth {
     pub associated: f64,
     /// All factors with an admissible field, if they leave out zero.
     pub feasible: Option<[f64; 2]>,
-    /// Kinds of mechanism that are true; none if any is.
+    /// Kinds of mechanism that are true; empty if any kind is.
     pub mechanisms: &'static [&'static str],
     /// False if the mechanism is not unique.
     pub unique: Option<bool>,
@@ -31,7 +31,7 @@ pub struct Truth {
 }
 
 impl Truth {
-    /// A collapse at one factor.
+    /// Returns the truth of a collapse at one factor.
     pub const fn collapse(factor: f64) -> Self {
         Truth {
             endings: &[Status::Collapse],
@@ -45,8 +45,8 @@ impl Truth {
         }
     }
 
-    /// The claims of a result that are false. A stalled result claims nothing. `reference` is the result of another
-    /// route, with its curve.
+    /// Returns the false claims of a result. A stalled result claims nothing. `reference` is the result of another solver, with
+    /// its curve.
     pub fn contradictions(&self, result: &CaseResult, reference: Option<&CaseResult>) -> Vec<String> {
         let mut wrong = Vec::new();
         if result.status == Status::Stalled && !result.certificate.passed {
@@ -66,7 +66,7 @@ impl Truth {
         wrong
     }
 
-    /// The false statement in a solver's own answer: a status that is not true, or a factor at which nothing ends.
+    /// Returns the false statement in a solver's own answer: a status that is not true, or a factor at which nothing ends.
     pub fn contradicts(&self, status: Status, factor: Option<f64>) -> Option<String> {
         if !status.is_answer() {
             return None;
@@ -88,7 +88,7 @@ impl Truth {
         a <= b || self.same(a, b)
     }
 
-    /// Status, load factor and mechanism of a certified result.
+    /// Checks status, load factor and mechanism of a certified result.
     fn statement(&self, result: &CaseResult, wrong: &mut Vec<String>) {
         let ends = matches!(result.status, Status::Collapse | Status::LimitPoint);
         if !self.endings.contains(&result.status) {
@@ -114,7 +114,7 @@ impl Truth {
         }
     }
 
-    /// Bounds and factors, which an open result claims too.
+    /// Checks bounds and factors, which an open result also claims.
     fn numbers(&self, result: &CaseResult, wrong: &mut Vec<String>) {
         let [least, greatest] = self.collapse;
         let mut check = |what: &str, value: f64, holds: bool, truth: &dyn Display| {
@@ -124,7 +124,7 @@ impl Truth {
         };
         let [lower, upper] = result.bounds.unwrap_or_default();
         if let Some(lower) = lower {
-            // With a proof it bounds the least factor, else it is a factor that is carried.
+            // With a proof the factor is a bound of the least factor, otherwise it is a factor that is carried.
             let most = if result.non_associated.lower_proof.is_some() { least } else { greatest };
             check("lower bound", lower, self.below(lower, most), &most);
         }
@@ -169,7 +169,7 @@ impl Truth {
     }
 }
 
-/// Every point of a curve lies on the known curve.
+/// Checks that every point of a curve lies on the known curve.
 fn curve(result: &CaseResult, reference: &CaseResult, greatest: f64, wrong: &mut Vec<String>) {
     let (Some(curve), Some(known)) = (&result.path.curve, &reference.path.curve) else { return };
     let range = |axis: usize| {
@@ -180,7 +180,7 @@ fn curve(result: &CaseResult, reference: &CaseResult, greatest: f64, wrong: &mut
     let scale = [range(0), range(1)];
     let off = |point: &[f64; 2]| {
         let nearest = known.windows(2).map(|pair| distance(point, pair, scale)).fold(f64::INFINITY, f64::min);
-        // A path may begin before the known one, and go on beyond its end.
+        // A path may start before the known one and continue beyond its end.
         let farthest = known.iter().map(|known| known[0]).fold(0.0, f64::max);
         let within = known[0][0] <= point[0] && point[0] <= farthest;
         within && nearest > CURVE_TOLERANCE
@@ -194,7 +194,7 @@ fn curve(result: &CaseResult, reference: &CaseResult, greatest: f64, wrong: &mut
     }
 }
 
-/// Distance of a point from a segment in shares of the ranges of the curve.
+/// Returns the distance of a point from a segment, in shares of the ranges of the curve.
 fn distance(point: &[f64; 2], pair: &[[f64; 2]], scale: [f64; 2]) -> f64 {
     let share = |a: [f64; 2], b: [f64; 2]| [(a[0] - b[0]) / scale[0], (a[1] - b[1]) / scale[1]];
     let (along, to) = (share(pair[1], pair[0]), share(*point, pair[0]));
@@ -203,7 +203,7 @@ fn distance(point: &[f64; 2], pair: &[[f64; 2]], scale: [f64; 2]) -> f64 {
     (to[0] - at * along[0]).hypot(to[1] - at * along[1])
 }
 
-/// Every number of the proof is finite, and every joint has its forces.
+/// Checks that every number of the proof is finite, and that every joint has its forces.
 fn not_finite(result: &CaseResult, wrong: &mut Vec<String>) {
     let mut check = |what: &str, finite: bool| {
         if !finite {
@@ -219,8 +219,8 @@ fn not_finite(result: &CaseResult, wrong: &mut Vec<String>) {
     check("curve", result.path.curve.iter().flatten().flatten().all(|value| value.is_finite()));
 }
 
-/// Every event also happens on the known path at the same joint. A path by steps may report that a point sticks although
-/// it slides again within the step.
+/// Checks that every event also happens on the known path at the same joint. A path by steps may report that a point sticks
+/// although it slides again within the step.
 fn events(result: &CaseResult, reference: &CaseResult, wrong: &mut Vec<String>) {
     let known = &reference.path.events;
     if known.is_empty() {
@@ -235,13 +235,13 @@ fn events(result: &CaseResult, reference: &CaseResult, wrong: &mut Vec<String>) 
     if let Some(event) = result.path.events.iter().find(|event| !happens(event)) {
         wrong.push(format!("joint {} {:?} at {}", event.joint, event.what, event.factor));
     }
-    // Steps see an event twice where the point opens and closes within one step of the known path.
+    // Steps report an event twice if the point opens and closes within one step of the known path.
     if result.path.events.len() > 2 * known.len() {
         wrong.push(format!("{} events, true {}", result.path.events.len(), known.len()));
     }
 }
 
-/// No stage is called stable that is not.
+/// Checks that no unstable stage is reported as stable.
 fn stability(result: &CaseResult, reference: &CaseResult, wrong: &mut Vec<String>) {
     for (stage, known) in result.stages.iter().zip(&reference.stages) {
         let pairs = [
