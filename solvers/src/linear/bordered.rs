@@ -15,7 +15,6 @@
 //! all rows, the control's included, takes that out again (Govaerts 1991, SIAM J. Matrix Anal. Appl. 12,
 //! 469-483).
 
-use super::condensed::{Condensed, pair};
 use super::factorised::{Factorised, row_error};
 use super::inner;
 use crate::settings::SETTINGS;
@@ -162,23 +161,5 @@ impl<E: Factorised> BorderedSystem<E> {
         }
         left[last] = own;
         (left, error.max(row_error(own, size)))
-    }
-}
-
-impl BorderedSystem<Condensed> {
-    /// What unit right-hand sides of the two rows of a contact point give, without the unknowns that
-    /// are condensed out.
-    pub fn units(&self, contact: usize) -> Option<[Vec<f64>; 2]> {
-        let equations = &self.held.equations;
-        let mut columns = equations.units(contact)?;
-        if let (Last::Unknown(w), Some((control, along))) = (&self.held.last, &self.border) {
-            let w = equations.kept_of(w);
-            for (k, y) in columns.iter_mut().enumerate() {
-                let right = |c: usize| if c == contact { pair(k, 1.0) } else { [0.0; 2] };
-                let t = -equations.dot(control, right, y) / along;
-                y.iter_mut().zip(&w).for_each(|(y, w)| *y += t * w);
-            }
-        }
-        Some(columns)
     }
 }

@@ -264,17 +264,6 @@ impl Condensed {
         Some([columns.next()?, columns.next()?])
     }
 
-    /// A row times all unknowns, from y and the right-hand sides of the contact points.
-    pub fn dot(&self, row: &[f64], right: impl Fn(usize) -> [f64; 2], y: &[f64]) -> f64 {
-        let kept: f64 = self.kept.iter().zip(y).map(|(i, y)| row[*i] * y).sum();
-        let condensed = self.points.iter().filter(|p| row[p.first] != 0.0 || row[p.first + 1] != 0.0);
-        let forces = condensed.map(|p| {
-            let r = self.recovered(p, right(p.first / 2), y);
-            row[p.first] * r[0] + row[p.first + 1] * r[1]
-        });
-        kept + forces.sum::<f64>()
-    }
-
     /// Number of contact points.
     pub fn contacts(&self) -> usize {
         self.of.len()

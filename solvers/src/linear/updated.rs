@@ -8,37 +8,8 @@
 //! such that its present rows hold. x_0 and Y are kept without the forces that [`condensed`](super::condensed)
 //! takes out.
 
-use super::bordered::BorderedSystem;
 use super::condensed::Condensed;
 use std::collections::BTreeMap;
-
-/// Factors that can respond to the rows of a contact point.
-pub trait Factors {
-    /// The equations that are factorised.
-    fn equations(&self) -> &Condensed;
-    /// Kept unknowns for unit right-hand sides of the two rows of a contact point.
-    fn units(&self, contact: usize) -> Option<[Vec<f64>; 2]>;
-}
-
-impl Factors for Condensed {
-    fn equations(&self) -> &Condensed {
-        self
-    }
-
-    fn units(&self, contact: usize) -> Option<[Vec<f64>; 2]> {
-        Condensed::units(self, contact)
-    }
-}
-
-impl Factors for BorderedSystem<Condensed> {
-    fn equations(&self) -> &Condensed {
-        BorderedSystem::equations(self)
-    }
-
-    fn units(&self, contact: usize) -> Option<[Vec<f64>; 2]> {
-        BorderedSystem::units(self, contact)
-    }
-}
 
 /// Response to a unit right-hand side of a row of a point.
 pub struct Column {
@@ -49,15 +20,15 @@ pub struct Column {
 }
 
 /// Factors with the responses that are known.
-pub struct UpdatedFactorisation<F> {
+pub struct UpdatedFactorisation {
     /// Of B.
-    pub factors: F,
+    pub factors: Condensed,
     columns: BTreeMap<usize, [Column; 2]>,
 }
 
-impl<F: Factors> UpdatedFactorisation<F> {
+impl UpdatedFactorisation {
     /// Without responses.
-    pub fn new(factors: F) -> Self {
+    pub fn new(factors: Condensed) -> Self {
         UpdatedFactorisation { factors, columns: BTreeMap::new() }
     }
 
@@ -75,7 +46,7 @@ impl<F: Factors> UpdatedFactorisation<F> {
         let columns = if refinements == 0 {
             self.factors.units(contact)?.map(|y| Column { y, x: None })
         } else {
-            let equations = self.factors.equations();
+            let equations = &self.factors;
             let refined = |row: usize| {
                 let mut right = equations.nothing().0;
                 right[row] = 1.0;
@@ -107,7 +78,7 @@ impl<F: Factors> UpdatedFactorisation<F> {
         right: &impl Fn(usize) -> [f64; 2],
         y: &[f64],
     ) -> f64 {
-        let equations = self.factors.equations();
+        let equations = &self.factors;
         let forces = 2 * equations.contacts();
         let value = |j: usize| match j {
             j if j / 2 == contact => own[j % 2],

@@ -27,7 +27,7 @@ pub struct FactorisedModes {
     pub modes: Vec<ContactMode>,
     /// Whether responses to single points are refined, as what is claimed of the rate problem needs.
     pub refine_columns: bool,
-    updated: UpdatedFactorisation<Condensed>,
+    updated: UpdatedFactorisation,
     load_rate: Option<(usize, Vec<f64>)>,
 }
 
