@@ -139,3 +139,20 @@ impl Systems {
         gamma
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The nearest solution of x + y = 2 to the origin is (1, 1); of equations that contradict each other a residual stays.
+    #[test]
+    fn the_nearest_solution_is_found() {
+        let row: Row = vec![(0, 1.0), (1, 1.0)];
+        let (z, worst) = nearest(std::slice::from_ref(&row), &[2.0], vec![0.0; 2]).expect("a solution");
+        assert!(z.iter().all(|x| (x - 1.0).abs() < 1e-12) && worst < 1e-12, "{z:?}");
+        let (z, worst) = nearest(std::slice::from_ref(&row), &[2.0], vec![3.0, 1.0]).expect("a solution");
+        assert!((z[0] - 2.0).abs() < 1e-12 && z[1].abs() < 1e-12 && worst < 1e-12, "{z:?}");
+        let (_, worst) = nearest(&[row.clone(), row], &[2.0, 3.0], vec![0.0; 2]).expect("a best attempt");
+        assert!(worst > 0.4, "{worst}");
+    }
+}

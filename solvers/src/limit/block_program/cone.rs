@@ -227,4 +227,30 @@ mod tests {
                 && root[1][1].abs() == 0.5
         );
     }
+
+    /// A span has as many orthonormal vectors as its rows are independent, and holds each of them.
+    #[test]
+    fn a_span_holds_its_rows() {
+        for (mu, size) in [(0.5, 3), (0.0, 3)] {
+            let rows = friction(mu);
+            let basis = span(&rows);
+            assert_eq!(basis.len(), size);
+            for (i, a) in basis.iter().enumerate() {
+                basis
+                    .iter()
+                    .enumerate()
+                    .for_each(|(j, b)| assert!((dot(a, b) - f64::from(u8::from(i == j))).abs() < 1e-14));
+            }
+        }
+        let line = [[1.0, 2.0, 2.0], [-0.5, -1.0, -1.0]];
+        assert_eq!(span(&line).len(), 1);
+        assert!((dot(&span(&line)[0], &line[0]).abs() - 3.0).abs() < 1e-14);
+    }
+
+    /// Each force is weighted by its column.
+    #[test]
+    fn a_combination_weights_columns() {
+        let columns = [1.0, 10.0, 100.0].map(|v| [v; ROWS]);
+        assert_eq!(combination(&columns, &[1.0, 2.0, 3.0]), [321.0; ROWS]);
+    }
 }

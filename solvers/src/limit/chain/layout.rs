@@ -256,3 +256,36 @@ fn resolved(problem: &LimitProblem, index: usize, ahead: Option<usize>, wrench: 
     let n_1 = -about_end / height;
     [force.dot(&joint.normal) - n_1, n_1, force.dot(&joint.tangent)]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::limit::scenes::{STUCK, block, lintel};
+
+    /// A block on the ground is one link. Two half lintels between supports are a link each, closed by a joint.
+    #[test]
+    fn trees_reach_every_group() {
+        let alone = trees(&block(1.0, 2.0, STUCK)).expect("a tree");
+        assert_eq!((alone.links.len(), alone.cuts.len()), (1, 0));
+        let between = trees(&lintel(4.0, 1.0, 10.0)).expect("trees");
+        let mut ahead: Vec<usize> = between.links.iter().map(|link| link.ahead).collect();
+        ahead.sort_unstable();
+        assert_eq!((ahead, between.cuts.len()), (vec![0, 1], 1));
+    }
+
+    /// A group that no joint holds is in no tree.
+    #[test]
+    fn a_floating_group_has_no_tree() {
+        let mut problem = lintel(4.0, 1.0, 10.0);
+        problem.joints.retain(|joint| joint.plus == Some(0));
+        assert!(trees(&problem).is_none());
+    }
+
+    /// The joints of a group are those that name it, in their order.
+    #[test]
+    fn groups_know_their_joints() {
+        let problem = lintel(4.0, 1.0, 10.0);
+        let touching = Touching::of(&problem);
+        assert_eq!((touching.joints(0), touching.joints(1)), (&[0, 1][..], &[1, 2][..]));
+    }
+}

@@ -181,4 +181,28 @@ mod tests {
         }
         assert!(!clearly_independent(&DMatrix::from_element(3, 4, 0.5)));
     }
+
+    /// The rank counts independent directions, whatever the sizes of columns are.
+    #[test]
+    fn the_rank_does_not_depend_on_sizes() {
+        let (a, b) = (DVector::from_vec(vec![1.0, 2.0, 0.5]), DVector::from_vec(vec![-1.0, 0.3, 4.0]));
+        for size in [1e-9, 1.0, 1e9] {
+            let columns = [a.clone(), &b * size, (&a + &b * 2.0) * size];
+            assert_eq!(rank(&DMatrix::from_columns(&columns)), 2, "{size}");
+        }
+        assert_eq!(rank(&DMatrix::zeros(0, 0)), 0);
+    }
+
+    /// On y_1 + … + y_n = 1 an entry goes up to 1, the interior has all entries, and its analytic centre is 1/n.
+    #[test]
+    fn the_centre_of_a_simplex_is_its_middle() {
+        let matrix = DMatrix::from_element(1, 4, 1.0);
+        let corner = DVector::from_vec(vec![0.0, 1.0, 0.0, 0.0]);
+        let carried = carry(&matrix, &corner, 3).expect("a way");
+        assert!((carried[3] - 1.0).abs() < 1e-12 && carried[1].abs() < 1e-12, "{carried}");
+        let interior = interior_point(&matrix, &corner).expect("a point");
+        assert!(interior.min() > 0.1 && (interior.sum() - 1.0).abs() < 1e-12, "{interior}");
+        let centre = analytic_centre(&matrix, interior);
+        assert!(centre.iter().all(|y| (y - 0.25).abs() < 1e-9), "{centre}");
+    }
 }

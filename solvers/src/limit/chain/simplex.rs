@@ -651,3 +651,32 @@ fn leaving(weights: &[f64], change: &[f64], lu: &mut SmallLu, origin: &[f64]) ->
     };
     (0..m).filter(|&k| change[k] > SETTINGS.admissible * largest.max(f64::MIN_POSITIVE)).min_by(|&a, &b| order(a, b))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The tangents next to forces on the parabola of an end touch it there, and those of other forces hold them.
+    #[test]
+    fn tangents_touch_the_parabola() {
+        let block = StressBlock { tension: 0.2, total: 10.2 };
+        for pressed in [0.5, 3.0, 9.0] {
+            let u = pressed + block.tension;
+            let least = (u * u / block.total - block.tension) / 2.0;
+            let mut seen = Vec::new();
+            tangents(0, &block, [least, pressed - least, 0.0], 1.0, 0.0, &mut |_, violation| seen.push(violation));
+            assert!(seen.len() == 2 && seen[0].abs() < 1e-13 && seen[1] < 1e-13, "{pressed}: {seen:?}");
+        }
+    }
+
+    /// The least ratio leaves; of equal ones that of the first row of the inverse, and none if nothing shrinks.
+    #[test]
+    fn the_least_ratio_leaves() {
+        let identity = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+        let mut lu = SmallLu::new(3);
+        assert!(lu.factorise(&identity));
+        assert_eq!(leaving(&[3.0, 1.0, 2.0], &[1.0, 1.0, 1.0], &mut lu, &identity), Some(1));
+        assert_eq!(leaving(&[1.0, 1.0, 2.0], &[1.0, 1.0, 1.0], &mut lu, &identity), Some(1));
+        assert_eq!(leaving(&[3.0, 1.0, 2.0], &[-1.0, 0.0, -1.0], &mut lu, &identity), None);
+    }
+}

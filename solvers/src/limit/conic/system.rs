@@ -181,3 +181,30 @@ impl System {
         multipliers.chunks(3).map(|q| [q[0], q[1], q[2] / self.length]).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The gradient of φ is its difference quotient, and φ = 0 where the pressed part of the joint is its whole stress block.
+    #[test]
+    fn the_gradient_of_a_block_is_its_slope() {
+        for end in [0, 1] {
+            let block = Block { normal: [1, 2], end, strength: StressBlock { tension: 0.1, total: 5.0 } };
+            let x = [9.0, 0.7, 1.1];
+            for (j, slope) in block.gradient(&x) {
+                let at = |by: f64| {
+                    let mut moved = x;
+                    moved[j] += by;
+                    block.value(&moved)
+                };
+                assert!(((at(1e-5) - at(-1e-5)) / 2e-5 - slope).abs() < 1e-9);
+            }
+            let mut crushed = [0.0; 3];
+            let (u, least) = (2.0f64, (2.0 * 2.0 / 5.0 - 0.1) / 2.0);
+            crushed[block.normal[end]] = least;
+            crushed[block.normal[1 - end]] = u - 0.1 - least;
+            assert!(block.value(&crushed).abs() < 1e-14 && (block.state(&crushed).0 - u).abs() < 1e-14);
+        }
+    }
+}

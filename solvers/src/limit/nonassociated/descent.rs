@@ -113,3 +113,14 @@ impl Descent<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Weights are the positive values with their places.
+    #[test]
+    fn weights_are_positive_values() {
+        assert_eq!(Descent::weights(&[0.0, 2.0, -1.0, 0.5]), [(1, 2.0), (3, 0.5)]);
+    }
+}

@@ -406,3 +406,52 @@ pub fn split_bound(systems: &Systems, most: f64, limit: u64, curve: &mut Curve) 
     let bound = (!steps.is_empty()).then_some(Bound { theta: proved, steps });
     (bound, work)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::limit::scenes::{Dry, STUCK, block};
+
+    fn matrix(rows: usize, columns: usize) -> DMatrix<f64> {
+        DMatrix::from_fn(rows, columns, |i, j| ((7 * i * i + 11 * j + 5 * i * j + 1) as f64).sin())
+    }
+
+    /// The columns of the null space solve the equations, and are as many as columns without rank.
+    #[test]
+    fn the_null_space_solves_the_equations() {
+        let thin = matrix(2, 5);
+        for of in [thin.clone(), matrix(4, 2) * thin] {
+            let null = null_space(&of);
+            assert_eq!(null.ncols(), 3);
+            assert!((of * null).amax() < 1e-13);
+        }
+    }
+
+    /// Balanced columns are orthonormal and span the scaled columns.
+    #[test]
+    fn balanced_columns_span_the_scaled_ones() {
+        let columns = matrix(6, 2);
+        let (basis, scale) = balanced(&columns);
+        assert!((basis.transpose() * &basis - DMatrix::identity(2, 2)).amax() < 1e-13);
+        let scaled = DMatrix::from_diagonal(&scale) * columns;
+        assert!((&basis * (basis.transpose() * &scaled) - &scaled).amax() < 1e-12 * scaled.amax());
+    }
+
+    /// Virtual work: on a motion that the flow rule allows, a change of the field without a change of the fixed loads does
+    /// Δλ p·q̇ = Σ d·Δr γ, which is −Σ Δs γ if flow is associated.
+    #[test]
+    fn motions_and_fields_obey_virtual_work() {
+        let problem = block(1.0, 2.0, Dry { friction: Some(0.6), ..STUCK });
+        let systems = Systems::new(&problem, &problem.fixed);
+        let (motions, fields) = (motions(&systems), fields(&systems, [0.0, 1.0]));
+        let pairs = systems.pairs.len();
+        assert!(motions.ncols() > 1 && fields.ncols() == 2);
+        // θ and 1 − θ add up to the share of the fixed loads.
+        let share = |k: usize| fields[(pairs, k)] + fields[(pairs + 1, k)];
+        let change = fields.column(0) * share(1) - fields.column(1) * share(0);
+        for motion in motions.column_iter() {
+            let dissipated = -motion.rows(0, pairs).dot(&change.rows(0, pairs));
+            assert!((change[pairs] * motion[pairs] - dissipated).abs() < 1e-13, "{dissipated}");
+        }
+    }
+}

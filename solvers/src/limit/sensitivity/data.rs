@@ -104,3 +104,32 @@ impl DataRate {
         DataRate { wrenches, rows, blocks, fixed, varying }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::limit::scenes::{Dry, STUCK, block};
+
+    fn with_friction(mu: f64) -> LimitProblem {
+        block(1.0, 2.0, Dry { friction: Some(mu), ..STUCK })
+    }
+
+    /// The rate of a linear datum is its slope: friction stands in the rows of sliding with the factor −1.
+    #[test]
+    fn the_rate_of_linear_data_is_their_slope() {
+        let [at, near, far] = [0.5, 0.6, 0.7].map(with_friction);
+        let rate = DataRate::one_sided(&at, [&near, &far], 0.1).expect("a rate");
+        for (row, (normal, bound)) in at.joints[0].strength.rows.iter().zip(&rate.rows[0]) {
+            let slope = if row.mode == voussoir_core::law::FacetMode::Sliding { -1.0 } else { 0.0 };
+            assert!((normal[0] - slope).abs() < 1e-12 && normal[2].abs() < 1e-12 && bound.abs() < 1e-12, "{normal:?}");
+        }
+        assert!(rate.fixed.iter().chain(&rate.varying).flatten().all(|x| x.abs() < 1e-12));
+    }
+
+    /// Data that jump have no rate.
+    #[test]
+    fn data_that_jump_have_no_rate() {
+        let [at, near, far] = [0.5, 0.9, 0.5].map(with_friction);
+        assert!(DataRate::one_sided(&at, [&near, &far], 0.1).is_err_and(|why| why.contains("jump")));
+    }
+}

@@ -32,16 +32,18 @@ fn null_space(matrix: &DMatrix<f64>) -> Result<(DMatrix<f64>, DMatrix<f64>, usiz
     let (rows, columns) = matrix.shape();
     // Padded with zero rows, so that all right singular vectors come.
     let padded = matrix.clone().resize_vertically(rows.max(columns), 0.0);
-    let svd = padded.try_svd(true, true, f64::EPSILON, 10_000).ok_or("singular values were not found")?;
-    let (Some(u), Some(v)) = (svd.u, svd.v_t) else { return Err("singular values were not found".into()) };
+    let svd = padded.try_svd(false, true, f64::EPSILON, 10_000).ok_or("singular values were not found")?;
+    let v = svd.v_t.ok_or("singular values were not found")?;
     let greatest = svd.singular_values.max().max(f64::MIN_POSITIVE);
     let (null, full): (Vec<usize>, Vec<usize>) =
         (0..columns).partition(|&i| svd.singular_values[i] <= SETTINGS.negligible * greatest);
     let basis = DMatrix::from_fn(columns, null.len(), |i, j| v[(null[j], i)]);
     let mut inverse = DMatrix::zeros(columns, rows);
+    // By the images of the right vectors: of a matrix without full rank the left ones may belong to others.
     for &k in &full {
-        let scaled = v.row(k).transpose() / svd.singular_values[k];
-        inverse += scaled * u.column(k).rows(0, rows).transpose();
+        let own = v.row(k).transpose();
+        let image = matrix * &own;
+        inverse += own * image.transpose() / image.norm_squared();
     }
     Ok((basis, inverse, full.len()))
 }
@@ -219,5 +221,24 @@ impl<'a> OptimalFace<'a> {
         (0..components).for_each(|k| coefficients[first + k] = normal[k] * row.scale);
         let carried: f64 = (0..3).map(|k| normal[k] * own(k)).sum();
         ((carried + constant) * row.scale, coefficients)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A N = 0 with orthonormal N, A A⁺ A = A, and the rank of a product of thin matrices is their width.
+    #[test]
+    fn the_null_space_and_the_inverse_belong_to_the_matrix() {
+        for (rows, columns, width) in [(3, 5, 2), (5, 3, 3), (4, 4, 1)] {
+            let value = |seed: usize| move |i: usize, j: usize| ((7 * i * i + 11 * j + 5 * i * j + seed) as f64).sin();
+            let matrix = DMatrix::from_fn(rows, width, value(1)) * DMatrix::from_fn(width, columns, value(2));
+            let (null, inverse, rank) = null_space(&matrix).expect("singular values");
+            assert_eq!((rank, null.ncols()), (width, columns - width));
+            assert!((&matrix * &null).amax() < 1e-13);
+            assert!((null.transpose() * &null - DMatrix::identity(columns - width, columns - width)).amax() < 1e-13);
+            assert!((&matrix * inverse * &matrix - &matrix).amax() < 1e-12);
+        }
     }
 }

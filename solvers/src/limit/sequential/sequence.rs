@@ -241,3 +241,41 @@ fn settled(
         .find(|(_, violation)| *violation <= SETTINGS.balanced)?;
     Some(FlowState { factor: z[systems.forces] * systems.unit, field: systems.joint_forces(&z), motion })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::limit::scenes::{Dry, STUCK, block};
+
+    /// Full steps first, then shares that fall to nothing.
+    #[test]
+    fn shares_fall() {
+        let shares: Vec<f64> = (0..PROGRAMS).map(share).collect();
+        assert!(shares.is_sorted_by(|a, b| a >= b) && shares[0] == 1.0 && shares[PROGRAMS - 1] < 0.01);
+    }
+
+    /// The associated row of a joint that slides without dilatancy passes through the yield point of the reference: T ≤ μ N.
+    #[test]
+    fn fictitious_cohesion_is_the_friction_of_the_reference() {
+        let problem = block(1.0, 2.0, Dry { friction: Some(0.6), associated: false, ..STUCK });
+        let reference = [JointForce { normal: [0.4, 1.1], shear: 0.2 }];
+        let replaced = fictitious(&problem, &reference);
+        let sliding =
+            replaced.joints[0].strength.rows.iter().filter(|row| row.mode == voussoir_core::law::FacetMode::Sliding);
+        let bounds: Vec<f64> = sliding.map(|row| row.bound).collect();
+        assert!(bounds.len() == 2 && bounds.iter().all(|bound| (bound - 0.6 * 1.5).abs() < 1e-15), "{bounds:?}");
+        assert!(replaced.joints[0].strength.rows.iter().all(|row| row.flow == row.normal));
+    }
+
+    /// A verdict tells factors that wander from factors that stay.
+    #[test]
+    fn the_verdict_tells_whether_factors_wander() {
+        let verdict = |factors: [f64; 3]| {
+            let mut course = Course::default();
+            factors.into_iter().for_each(|factor| course.take(factor, 0.1, 0.2));
+            course.verdict()
+        };
+        assert!(verdict([1.0, 2.0, 1.5]).contains("wander between 1.000000000 and 2.000000000"));
+        assert!(verdict([3.0; 3]).contains("stays at 3.000000000"));
+    }
+}
