@@ -12,6 +12,16 @@ const CHAIN: usize = 8;
 const LARGE: usize = 9;
 /// Greatest number of parameters of the paths that are `&mut` of a large struct.
 const MUTABLE: usize = 50;
+/// Greatest number of places in the paths that ask for the kind of a problem, and the words by which they ask.
+const QUESTIONS: usize = 25;
+const KINDS: [&[&str]; 6] = [
+    &[".", "finite", "(", ")"],
+    &["responses", ".", "is_empty"],
+    &["blocks", ".", "is_empty"],
+    &["limits", ".", "remembers"],
+    &["limits", ".", "carries_any_load"],
+    &["is_associated"],
+];
 /// Greatest number of numeric constants, and greatest number of fields of a struct of settings.
 const NUMBERS: usize = 121;
 const TOLERANCES: usize = 40;
@@ -91,6 +101,20 @@ fn few_functions_take_a_large_struct_to_change_it() {
         }
     }
     assert!(places.len() <= MUTABLE, "{} places: {large:?}", places.len());
+}
+
+/// The kind of a problem decides its limits when its system is built. Few places ask for it again.
+#[test]
+fn few_places_ask_for_the_kind_of_a_problem() {
+    let files = solvers().files;
+    let mut places = Vec::new();
+    for (module, source) in of_paths(&files) {
+        let t = &source.tokens;
+        let asks = |i: usize, words: &[&str]| words.iter().enumerate().all(|(k, word)| is(t, i + k, word));
+        let asked = (0..t.len()).filter(|&i| KINDS.iter().any(|words| asks(i, words)));
+        places.extend(asked.map(|i| format!("{}: {}", module.join("/"), t[i].line)));
+    }
+    assert!(places.len() <= QUESTIONS, "{places:#?}");
 }
 
 /// Tolerances are fields of structs of settings with at most forty fields each, and few other constants are numbers.

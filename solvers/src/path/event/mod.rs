@@ -22,10 +22,25 @@ pub(super) use self::follow::follow;
 use voussoir_core::path::{PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver};
 use voussoir_core::plugin::{Capability, Card, Keys, PluginKind};
 
-/// Returns true if the path consists of linear pieces: small displacements, facet laws and linear blocks.
+/// Returns true if the path consists of linear pieces.
 pub(super) fn is_piecewise_linear(problem: &PathProblem, settings: &PathSettings) -> bool {
-    let has_facets = |c: usize| problem.response(c).is_none();
-    !settings.finite && problem.deforms() && !problem.yields() && (0..problem.contacts.len()).all(has_facets)
+    obstacle(problem, settings).is_none()
+}
+
+/// The reason why the path does not consist of linear pieces: small displacements, facet laws and linear blocks.
+fn obstacle(problem: &PathProblem, settings: &PathSettings) -> Option<&'static str> {
+    if settings.finite {
+        return Some("it follows small displacements only; newton_path follows finite ones");
+    }
+    if (0..problem.contacts.len()).any(|c| problem.response(c).is_some()) {
+        return Some("it takes laws of facets only; newton_path follows laws of tractions from gaps");
+    }
+    if !problem.deforms() {
+        return Some(
+            "all blocks are rigid and no joint is compliant: there is no path before the collapse; limit analysis answers this scene",
+        );
+    }
+    problem.yields().then_some("it follows linear blocks only; newton_path follows blocks that yield")
 }
 
 /// The exact path of piecewise linear problems.
@@ -43,21 +58,9 @@ impl PathSolver for EventPath {
     }
 
     fn refuses(&self, problem: &PathProblem, settings: &PathSettings) -> Option<String> {
-        if settings.finite {
-            return Some("it follows small displacements only; newton_path follows finite ones".into());
-        }
-        if settings.strategies().next().is_some() {
-            return Some(
-                "it goes from event to event without steps, so a continuation strategy has no meaning here".into(),
-            );
-        }
-        if (0..problem.contacts.len()).any(|c| problem.response(c).is_some()) {
-            return Some("it takes laws of facets only; newton_path follows laws of tractions from gaps".into());
-        }
-        if !problem.deforms() {
-            return Some("all blocks are rigid and no joint is compliant: there is no path before the collapse; limit analysis answers this scene".into());
-        }
-        problem.yields().then(|| "it follows linear blocks only; newton_path follows blocks that yield".into())
+        let has_strategy = settings.strategies().next().is_some();
+        let why = "it goes from event to event without steps, so a continuation strategy has no meaning here";
+        obstacle(problem, settings).or(has_strategy.then_some(why)).map(Into::into)
     }
 }
 

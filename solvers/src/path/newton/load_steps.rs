@@ -193,5 +193,5 @@ fn answer(mut tracer: Tracer) -> PathAnswer {
     };
     let outcome =
         Outcome { limit_point_end: tracer.ending.limit_point_end, ..Outcome::at(tracer.ending.status, factor) };
-    outcome.moving(motion).carried_by(tracer.ending.ray).answer(tracer.system.problem, tracer.system.finite(), record)
+    outcome.moving(motion).carried_by(tracer.ending.ray).answer(tracer.system.problem, tracer.settings.finite, record)
 }

@@ -172,6 +172,12 @@ impl<'a> Geometry<'a> {
         self.displaced(body, point, motion[body], &self.turned(motion[body][2]))
     }
 
+    /// Velocity of a point of a body that moves on from a motion at a rate.
+    pub fn velocity(&self, body: usize, point: Vec2, motion: &[[f64; 3]], rate: &[[f64; 3]]) -> Vec2 {
+        let arm = self.turn(motion[body][2]) * (point - self.problem.bodies[body].pole);
+        Vec2::new(rate[body][0], rate[body][1]) + turned(arm) * rate[body][2]
+    }
+
     /// Frames of contact points where bodies have these motions.
     pub fn frames<'m>(&'m self, motion: &'m [[f64; 3]]) -> Frames<'m> {
         Frames {

@@ -8,6 +8,7 @@ pub mod equations;
 pub mod factors;
 pub mod geometry;
 pub mod kinematics;
+pub mod limits;
 pub mod loads;
 pub mod state;
 pub mod system;

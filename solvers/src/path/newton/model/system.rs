@@ -7,6 +7,7 @@ use super::equations::Equations;
 use super::factors::LastFactors;
 use super::geometry::Geometry;
 use super::kinematics::{gradient, hessian};
+use super::limits::Limits;
 use super::loads::StagedLoads;
 use super::state::State;
 use super::tractions::{Responses, TractionUpdates};
@@ -66,6 +67,7 @@ pub struct StepSystem<'a> {
     pub problem: &'a PathProblem,
     pub geometry: Geometry<'a>,
     pub laws: Laws,
+    pub limits: Limits,
     /// The problem in its units, with the unit of the factor that grows now.
     pub scaled: System,
     pub loads: StagedLoads<'a>,
@@ -98,12 +100,15 @@ impl<'a> StepSystem<'a> {
         if scaled.compliance.iter().flatten().all(|c| *c <= 0.0) {
             return Err("nothing in the scene deforms: rigid blocks without joint compliance have no path before their collapse; limit analysis answers that".into());
         }
+        let geometry = Geometry::new(problem, finite);
+        let limits = Limits::of(problem, finite, scaled.chain.is_some() && geometry.pattern.couples(), scaled.units);
         let mut cache = Cache::default();
         cache.factors.elimination = Elimination::along(scaled.chain.clone());
         let (facets, polygon_of) = problem.shared_facets();
         let polygons = facets.into_iter().map(YieldPolygon::new).collect();
         Ok(StepSystem {
-            geometry: Geometry::new(problem, finite),
+            geometry,
+            limits,
             problem,
             laws: Laws { polygons, polygon_of, responses, undeformed: undeformed(problem)? },
             scaled,
@@ -151,26 +156,17 @@ impl<'a> StepSystem<'a> {
         self.geometry.finite
     }
 
-    /// Whether with small displacements every law is one of facets.
-    pub fn piecewise_linear(&self) -> bool {
-        self.laws.responses.is_empty() && self.laws.undeformed.iter().all(Option::is_none)
-    }
-
     /// Returns true if the present load step moves supports and adds no load.
     pub fn settles(&self) -> bool {
         self.problem.load_size(self.loads.growing) == 0.0
     }
 
-    /// Whether factors may serve equations that are near theirs: those of a chain of elastic blocks with laws of facets.
-    pub fn solves_nearby(&self) -> bool {
-        self.piecewise_linear() && self.scaled.chain.is_some() && self.geometry.pattern.couples()
-    }
-
-    /// Forces and a factor that are rounding of the loads become nothing (small displacements). A law of tractions has given its own.
-    pub fn drop_rounding(&self, state: &mut State, start: f64) {
-        let u = self.scaled.units;
+    /// Forces and a factor that are rounding of the loads become nothing with small displacements. Bonds have given their own.
+    pub fn drop_rounding(&self, state: &mut State) {
+        let (u, start) = (self.scaled.units, self.loads.start);
         let largest = state.force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
         if self.loads.earlier.is_empty()
+            && !self.finite()
             && self.laws.responses.is_empty()
             && largest <= 1e-10 * u.force
             && (state.factor - start).abs() <= 1e-10 * u.factor

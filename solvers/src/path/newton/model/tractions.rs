@@ -11,7 +11,7 @@
 //! until the step is accepted.
 
 use std::sync::Arc;
-use voussoir_core::law::{InterfaceResponse, TractionPoint};
+use voussoir_core::law::{InterfaceResponse, TractionPoint, UpdateBranch};
 use voussoir_core::path::PathProblem;
 
 /// Contact points of one law, and where their states stand.
@@ -32,6 +32,15 @@ pub struct Responses {
     of: Vec<Option<(usize, usize)>>,
     /// Joint and place of each contact point.
     places: Vec<(usize, [f64; 2])>,
+}
+
+/// A point with the name of its branch: an open one without normal traction, if its law names no branches. A tangent by differences
+/// is that of both sides next to the corner.
+fn named(point: TractionPoint, gap: [f64; 2]) -> TractionPoint {
+    match point.branch == UpdateBranch::ELASTIC && point.traction[0] == 0.0 && gap[0] > 0.0 {
+        true => TractionPoint { branch: UpdateBranch::OPEN, tangent: [[0.0; 2], point.tangent[1]], ..point },
+        false => point,
+    }
 }
 
 /// What the laws say at a state.
@@ -89,7 +98,7 @@ impl Responses {
         let (group, at) = self.of[contact]?;
         let law = &self.groups[group].law;
         let old = &before[at..at + law.state_size()];
-        law.respond_point(gap, old, &mut old.to_vec()).ok()
+        law.respond_point(gap, old, &mut old.to_vec()).ok().map(|point| named(point, gap))
     }
 
     /// Names the law, the joint, the point and the gap at which it failed.
@@ -130,7 +139,7 @@ impl Responses {
                 return Err(self.failure(group, index, gap.get(index), &why));
             }
             for (index, (contact, at)) in group.points.iter().zip(&group.places).enumerate() {
-                all[*contact] = points[index];
+                all[*contact] = named(points[index], gap[index]);
                 memory[*at..at + size].copy_from_slice(&new[index * size..(index + 1) * size]);
             }
         }

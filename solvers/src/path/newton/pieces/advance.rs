@@ -117,9 +117,7 @@ impl Step<'_, '_> {
         let moved = scaled_row(self.system, &step);
         let away: f64 = moved.iter().zip(self.piece.row.iter()).map(|(x, t)| (x - length * t).powi(2)).sum();
         let error = away.sqrt() / length.abs().max(1e-300);
-        let bonds = !self.system.laws.responses.is_empty();
-        if bonds && error > SETTINGS.half + SETTINGS.inequality() / length.abs().max(1e-300) {
-            // The state is on another branch of a bond.
+        if error > self.system.limits.branch + SETTINGS.inequality() / length.abs().max(1e-300) {
             return None;
         }
         let unexplained = self.unexplained(&state, &rate, length);

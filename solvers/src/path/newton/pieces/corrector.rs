@@ -11,8 +11,7 @@ use crate::path::newton::quantities::control_row::{control_row, control_value};
 use crate::path::newton::quantities::inelastic::block_error;
 use crate::path::newton::quantities::response::traction_error;
 use crate::path::newton::solve::iteration::{
-    LinearisedAt, first_state, gap_error, largest_unknown, relative_residual, rotation_bound, rounding,
-    unbalanced_share,
+    LinearisedAt, first_state, gap_error, largest_unknown, relative_residual, rotation_bound, unbalanced_share,
 };
 use crate::path::newton::solve::line_search::advanced;
 use crate::path::newton::solve::linearised::residual_of;
@@ -27,10 +26,10 @@ const MOST: u32 = 12;
 pub(super) fn correct(system: &mut StepSystem, start: &State, guess: State, control: &Control) -> Option<State> {
     let first = first_state(system, start, guess, control);
     let (mut state, mut gradient) = first.map_err(|why| system.report.failure = Some(why)).ok()?;
-    let rounding = rounding(system);
+    let rounding = system.limits.rounding;
     let mut last = f64::INFINITY;
     let mut whole = true;
-    let mut linearised = LinearisedAt::of(system, start);
+    let mut linearised = LinearisedAt::of(start, system.limits.nearby);
     for iteration in 0..MOST {
         let mut residual = residual_of(system, start, &state, &gradient);
         *residual.last_mut()? = control_value(system, start, &state, control);

@@ -5,7 +5,7 @@ use super::begin::begin;
 use super::corner::corner;
 use super::corrector::correct;
 use super::end::end_of_range;
-use super::loading_set::{LoadingRate, loading_rate};
+use super::loading_set::{LoadingRate, bond_rate, loading_rate};
 use super::monitors::{Monitor, What};
 use super::other_branches::note_other_branches;
 use super::piece::Piece;
@@ -201,9 +201,6 @@ impl<'d> Run<'d> {
     /// begin or cease to yield at no place of the step.
     fn end_at_corner(&mut self, tracer: &mut Tracer, length: f64) -> Option<Ending> {
         let start = tracer.state.clone();
-        if start.blocks.is_empty() {
-            return None;
-        }
         let at = corner(&mut tracer.system, &start, &self.piece.tangent, length)?;
         if at > length_ahead(&tracer.system, &start) {
             self.length.next = at;
@@ -225,14 +222,14 @@ impl<'d> Run<'d> {
         if length >= SETTINGS.inequality() * self.length.first {
             return None;
         }
-        // A law that does not name its branches makes no events: its corners are met by steps that get too short.
+        // Steps that get too short meet a corner of a law that is no event.
         if let Some(found) = self.around_corner(tracer) {
             self.length.next = 0.1 * self.length.first;
             tracer.state.blocks.clone_from(&found.state.blocks);
             let modes = found.state.mode.clone();
             return self.go_on(tracer, found, modes, None);
         }
-        if !tracer.system.piecewise_linear() && !self.crowded() {
+        if tracer.system.limits.remembers && !self.crowded() {
             // The rate of an event may be rounding where many points rest at their bounds: the arrival leads on.
             let arrival = self.cluster.arrival.as_ref().map(|(modes, piece, _)| (modes.clone(), piece.clone()));
             let own = (tracer.state.mode.clone(), self.piece.clone());
@@ -250,7 +247,7 @@ impl<'d> Run<'d> {
 
     /// The rate that leads on from a state beyond which the piece has none, since blocks or bonds begin to yield there.
     fn around_corner(&mut self, tracer: &mut Tracer) -> Option<LoadingRate> {
-        if tracer.system.piecewise_linear() || self.crowded() {
+        if !tracer.system.limits.remembers || self.crowded() {
             return None;
         }
         let here = tracer.state.clone();
@@ -543,8 +540,12 @@ impl<'d> Run<'d> {
     }
 
     /// An event: the next piece, and what the path does at it.
-    fn event(&mut self, tracer: &mut Tracer, end: StepEnd, hits: Vec<Monitor>) -> Option<LoadStepEnding> {
+    fn event(&mut self, tracer: &mut Tracer, mut end: StepEnd, hits: Vec<Monitor>) -> Option<LoadStepEnding> {
         tracer.system.count("events", 1);
+        if hits.iter().any(|hit| matches!(hit.what, What::Branch(_))) {
+            // Next to the end of a branch a tangent by differences is that of both sides: its rate explains no change.
+            end.unexplained = 0.0;
+        }
         let moved = end.length > 1e-9 * self.length.first;
         let length = self.length.next;
         if end.length > 0.0
@@ -598,12 +599,10 @@ impl<'d> Run<'d> {
         let Some(mut piece) = Piece::new(&tracer.system, &state, &rate) else {
             return Some(self.end_at_event(tracer, "the rate that leads on does not move", false, false));
         };
-        if !tracer.system.laws.responses.is_empty() {
-            let here = State { mode: state.mode.clone(), ..tracer.state.clone() };
-            if let Some(found) = loading_rate(&mut tracer.system, &here, &piece) {
-                state = found.state;
-                piece = Piece::new(&tracer.system, &state, &found.rate)?;
-            }
+        let here = State { mode: state.mode.clone(), ..tracer.state.clone() };
+        if let Some(found) = bond_rate(&mut tracer.system, &here, &piece) {
+            state = found.state;
+            piece = Piece::new(&tracer.system, &state, &found.rate)?;
         }
         self.enter(tracer, piece, &state);
         self.rises = self.goes_up(tracer, &self.piece.tangent.clone());

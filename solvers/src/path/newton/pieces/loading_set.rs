@@ -43,13 +43,21 @@ impl Unit {
     }
 }
 
-/// The rate that leads on from a state in its modes, at which a piece arrives. Unloading, on which the factor turns and nothing dissipates, is no way on. `None` if no loading set is consistent.
+/// The rate that leads on from a state in its modes, at which a piece arrives. `None` if there is none.
 pub(super) fn loading_rate(system: &mut StepSystem, state: &State, arrival: &Piece) -> Option<LoadingRate> {
-    let arrives = Unit::of(system, &arrival.tangent)?;
-    if system.laws.responses.is_empty() {
-        return dissipating_rate(system, state, arrival, &arrives);
+    match system.laws.responses.is_empty() {
+        true => dissipating_rate(system, state, arrival),
+        false => bond_rate(system, state, arrival),
     }
-    let mut along = arrives;
+}
+
+/// The same by loading sets of bonds. Unloading, on which the factor turns and nothing dissipates, is no way on. `None` if no
+/// loading set is consistent, or if there are no bonds.
+pub(super) fn bond_rate(system: &mut StepSystem, state: &State, arrival: &Piece) -> Option<LoadingRate> {
+    if system.laws.responses.is_empty() {
+        return None;
+    }
+    let mut along = Unit::of(system, &arrival.tangent)?;
     let mut seen: Vec<State> = Vec::new();
     for _ in 0..MOST_SETS {
         let facing = facing_ahead(system, state, &along.rate)?;
@@ -148,7 +156,8 @@ fn combined(system: &mut StepSystem, state: &State, arrival: &Piece, seen: &[Sta
 
 /// The rate of blocks with the tangents just ahead along the arrival, in the sense that dissipates. Sets of points that yield
 /// are not iterated: on coarse meshes they agree at fewer corners than one look ahead does.
-fn dissipating_rate(system: &mut StepSystem, state: &State, arrival: &Piece, arrives: &Unit) -> Option<LoadingRate> {
+fn dissipating_rate(system: &mut StepSystem, state: &State, arrival: &Piece) -> Option<LoadingRate> {
+    let arrives = Unit::of(system, &arrival.tangent)?;
     let facing = facing_ahead(system, state, &arrives.rate)?;
     let found = rate_of(system, &facing, &arrival.row)?;
     let power = plastic_power(system, &facing, &found.rate);

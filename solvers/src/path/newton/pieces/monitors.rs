@@ -146,8 +146,7 @@ impl Monitors {
         let rigidity = (0..state.gap.len()).map(|c| system.stiffness(c)).fold(0.0, |a: f64, k| a.max(k[0].max(k[1])));
         let rounding = gap_rounding(system, state);
         // Newton's method on blocks that yield gives positions to this share of the displacements.
-        let of_blocks =
-            if state.blocks.is_empty() { 0.0 } else { SETTINGS.inequality() * fastest(system, &state.motion) };
+        let of_blocks = system.limits.position * fastest(system, &state.motion);
         // A structure that moves as a whole has gaps and forces whose rates are the rounding of its motion.
         let gap_rate = greatest(&tangent.gap);
         let gap_rounding = SETTINGS.rounding * fastest(system, &tangent.motion);
@@ -191,13 +190,14 @@ impl Monitor {
         let inside = at_start || state.updates.points[self.contact].branch == branch || is_in(far);
         let sense = if inside { 1.0 } else { -1.0 };
         let mut near = 0.0;
-        for _ in 0..DOUBLINGS {
-            if is_in(sense * far) != inside {
-                break;
+        let changed = (0..DOUBLINGS).any(|_| {
+            let changes = is_in(sense * far) != inside;
+            if !changes {
+                (near, far) = (far, 2.0 * far);
             }
-            (near, far) = (far, 2.0 * far);
-        }
-        for _ in 0..BISECTIONS {
+            changes
+        });
+        for _ in 0..if changed { BISECTIONS } else { 0 } {
             let middle = 0.5 * (near + far);
             if is_in(sense * middle) == inside {
                 near = middle

@@ -13,7 +13,7 @@ use voussoir_core::path::Branching;
 /// Adds a note and a branching for a limit point at the present state, behind which the path follows a rate, if the second-order work of
 /// its loading set is negative in other directions too.
 pub(super) fn note_other_branches(tracer: &mut Tracer, rate: &Tangent) {
-    if tracer.system.piecewise_linear() {
+    if !tracer.system.limits.remembers {
         return;
     }
     let (here, factor) = (tracer.state.clone(), tracer.state.factor);

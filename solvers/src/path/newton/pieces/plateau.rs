@@ -33,8 +33,7 @@ pub(super) fn plateau(tracer: &mut Tracer, piece: &Piece, direction: f64, flows:
     let mut states = Vec::new();
     let watched = Watched { sense: None, target: None };
     let whole = SETTINGS.visible * size / fastest;
-    // With small displacements the mechanism is the same all along.
-    let (mut moved, mut length) = (0.0, if tracer.system.finite() { 1e-3 * whole } else { whole });
+    let (mut moved, mut length) = (0.0, tracer.system.limits.mechanism * whole);
     for _ in 0..200 {
         let step = length.min(whole - moved);
         match advance(&mut tracer.system, (&state, &piece_here), step, watched) {
@@ -61,20 +60,17 @@ pub(super) fn plateau(tracer: &mut Tracer, piece: &Piece, direction: f64, flows:
     if moved * fastest < SETTINGS.small * size || !is_same(tracer, &start, &state) {
         return None;
     }
-    // The tangents of a loading set are linear: if no facet may change its mode their one rate has a constant factor. Those of
-    // blocks that flow are regularised and do not show it.
-    let has_history = !tracer.system.laws.responses.is_empty() || start.yields();
-    if !has_history {
-        // Slip and forces give the dissipation of the whole motion.
-        states = vec![state];
-    }
-    if flows || has_history && active_set(&tracer.system, &start, &[]).contacts.is_empty() {
-        return Some(Plateau { moved: states, unproved: None });
+    // If no facet may change its mode the one rate has a constant factor. Tangents of blocks that flow are regularised and do not
+    // show it.
+    let remembers = tracer.system.limits.remembers;
+    // Slip and forces of facets give the dissipation of the whole motion.
+    let moved = if remembers { states } else { vec![state] };
+    if flows || remembers && active_set(&tracer.system, &start, &[]).contacts.is_empty() {
+        return Some(Plateau { moved, unproved: None });
     }
     match limit_point_test(&mut tracer.system, &start, direction) {
-        LimitPointTest::None => Some(Plateau { moved: states, unproved: None }),
-        LimitPointTest::Unknown(_) if has_history => Some(Plateau { moved: states, unproved: None }),
-        LimitPointTest::Unknown(why) => Some(Plateau { moved: states, unproved: Some(why) }),
+        LimitPointTest::None => Some(Plateau { moved, unproved: None }),
+        LimitPointTest::Unknown(why) => Some(Plateau { moved, unproved: (!remembers).then_some(why) }),
         LimitPointTest::Tangent(..) => None,
     }
 }

@@ -11,8 +11,7 @@ use voussoir_core::limit::Status;
 /// The ending of a path on which the load grows without bound along a piece with small displacements, if it does.
 pub(super) fn ray(tracer: &mut Tracer, piece: &Piece, direction: f64) -> Option<LoadStepEnding> {
     let (u, rate) = (tracer.system.units(), &piece.tangent);
-    // Strengths bound a block that may yield, and displaced positions any load.
-    if tracer.system.finite() || tracer.system.problem.yields() {
+    if !tracer.system.limits.carries_any_load {
         return None;
     }
     let motion = motion_size(&tracer.system, rate);

@@ -15,24 +15,19 @@ pub fn length_ahead(system: &StepSystem, state: &State) -> f64 {
 /// laws give no stresses there.
 pub fn facing_ahead(system: &mut StepSystem, state: &State, rate: &Tangent) -> Option<State> {
     let (mut facing, length) = (state.clone(), length_ahead(system, state));
-    if !state.blocks.is_empty() {
-        let mut ahead = moved(state, rate, length);
-        update_blocks(system, &mut ahead).ok()?;
-        facing.blocks = ahead.blocks;
+    let mut ahead = moved(state, rate, length);
+    update_blocks(system, &mut ahead).ok()?;
+    facing.blocks = ahead.blocks;
+    for (own, rate) in ahead.gap.iter_mut().zip(&rate.gap) {
+        (0..2).for_each(|k| own[k] += length * rate[k]);
     }
-    if !system.laws.responses.is_empty() {
-        system.count("law_evaluations", system.laws.responses.count());
-        let speed = |rate: &[f64; 2]| rate[0].hypot(rate[1]);
-        let fastest = rate.gap.iter().map(speed).fold(0.0, f64::max);
-        let mut gap = state.gap.clone();
-        for (own, rate) in gap.iter_mut().zip(&rate.gap) {
-            (0..2).for_each(|k| own[k] += length * rate[k]);
-        }
-        let ahead = system.laws.responses.update(&gap, &state.updates.memory).ok()?;
-        for ((own, ahead), rate) in facing.updates.points.iter_mut().zip(&ahead.points).zip(&rate.gap) {
-            if speed(rate) > SETTINGS.active * fastest {
-                (own.tangent, own.branch) = (ahead.tangent, ahead.branch);
-            }
+    system.count("law_evaluations", system.laws.responses.count());
+    let updates = system.laws.responses.update(&ahead.gap, &state.updates.memory).ok()?;
+    let speed = |rate: &[f64; 2]| rate[0].hypot(rate[1]);
+    let fastest = rate.gap.iter().map(speed).fold(0.0, f64::max);
+    for ((own, ahead), rate) in facing.updates.points.iter_mut().zip(&updates.points).zip(&rate.gap) {
+        if speed(rate) > SETTINGS.active * fastest {
+            (own.tangent, own.branch) = (ahead.tangent, ahead.branch);
         }
     }
     Some(facing)

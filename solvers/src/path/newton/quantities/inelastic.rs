@@ -15,9 +15,6 @@ use std::rc::Rc;
 
 /// The nodes of all blocks follow forces and motions; blocks are linearised where they come to lie.
 pub fn update_blocks(system: &mut StepSystem, state: &mut State) -> Result<(), String> {
-    if state.blocks.is_empty() {
-        return Ok(());
-    }
     let loads = system.loads.at(state.factor);
     for index in 0..state.blocks.len() {
         let (Some(inner), Some(inelastic)) = (&state.blocks[index], &system.problem.bodies[index].inelastic) else {
@@ -35,9 +32,6 @@ pub fn update_blocks(system: &mut StepSystem, state: &mut State) -> Result<(), S
 
 /// Greatest force on a node that stresses leave, relative to the greatest contact force.
 pub fn block_error(system: &StepSystem, state: &State) -> f64 {
-    if state.blocks.is_empty() {
-        return 0.0;
-    }
     let loads = system.loads.at(state.factor);
     let force = state.force.iter().flatten().map(|r| r.abs()).fold(system.units().force, f64::max);
     let mut worst: f64 = 0.0;
@@ -53,11 +47,10 @@ pub fn block_error(system: &StepSystem, state: &State) -> f64 {
     worst
 }
 
-/// Plastic work of a step in the unit of energy.
-pub fn plastic_work(system: &StepSystem, start: &State, state: &State) -> f64 {
+/// Plastic work of a step \[J\].
+pub fn plastic_work(start: &State, state: &State) -> f64 {
     let both = start.blocks.iter().flatten().zip(state.blocks.iter().flatten());
-    let work: f64 = both.map(|(from, to)| to.linear.end.dissipated - from.base.dissipated).sum();
-    work / system.units().energy()
+    both.map(|(from, to)| to.linear.end.dissipated - from.base.dissipated).sum()
 }
 
 /// ∂(plastic work)/∂(forces on the points) of every block that yields.

@@ -2,7 +2,7 @@
 
 use super::inelastic::{plastic_power, plastic_work};
 use super::monitors::monitored;
-use super::response::dissipated_by_tractions;
+use super::response::dissipated_by;
 use crate::path::newton::model::state::{State, Tangent};
 use crate::path::newton::model::system::StepSystem;
 use voussoir_core::path::Increment;
@@ -19,71 +19,71 @@ pub fn load_displacement(system: &StepSystem, motion: &[[f64; 3]], factor: f64) 
     system.problem.load_displacement((system.loads.growing, factor), motion, rigid)
 }
 
-/// Increment between two states in units, and the weights of its derivative: by gaps and directly.
+/// Mean of the changes of motions and gaps in their units.
+fn mean_change(system: &StepSystem, motion: impl Fn(usize, usize) -> f64, gap: impl Fn(usize, usize) -> f64) -> f64 {
+    let (u, points) = (system.units(), system.scaled.contacts);
+    let units = u.motion();
+    let free = (0..system.scaled.free.len()).filter(|body| system.scaled.free[*body].is_some());
+    let motions: f64 =
+        free.flat_map(|body| (0..3).map(move |k| (body, k))).map(|(b, k)| (motion(b, k) / units[k]).powi(2)).sum();
+    let gaps: f64 = (0..2 * points).map(|i| (gap(i / 2, i % 2) / u.displacement).powi(2)).sum();
+    (motions / system.scaled.bodies.max(1) as f64 + gaps / points.max(1) as f64).sqrt()
+}
+
+/// Work of contact forces on changes of gaps, as far as laws of facets make these irreversible \[J\].
+fn dissipated_by_facets(system: &StepSystem, state: &State, gap: impl Fn(usize) -> [f64; 2]) -> f64 {
+    let at_point = |c: usize| {
+        let (kept, _) = system.law(c)?.irreversible(state.mode[c], gap(c));
+        Some(-(kept[0] * state.force[c][0] + kept[1] * state.force[c][1]))
+    };
+    (0..state.gap.len()).filter_map(at_point).sum()
+}
+
+/// Increment between two states in units.
 pub fn increment_between(system: &StepSystem, start: &State, state: &State) -> Increment {
     let u = system.units();
-    let mut motion = 0.0;
-    for body in (0..system.scaled.free.len()).filter(|b| system.scaled.free[*b].is_some()) {
-        for k in 0..3 {
-            let unit = if k == 2 { u.displacement / u.length } else { u.displacement };
-            motion += ((state.motion[body][k] - start.motion[body][k]) / unit).powi(2) / system.scaled.bodies as f64;
-        }
-    }
-    let mut dissipation = dissipated_by_tractions(system, state);
-    let points = state.gap.len() as f64;
-    for c in 0..state.gap.len() {
-        for k in 0..2 {
-            motion += ((state.gap[c][k] - start.gap[c][k]) / u.displacement).powi(2) / points;
-        }
-        if let Some(law) = system.law(c) {
-            let (kept, _) = law.irreversible(state.mode[c], system.step_gap(start, state, c));
-            dissipation -= kept[0] * state.force[c][0] + kept[1] * state.force[c][1];
-        }
-    }
-    dissipation += plastic_work(system, start, state);
+    let place = |of: &State, body: usize, point| system.geometry.rigid(body, point, &of.motion);
+    let dissipation = dissipated_by(system, &state.updates)
+        + dissipated_by_facets(system, state, |c| system.step_gap(start, state, c))
+        + plastic_work(start, state);
     Increment {
         factor: (state.factor - start.factor) / u.factor,
         displacement: (load_displacement(system, &state.motion, state.factor)
             - load_displacement(system, &start.motion, start.factor))
             / u.displacement,
-        motion: motion.sqrt(),
+        motion: mean_change(
+            system,
+            |body, k| state.motion[body][k] - start.motion[body][k],
+            |c, k| state.gap[c][k] - start.gap[c][k],
+        ),
         dissipation: dissipation / u.energy(),
-        monitored: monitored(system, start, state),
+        monitored: monitored(
+            system,
+            |c| state.gap[c][0] - start.gap[c][0],
+            |body, point| place(state, body, point) - place(start, body, point),
+        ),
     }
 }
 
 /// Increment of a rate from a state.
 pub fn increment_along(system: &StepSystem, state: &State, rate: &Tangent) -> Increment {
-    let mut moved = state.clone();
-    let mut small = 1e-6 / tangent_size(system, rate).max(1e-300);
-    if !system.finite() && system.laws.responses.is_empty() {
-        // Everything is linear: from nothing, without a difference of what may be large.
-        moved.gap.fill([0.0; 2]);
-        moved.motion.fill([0.0; 3]);
-        small = 1.0;
-    }
-    let origin = moved.clone();
-    // Linear in a step that is small: displacement and dissipation may not be.
-    let step = rate.scaled(small);
-    for c in 0..moved.gap.len() {
-        (0..2).for_each(|k| moved.gap[c][k] += step.gap[c][k]);
-    }
-    for (q, dq) in moved.motion.iter_mut().zip(&step.motion) {
-        (0..3).for_each(|k| q[k] += dq[k]);
-    }
-    moved.factor += step.factor;
-    // Where the law fails so close to a state, the rest of the rate still counts.
-    moved.updates = system.laws.responses.update(&moved.gap, &state.updates.memory).unwrap_or_default();
-    let mut base = origin;
-    base.slip = base.gap.clone();
-    (base.blocks, moved.blocks) = (Vec::new(), Vec::new());
-    let i = increment_between(system, &base, &moved);
+    let u = system.units();
+    let velocity = |body, point| system.geometry.velocity(body, point, &state.motion, &rate.motion);
+    let moved = system.problem.load_displacement((system.loads.growing, rate.factor), &rate.motion, velocity);
+    // The dissipation of bonds is that of a small step. If the law fails so close to a state, the rest of the rate still counts.
+    let small = 1e-6 / tangent_size(system, rate).max(1e-300);
+    let ahead = |(g, dg): (&[f64; 2], &[f64; 2])| [0, 1].map(|k| g[k] + small * dg[k]);
+    let gaps: Vec<[f64; 2]> = state.gap.iter().zip(&rate.gap).map(ahead).collect();
+    let updates = system.laws.responses.update(&gaps, &state.updates.memory).unwrap_or_default();
+    let dissipation = dissipated_by(system, &updates) / small
+        + dissipated_by_facets(system, state, |c| rate.gap[c])
+        + plastic_power(system, state, rate);
     Increment {
-        factor: rate.factor / system.units().factor,
-        displacement: i.displacement / small,
-        motion: i.motion / small,
-        monitored: i.monitored.map(|value| value / small),
-        dissipation: i.dissipation / small + plastic_power(system, state, rate) / system.units().energy(),
+        factor: rate.factor / u.factor,
+        displacement: moved / u.displacement,
+        motion: mean_change(system, |body, k| rate.motion[body][k], |c, k| rate.gap[c][k]),
+        dissipation: dissipation / u.energy(),
+        monitored: monitored(system, |c| rate.gap[c][0], velocity),
     }
 }
 

@@ -1,8 +1,8 @@
 //! The monitors of a strategy as weights of gaps and motions.
 
 use crate::path::newton::model::control::MonitorWeights;
-use crate::path::newton::model::state::State;
 use crate::path::newton::model::system::StepSystem;
+use voussoir_core::model::geometry::Vec2;
 use voussoir_core::path::{Contact, MOST_MONITORS, Monitor, PathProblem};
 
 /// The monitors of a strategy, or the name of the first that the problem does not have.
@@ -52,15 +52,17 @@ fn opening(problem: &PathProblem, joint: usize, at: Option<f64>) -> Option<Monit
     Some(MonitorWeights { gaps, point: None })
 }
 
-/// Increments of the monitors between two states, in the unit of displacement.
-pub fn monitored(system: &StepSystem, start: &State, state: &State) -> [f64; MOST_MONITORS] {
+/// Increments of the monitors by those of normal gaps and of points of bodies, in the unit of displacement.
+pub fn monitored(
+    system: &StepSystem,
+    gap: impl Fn(usize) -> f64,
+    moved: impl Fn(usize, Vec2) -> Vec2,
+) -> [f64; MOST_MONITORS] {
     let mut all = [0.0; MOST_MONITORS];
     for (value, monitor) in all.iter_mut().zip(&system.monitors) {
-        let opened = monitor.gaps.iter().map(|&(c, weight)| weight * (state.gap[c][0] - start.gap[c][0]));
-        *value = opened.sum();
+        *value = monitor.gaps.iter().map(|&(c, weight)| weight * gap(c)).sum();
         if let Some((body, point, direction)) = &monitor.point {
-            let place = |of: &State| system.geometry.rigid(*body, *point, &of.motion);
-            *value += direction.dot(&(place(state) - place(start)));
+            *value += direction.dot(&moved(*body, *point));
         }
         *value /= system.units().displacement;
     }

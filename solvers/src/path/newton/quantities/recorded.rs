@@ -2,7 +2,7 @@
 
 use super::inelastic::plastic_work;
 use super::measure::load_displacement;
-use super::response::{dissipated_by_tractions, stored_by_tractions};
+use super::response::{dissipated_by, stored_by_tractions};
 use crate::path::energy::{EnergyBalance, WorkState};
 use crate::path::newton::model::blocks::yielded;
 use crate::path::newton::model::derivatives::Gradient;
@@ -13,13 +13,12 @@ use voussoir_core::path::{Loading, PathState};
 
 /// What the work of a step needs of a state.
 pub fn work_state(system: &StepSystem, state: &State, gradient: &Gradient) -> WorkState {
-    let theta = |body: usize| if system.finite() { state.motion[body][2] } else { 0.0 };
     let place = |&(body, slot, point, _): &(usize, Option<usize>, Vec2, Vec2)| {
         let rigid = system.geometry.rigid(body, point, &state.motion);
         match slot {
             Some(slot) if !gradient.deformation[body].is_empty() => {
                 let v = &gradient.deformation[body];
-                rigid + nalgebra::Rotation2::new(theta(body)) * Vec2::new(v[2 * slot], v[2 * slot + 1])
+                rigid + system.geometry.turn(state.motion[body][2]) * Vec2::new(v[2 * slot], v[2 * slot + 1])
             }
             _ => rigid,
         }
@@ -41,7 +40,7 @@ pub fn energy_after(
     (state, to): (&State, &WorkState),
 ) -> EnergyBalance {
     let mut energy = before;
-    energy.dissipated += dissipated_by_tractions(system, state);
+    energy.dissipated += dissipated_by(system, &state.updates);
     for contact in 0..state.gap.len() {
         let Some(law) = system.law(contact) else { continue };
         let (kept, _) = law.irreversible(state.mode[contact], system.step_gap(start, state, contact));
@@ -52,7 +51,7 @@ pub fn energy_after(
         let (end, begun) = (state.force[contact], if same { start.force[contact] } else { state.force[contact] });
         energy.dissipated -= 0.5 * ((begun[0] + end[0]) * kept[0] + (begun[1] + end[1]) * kept[1]);
     }
-    energy.dissipated += plastic_work(system, start, state) * system.units().energy();
+    energy.dissipated += plastic_work(start, state);
     let loadings: Vec<&Loading> = system.loads.at(state.factor).parts.iter().map(|(_, loading)| *loading).collect();
     energy.add_work(system.problem, &loadings, from, to);
     energy

@@ -2,6 +2,7 @@
 
 use crate::path::newton::model::state::State;
 use crate::path::newton::model::system::StepSystem;
+use crate::path::newton::model::tractions::TractionUpdates;
 
 /// Brings what the laws say in line with a state's gaps, for a step from `start`.
 pub fn update_tractions(system: &mut StepSystem, start: &State, state: &mut State) -> Result<(), String> {
@@ -34,14 +35,12 @@ pub fn traction_residual(system: &StepSystem, state: &State, contact: usize) -> 
 /// Greatest difference between forces and what the laws say, beyond rounding of the gaps, relative to the greatest
 /// force: between soft blocks a stiff law turns what is small among motions into a share of the forces.
 pub fn traction_error(system: &StepSystem, state: &State) -> f64 {
-    if system.laws.responses.is_empty() {
-        return 0.0;
-    }
     let largest = state.force.iter().flatten().map(|r| r.abs()).fold(system.units().force, f64::max);
     let moved = state.motion.iter().flat_map(|q| &q[..2]).chain(state.gap.iter().flatten());
     let moved = moved.fold(0.0, |a: f64, x| a.max(x.abs()));
     // Half of what a certificate allows.
-    let rounding = f64::EPSILON * if system.finite() { 256.0 * system.units().length } else { 32.0 * moved };
+    let place = system.limits.place;
+    let rounding = f64::EPSILON * if place > 0.0 { 256.0 * place } else { 32.0 * moved };
     let mut worst: f64 = 0.0;
     for c in system.laws.responses.points() {
         let (point, area) = (&state.updates.points[c], system.problem.contacts[c].area);
@@ -54,9 +53,9 @@ pub fn traction_error(system: &StepSystem, state: &State) -> f64 {
     worst
 }
 
-/// Energy that these laws dissipate in a step \[J\].
-pub fn dissipated_by_tractions(system: &StepSystem, state: &State) -> f64 {
-    let points = state.updates.points.iter().zip(&system.problem.contacts);
+/// Energy that these laws dissipate in the step of an update \[J\].
+pub fn dissipated_by(system: &StepSystem, updates: &TractionUpdates) -> f64 {
+    let points = updates.points.iter().zip(&system.problem.contacts);
     points.map(|(point, c)| c.area * point.dissipated).sum()
 }
 
@@ -69,5 +68,5 @@ pub fn stored_by_tractions(system: &StepSystem, state: &State) -> f64 {
 /// Whether a step from `start` is irreversible at some point.
 pub fn tractions_dissipate(system: &StepSystem, state: &State) -> bool {
     let most = 1e-13 * (stored_by_tractions(system, state).abs() + system.units().energy());
-    dissipated_by_tractions(system, state) > most
+    dissipated_by(system, &state.updates) > most
 }

@@ -1,6 +1,6 @@
 //! Newton's method on the contact modes of a step.
 
-use super::line_search::{advanced, of_tractions, searched};
+use super::line_search::{advanced, searched};
 use super::linearised::residual_of;
 use super::nearby::{Accuracy, solve};
 use super::tangent::wanted_modes;
@@ -10,6 +10,7 @@ use crate::optimise::line_search::LineSearch;
 use crate::path::newton::model::control::Control;
 use crate::path::newton::model::derivatives::Gradient;
 use crate::path::newton::model::equations::Equations;
+use crate::path::newton::model::limits::Iterations;
 use crate::path::newton::model::state::State;
 use crate::path::newton::model::system::StepSystem;
 use crate::path::newton::quantities::control_row::{control_row, control_value};
@@ -23,13 +24,10 @@ use std::rc::Rc;
 /// come back.
 const ASTRAY: usize = 200;
 
-/// Points that still change, and iterations in which they do not become fewer, with which a step of finite
-/// displacements is given up: few points that cycle do so for ever.
+/// Points that still change up to which they may be in a cycle.
 const FEW: usize = 4;
-
-const WITHOUT_GAIN: u32 = 24;
-/// Iterations of small displacements whose equations have no solution.
-const UNSOLVED: u32 = 10;
+/// Iterations with a line search.
+const SEARCHED: u64 = 30;
 
 /// Newton's method from a guess: how many times all modes may change at once without that their number falls is its
 /// `patience`. What is found, and after how many iterations.
@@ -39,24 +37,17 @@ pub fn iterate(
     guess: State,
     control: &Control,
     patience: u32,
-    mut search: Option<LineSearch>,
+    search: Option<LineSearch>,
 ) -> Result<(State, u64), String> {
-    if !system.laws.responses.is_empty() {
-        search = Some(of_tractions());
-    }
+    let mut search = system.limits.newton.search.clone().or(search);
     let (mut state, mut gradient) = first_state(system, start, guess, control)?;
     system.report.residuals.clear();
-    let rounding = rounding(system);
-    let mut changes = ModeChanges::new(patience);
+    let rounding = system.limits.rounding;
+    let Iterations { unsolved: most_unsolved, iterations, cycle, .. } = system.limits.newton;
+    let mut changes = ModeChanges::new(patience, cycle);
     let (mut unsolved, mut last_norm, mut whole) = (0, f64::INFINITY, true);
-    let may_lag = system.finite() && system.solves_nearby() && search.is_none();
-    let mut linearised = LinearisedAt { place: may_lag.then(|| start.clone()), lags: false };
-    // A law that softens converges soon or not at all: shorter steps cost less than long iterations.
-    let most = match (system.laws.responses.is_empty(), system.finite() && search.is_none()) {
-        (false, _) => 25,
-        (true, true) => 60 + (state.gap.len() as u64).min(200),
-        (true, false) => 30,
-    };
+    let mut linearised = LinearisedAt::of(start, system.limits.nearby && search.is_none());
+    let most = if search.is_some() { iterations.min(SEARCHED) } else { iterations };
     for iteration in 0..most {
         let mut residual = residual_of(system, start, &state, &gradient);
         let last = residual.len() - 1;
@@ -86,7 +77,7 @@ pub fn iterate(
         // Modes without a solution may be on the way to ones that have one: with small
         // displacements the shifted equations, a soft bedding, show which points close.
         unsolved += u32::from(solution.as_ref().is_some_and(|(_, solved)| !solved));
-        let Some((step, _)) = solution.filter(|_| unsolved <= if system.finite() { 0 } else { UNSOLVED }) else {
+        let Some((step, _)) = solution.filter(|_| unsolved <= most_unsolved) else {
             return Err("the modes of the contact points leave no equilibrium".into());
         };
         let share = rotation_bound(system, &step);
@@ -99,7 +90,7 @@ pub fn iterate(
         };
         let (wanted, holds) = wanted_modes(system, start, &state);
         changes.update(&state, wanted, holds);
-        if search.is_none() && changes.hopeless(system.finite()) {
+        if search.is_none() && changes.hopeless() {
             return Err("the modes of contact points keep changing".into());
         }
         changes.take(&mut state);
@@ -116,10 +107,9 @@ pub struct LinearisedAt {
 }
 
 impl LinearisedAt {
-    /// For steps from a start.
-    pub fn of(system: &StepSystem, start: &State) -> Self {
-        let may_lag = system.finite() && system.solves_nearby();
-        LinearisedAt { place: may_lag.then(|| start.clone()), lags: false }
+    /// For steps from a start, whose equations `serve` near it or not.
+    pub fn of(start: &State, serve: bool) -> Self {
+        LinearisedAt { place: serve.then(|| start.clone()), lags: false }
     }
 
     /// Whether the last equations were not those of the state itself.
@@ -151,15 +141,15 @@ pub fn holds_at(
     (inner, rounding, stays): (f64, f64, bool),
 ) -> bool {
     // Rounding of positions excuses gaps, not equilibrium.
-    let balanced = !system.finite()
-        || (inner <= SETTINGS.inequality() && unbalanced_share(system, residual, state) <= SETTINGS.inequality());
-    let held = !system.finite() || {
+    let holds = || {
         let (gap, force) = gap_error(system, residual, state);
-        gap <= SETTINGS.admissible + rounding / largest_unknown(system, state)
+        inner <= SETTINGS.inequality()
+            && unbalanced_share(system, residual, state) <= SETTINGS.inequality()
+            && gap <= SETTINGS.admissible + rounding / largest_unknown(system, state)
             && (stays || force <= SETTINGS.admissible)
             && is_admissible(system, state)
     };
-    balanced && held && traction_error(system, state) <= SETTINGS.admissible
+    (!system.finite() || holds()) && traction_error(system, state) <= SETTINGS.admissible
 }
 
 /// The guess as a state of the step, with what the loads, blocks and laws say there.
@@ -179,37 +169,26 @@ pub fn first_state(
     Ok((state, gradient))
 }
 
-/// Residual that is rounding. Small displacements round by their own size, which the residual is relative to; a law of
-/// tractions from gaps must hold to that.
-pub fn rounding(system: &StepSystem) -> f64 {
-    match (system.finite(), system.laws.responses.is_empty()) {
-        (true, _) => 400.0 * f64::EPSILON * system.units().length / system.units().displacement,
-        (false, true) => 0.0,
-        (false, false) => 400.0 * f64::EPSILON,
-    }
-}
-
 /// Greatest rotation of a body from one state to another.
 fn turned_between(start: &State, state: &State) -> f64 {
     let turns = state.motion.iter().zip(&start.motion).map(|(q, before)| (q[2] - before[2]).abs());
     turns.fold(0.0, f64::max)
 }
 
-/// Share of an iteration with finite displacements whose rotations stay where the linearisation means something.
+/// Share of an iteration whose rotations stay where the linearisation means something.
 pub fn rotation_bound(system: &StepSystem, step: &[f64]) -> f64 {
-    if !system.finite() {
-        return 1.0;
-    }
     let points = system.scaled.contacts;
     let turn = (0..system.scaled.bodies)
         .map(|b| (step[2 * points + 3 * b + 2] * system.units().displacement / system.units().length).abs())
         .fold(0.0, f64::max);
-    (SETTINGS.largest_rotation / turn.max(1e-300)).min(1.0)
+    (system.limits.rotation / turn.max(1e-300)).min(1.0)
 }
 
 /// How the contact modes change from iteration to iteration: block principal pivoting with its fallback.
 struct ModeChanges {
     patience: u32,
+    /// Iterations without gain that are a cycle.
+    cycle: u32,
     changed: bool,
     /// Points that want to change, and what they and all others want.
     differ: Vec<usize>,
@@ -225,11 +204,11 @@ struct ModeChanges {
 }
 
 impl ModeChanges {
-    fn new(patience: u32) -> Self {
+    fn new(patience: u32, cycle: u32) -> Self {
         let (differ, wanted) = (Vec::new(), Vec::new());
         let (least, fewest) = (usize::MAX, usize::MAX);
         let (without_gain, budget, astray) = (0, patience, 0);
-        ModeChanges { patience, changed: true, differ, wanted, least, without_gain, fewest, budget, astray }
+        ModeChanges { patience, cycle, changed: true, differ, wanted, least, without_gain, fewest, budget, astray }
     }
 
     /// Takes note of the modes that a state asks for, and of whether the laws hold in its own.
@@ -243,9 +222,9 @@ impl ModeChanges {
         self.least = self.least.min(count);
     }
 
-    /// Whether the iteration has left the neighbourhood of a solution, or (finite displacements) few points cycle.
-    fn hopeless(&self, finite: bool) -> bool {
-        let cycles = finite && self.changed && self.least <= FEW && self.without_gain >= WITHOUT_GAIN;
+    /// Whether the iteration has left the neighbourhood of a solution, or few points cycle.
+    fn hopeless(&self) -> bool {
+        let cycles = self.changed && self.least <= FEW && self.without_gain >= self.cycle;
         self.astray > 1 || cycles
     }
 

@@ -32,13 +32,7 @@ use crate::path::newton::model::system::StepSystem;
 use crate::path::newton::quantities::control_row::control_value;
 use crate::path::newton::quantities::inelastic::{block_error, update_blocks};
 use crate::path::newton::quantities::response::update_tractions;
-use crate::settings::SETTINGS;
 use std::rc::Rc;
-
-/// For laws of tractions from gaps: between the pieces of such a law whole iterations may cycle.
-pub fn of_tractions() -> LineSearch {
-    LineSearch { decrease: 0.3, halvings: 4, memory: 1, nothing: SETTINGS.admissible, merits: Vec::new() }
-}
 
 /// ‖F‖ of a state in the units of the unknowns.
 fn merit(system: &mut StepSystem, start: &State, state: &State, gradient: &Gradient, control: &Control) -> f64 {

@@ -86,8 +86,7 @@ fn damping(system: &StepSystem) -> f64 {
 /// Kept factors, where modes alone make the rows of points.
 pub fn all_kept<'s>(system: &'s StepSystem<'_>) -> impl Iterator<Item = &'s Rc<Kept>> {
     let (damping, directions) = (damping(system), directions(system));
-    let kept = system.cache.factors.held().filter(|_| system.laws.responses.is_empty());
-    kept.filter(move |kept| kept.damping == damping && kept.directions == directions)
+    system.cache.factors.held().filter(move |kept| kept.damping == damping && kept.directions == directions)
 }
 
 /// Those of them that are of these equations in the state's modes and serve a control.
@@ -122,6 +121,7 @@ pub fn factorised(
         None => by_rows(system, state, equations, row, damping),
     };
     let held = Rc::new(held?);
+    // Tangents of bonds make their matrix, not modes alone.
     if system.laws.responses.is_empty() {
         system.cache.factors.hold(Kept {
             equations: equations.clone(),

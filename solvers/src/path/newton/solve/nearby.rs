@@ -61,7 +61,7 @@ pub fn solve(
     (control, right): (&[f64], &[f64]),
     accuracy: Accuracy,
 ) -> Option<(Vec<f64>, bool)> {
-    if accuracy == Accuracy::Rounding && system.finite() {
+    if accuracy == Accuracy::Rounding && system.limits.nearby {
         factorised(system, state, equations, control)?;
     }
     let left = if accuracy == Accuracy::Rough { SETTINGS.admissible } else { SETTINGS.ulps() };
@@ -77,7 +77,7 @@ fn solve_nearby(
     (control, right): (&[f64], &[f64]),
     accuracy: f64,
 ) -> Option<Vec<f64>> {
-    if !system.solves_nearby() {
+    if !system.limits.nearby {
         return None;
     }
     let changed = |kept: &Kept| (0..state.mode.len()).filter(|c| kept.modes[*c] != state.mode[*c]).collect::<Vec<_>>();

@@ -54,8 +54,8 @@ pub fn wanted_modes(system: &mut StepSystem, start: &State, state: &State) -> (V
     system.count("law_evaluations", state.gap.len() as u64);
     let largest = state.force.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max);
     let unit = system.units().force;
-    let own = system.finite() && largest <= SETTINGS.small * unit;
-    let largest = largest.max(if own { SETTINGS.residual() * unit } else { unit });
+    let weak = largest <= system.limits.weak * unit;
+    let largest = largest.max(if weak { SETTINGS.residual() * unit } else { unit });
     let rounding = gap_rounding(system, state);
     let mut holds = true;
     let modes = (0..state.gap.len())

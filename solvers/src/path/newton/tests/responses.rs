@@ -1,9 +1,11 @@
 //! Joints whose law gives tractions from gaps: load steps with small displacements against the results of facets.
 
 use crate::path::newton::NewtonPath;
-use crate::path::two_blocks::{STIFFNESS, assert_close, block, pushed_at, settings, stage, strategies, traced};
+use crate::path::two_blocks::{
+    STIFFNESS, assert_close, block, block_on, live, pushed_at, settings, stage, strategies, traced,
+};
 use std::sync::Arc;
-use voussoir_core::law::{Facet, FacetResponse};
+use voussoir_core::law::{Facet, FacetResponse, InterfaceResponse, TractionPoint, UpdateBranch, UpdateFailure};
 use voussoir_core::limit::Status;
 use voussoir_core::path::{LoadStepEnd, Loading, PathAnswer, PathProblem, PathSolver, PointLaw, Unobserved};
 
@@ -92,4 +94,41 @@ fn a_tensile_strength_holds_a_lifted_block() {
     let answer = stepped(&problem);
     assert_eq!(answer.status, Status::Collapse, "{:?}", answer.notes);
     assert_close(answer.factor.expect("a factor"), 1.0 + 2.0 * strength, 1e-7);
+}
+
+/// No tension, elastic shear: a law that names no branches and whose tangent is found by central differences.
+#[derive(Debug)]
+struct NoTension;
+
+impl InterfaceResponse for NoTension {
+    fn state_size(&self) -> usize {
+        0
+    }
+
+    fn initial_state(&self, _: &mut [f64]) {}
+
+    fn state_names(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    fn respond_point(&self, gap: [f64; 2], _: &[f64], _: &mut [f64]) -> Result<TractionPoint, UpdateFailure> {
+        let pressed = |normal: f64| STIFFNESS * (-normal).max(0.0);
+        let traction = [pressed(gap[0]), -STIFFNESS * gap[1]];
+        let slope = (pressed(gap[0] + 1e-8) - pressed(gap[0] - 1e-8)) / 2e-8;
+        let stored = (traction[0].powi(2) + traction[1].powi(2)) / (2.0 * STIFFNESS);
+        let tangent = [[slope, 0.0], [0.0, -STIFFNESS]];
+        Ok(TractionPoint { traction, tangent, branch: UpdateBranch::ELASTIC, stored, dissipated: 0.0 })
+    }
+}
+
+/// A block on a law that names no branches tips at λ = W b/(2 h) as well: its points open one after the other, at events.
+#[test]
+fn openings_of_a_law_without_branches_are_events() {
+    let law: PointLaw = PointLaw::Response(Arc::new(NoTension));
+    let mut problem = block_on(&[0.0, 0.25, 0.5, 0.75, 1.0], &law, live(pushed_at(0.8)));
+    problem.contacts.iter_mut().for_each(|contact| contact.compliance = [0.0; 2]);
+    let answer = stepped(&problem);
+    assert_eq!(answer.status, Status::Collapse, "{:?}", answer.notes);
+    assert_close(answer.factor.expect("a factor"), 0.625, 1e-9);
+    assert!(answer.counters["newton_iterations"] < 500, "{:?}", answer.counters);
 }

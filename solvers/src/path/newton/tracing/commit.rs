@@ -25,13 +25,9 @@ pub fn commit(tracer: &mut Tracer, mut next: State) -> bool {
         );
         return false;
     }
-    if !tracer.system.finite() {
-        tracer.system.drop_rounding(&mut next, tracer.system.loads.start);
-    }
+    tracer.system.drop_rounding(&mut next);
     // A point that closes beyond its face presses on nothing: the path ends at the state before.
-    if tracer.system.finite()
-        && let Some((apart, why)) = left_its_pairing(tracer, &next, SETTINGS.admissible)
-    {
+    if let Some((apart, why)) = left_its_pairing(tracer, &next, SETTINGS.admissible) {
         end_at_lost_joint(tracer, apart, None, why);
         return false;
     }
@@ -46,7 +42,7 @@ pub fn commit(tracer: &mut Tracer, mut next: State) -> bool {
         let settles = tracer.system.settles();
         seen.stable_under_load = stability(&mut tracer.system, &next, settles).under_load;
     }
-    let (problem, finite) = (tracer.system.problem, tracer.system.finite());
+    let (problem, finite) = (tracer.system.problem, tracer.settings.finite);
     tracer.record.balance = tracer.record.balance.after(problem, finite, &tracer.record.state, &seen).0;
     tracer.record.state = seen;
     tracer.state = next;
@@ -56,9 +52,7 @@ pub fn commit(tracer: &mut Tracer, mut next: State) -> bool {
         end_path(tracer, Status::Stalled, "stopped by the observer".into());
         return false;
     }
-    if tracer.system.finite()
-        && let Some((apart, why)) = left_its_pairing(tracer, &tracer.state, 0.0)
-    {
+    if let Some((apart, why)) = left_its_pairing(tracer, &tracer.state, 0.0) {
         end_at_lost_joint(tracer, apart, None, why);
         return false;
     }
@@ -82,9 +76,12 @@ pub fn end_at_lost_joint(tracer: &mut Tracer, apart: bool, rate: Option<&Tangent
     end_path(tracer, status, why)
 }
 
-/// A pressed point that has slipped further than its pairing holds, by more than a share `beyond` of the size: true if its blocks have
-/// come apart, and a note.
+/// A pressed point that has slipped further than its pairing holds with finite displacements, by more than a share `beyond` of the
+/// size: true if its blocks have come apart, and a note.
 fn left_its_pairing(tracer: &Tracer, state: &State, beyond: f64) -> Option<(bool, String)> {
+    if !tracer.system.finite() {
+        return None;
+    }
     let largest = state.force.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max);
     let points = tracer.system.problem.contacts.iter().zip(&state.force).zip(&state.gap);
     let mut pressed = points.filter(|((_, force), _)| force[0] > 1e-9 * largest);

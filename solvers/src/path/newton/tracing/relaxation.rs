@@ -39,7 +39,7 @@ pub struct Relaxation {
 
 /// The descents from a state along its critical mode, one in each sense, as far as they end in stable equilibria.
 pub fn relaxations(system: &mut StepSystem, state: &State, work: &SecondOrderWork) -> Vec<Relaxation> {
-    if !system.piecewise_linear() || !system.finite() {
+    if system.limits.remembers {
         return Vec::new();
     }
     let found = [1.0, -1.0].into_iter().filter_map(|sense| descent(system, state, work, sense)).collect();

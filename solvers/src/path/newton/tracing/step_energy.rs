@@ -19,12 +19,11 @@ pub fn step_energy(tracer: &mut Tracer, next: &State) -> StepEnergy {
     let gradient = tracer.system.gradient(next);
     let (energy, _) = foreseen(tracer, next, &gradient);
     let after = recorded(&energy, &tracer.system, tracer.in_force.load_step, next, &gradient);
-    let (problem, finite, before) = (tracer.system.problem, tracer.system.finite(), &tracer.record.state);
+    let (problem, finite, before) = (tracer.system.problem, tracer.settings.finite, &tracer.record.state);
     let (balance, left) = tracer.record.balance.after(problem, finite, before, &after);
     let scale = balance.scale(after.stored).max(SETTINGS.admissible * tracer.system.units().energy());
     let growth = (SETTINGS.fine * scale / left.abs().max(1e-300)).sqrt();
-    // Bonds that soften are followed more closely step by step.
-    let most = if tracer.system.laws.responses.is_empty() { SETTINGS.energy_of_stage } else { SETTINGS.fine };
+    let most = tracer.system.limits.energy;
     let moved = problem.gross_work(before, &after, finite) + (after.dissipated - before.dissipated).abs();
     let in_budget = left.abs() <= most * scale && balance.left().abs() <= SETTINGS.energy_of_stage * scale;
     StepEnergy { growth, holds: in_budget || left.abs() <= (most * moved).max(SETTINGS.admissible * scale) }

@@ -16,16 +16,11 @@ pub fn none_rises(
     rate: &Tangent,
     direction: f64,
 ) -> Vec<Witness> {
-    if has_history(system) {
+    if system.limits.remembers {
         return vec![beyond(seen, rate)];
     }
     let trees = std::iter::once(by_rate(rate)).chain(by_search(system, state, direction));
     trees.map(|tree| Witness { state: seen.clone(), claim: RateClaim::NoneRises(tree) }).collect()
-}
-
-/// True if laws of tractions from gaps, or blocks that yield, make the path depend on its history.
-pub fn has_history(system: &StepSystem) -> bool {
-    !system.laws.responses.is_empty() || system.problem.yields()
 }
 
 /// The rate just beyond a limit point: if laws have a history the proof is about its loading set.
