@@ -16,7 +16,7 @@ pub struct CheckedKey {
     /// Unused keys below it.
     pub unused: Vec<Unused>,
     gravity: f64,
-    /// Tables in which names were looked up, with the names at that time.
+    /// Tables in which names were looked up, with the names that they had then.
     names: Vec<(&'static str, Vec<String>)>,
 }
 

@@ -134,7 +134,7 @@ fn turned(v: [f64; 6], axes: &[[f64; 3]; 3], shear: f64) -> [f64; 6] {
     [entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1) / shear, entry(1, 2) / shear, entry(2, 0) / shear]
 }
 
-/// The plane form gives the same stresses and does not allocate.
+/// Checks that the material also works in plane strain and plane stress, without allocations.
 fn planar(recorder: &mut Recorder, subject: &Subject, options: &Options) {
     let Point::Material(law, length) = &subject.point else { return };
     let (mut random, context) = (Random::new(29), [UpdateContext::of_length(*length)]);

@@ -124,7 +124,7 @@ fn extremes(recorder: &mut Recorder, subject: &Subject) {
                             let finite = numbers(&said, &new).iter().all(|x| x.is_finite());
                             recorder.hold_on("finite", finite, &[at], || format!("at {:?} it says {said:?}", &at[..n]));
                         }
-                        // For very large arguments a law may return an error, but it must name one.
+                        // For very large arguments a law may return an error instead of a finite result.
                         Err(why) => {
                             recorder.hold_on("finite", size > 1.0, &[at], || format!("refuses {:?}: {why}", &at[..n]))
                         }

@@ -1,4 +1,4 @@
-//! The scene of a case with its materials and joint laws: plug-ins read from their checked tables.
+//! The scene of a case with its materials and joint laws: plug-ins are read from their checked tables.
 
 use super::diagnostics::DiagnosticList;
 use super::resolved::Resolved;
@@ -8,7 +8,7 @@ use std::sync::Arc;
 use voussoir_core::law::{BulkMaterial, InterfaceLaw};
 use voussoir_core::model::{Assembly, Catalogue, Scene};
 
-/// The plug-in that a checked table configures, or a diagnostic at `key`.
+/// Returns the plug-in that a checked table configures, or a diagnostic at `key`.
 pub(crate) fn read_plugin<T: serde::de::DeserializeOwned>(
     diagnostics: &mut DiagnosticList<'_>,
     key: &str,
@@ -34,7 +34,7 @@ fn read_plugins<T: serde::de::DeserializeOwned>(
     Some(read.collect())
 }
 
-/// Materials and joint laws by name.
+/// Returns materials and joint laws by name.
 pub(super) fn catalogue(diagnostics: &mut DiagnosticList<'_>, resolved: &Resolved) -> Option<Catalogue> {
     let materials: Option<Vec<(String, Box<dyn BulkMaterial>)>> =
         resolved.get("materials").and_then(|tables| read_plugins(diagnostics, "materials", tables));
@@ -46,7 +46,7 @@ pub(super) fn catalogue(diagnostics: &mut DiagnosticList<'_>, resolved: &Resolve
     })
 }
 
-/// The blocks and joints of the scene.
+/// Returns the blocks and joints of the scene.
 pub(super) fn assembly(
     diagnostics: &mut DiagnosticList<'_>,
     resolved: &Resolved,

@@ -21,13 +21,13 @@ use serde_json::Value as Json;
 use std::sync::Arc;
 use voussoir_core::plugin::{PluginKind, card, cards_of, nearest};
 
-/// The load factor is not differentiated with respect to longer lists of numbers: they are data, no parameters.
+/// The load factor is not differentiated with respect to longer lists of numbers: they are data, not parameters.
 const LONGEST: usize = 12;
 
-/// What is known of a top-level key that has the same value in other cases.
+/// Returns the checked value of a top-level key if other cases have the same value.
 pub(super) type KnownKeys<'a> = dyn Fn(&str) -> Option<&'a CheckedKey> + 'a;
 
-/// What is known of a top-level key of all cases of an expansion.
+/// Returns the checked value of a top-level key that all cases of an expansion share.
 pub(super) fn shared_key<'a>(checked: &'a CheckedKeys, expansion: &Expansion, name: &str) -> Option<&'a CheckedKey> {
     checked.get(expansion, case_keys(), name)
 }
@@ -101,7 +101,7 @@ pub(super) fn build_case(id: usize, expanded: Expanded, known: &KnownKeys<'_>) -
 
 type Checked = (Resolved, Vec<LocatedDiagnostic>, Vec<Unused>);
 
-/// The top-level keys with their normalised values, what is wrong with them, and keys without influence.
+/// Returns the top-level keys with their normalised values, the mistakes in them, and unused keys.
 fn check_keys(root: &Node, known: &KnownKeys<'_>) -> Result<Checked, Vec<LocatedDiagnostic>> {
     let mut checker = Checker::new(root);
     let Some(table) = root.table() else {
@@ -109,7 +109,7 @@ fn check_keys(root: &Node, known: &KnownKeys<'_>) -> Result<Checked, Vec<Located
     };
     let keys = study_keys();
     let names: Vec<_> = keys.iter().map(|parameter| parameter.name).collect();
-    // A key that is written wrongly is not missing as well.
+    // A misspelt key is not reported as missing too.
     let mut misspelt = Vec::new();
     for entry in table.entries.iter().filter(|entry| !names.contains(&entry.key.as_str())) {
         misspelt.extend(nearest(&entry.key, names.iter().copied()));
@@ -156,7 +156,7 @@ mod tests {
         load(text, "arch.toml", &[]).unwrap_or_else(|wrong| panic!("{wrong}"))
     }
 
-    /// Whether cases change one key or all, each is the one that its own file gives.
+    /// Each case is equal to the case of its own file, if cases change one key or all keys.
     #[test]
     fn cases_of_a_study_are_those_of_studies_of_one_case() {
         let own = |sets: &[(String, String)]| load(ARCH, "arch.toml", sets).unwrap_or_else(|wrong| panic!("{wrong}"));
@@ -175,7 +175,7 @@ mod tests {
         }
     }
 
-    /// Specific weights follow the gravity of their case, and names the tables of their case.
+    /// Specific weights use the gravity of their case, and names refer to the tables of their case.
     #[test]
     fn what_a_key_depends_on_is_looked_at_in_each_case() {
         let heavy = ARCH.replacen("density = 2200.0", "density = \"22 kN/m3\"", 1);

@@ -1,4 +1,4 @@
-//! Drawings (DXF): polylines become the points of a profile, closed ones blocks, layers materials.
+//! Drawings (DXF): polylines become the points of a profile, closed polylines blocks, layers materials.
 //!
 //! The content of a drawing is separate from the reader of its file (`dxf.rs`).
 
@@ -8,33 +8,33 @@ use std::collections::BTreeMap;
 /// A corner of a polyline.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Corner {
-    /// In units of the drawing.
+    /// Position in units of the drawing.
     pub point: [f64; 2],
-    /// Tangent of a quarter of the angle of the arc to the next corner, positive anticlockwise; 0 of a straight side.
+    /// Tangent of a quarter of the angle of the arc to the next corner, positive anticlockwise; 0 for a straight side.
     pub bulge: f64,
 }
 
 /// A polyline of a drawing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Polyline {
-    /// What it is called in messages: its kind and handle.
+    /// Name in messages: its kind and handle.
     pub entity: String,
     /// Its layer.
     pub layer: String,
-    /// Whether the last corner is joined to the first.
+    /// True if the last corner is joined to the first.
     pub closed: bool,
     /// Its corners in order.
     pub corners: Vec<Corner>,
 }
 
-/// What is used of a drawing.
+/// The used content of a drawing.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Drawing {
-    /// One unit of the drawing \[m\]; `None` where it does not say.
+    /// One unit of the drawing \[m\]; `None` if it is not defined.
     pub unit: Option<f64>,
     /// Its polylines in the order of the file.
     pub polylines: Vec<Polyline>,
-    /// Lines and arcs that belong to no polyline: what they are called, and their layer.
+    /// Lines and arcs that belong to no polyline: their names and layers.
     pub loose: Vec<[String; 2]>,
 }
 
@@ -45,17 +45,17 @@ pub struct DrawnBlock {
     pub name: String,
     /// Its corners \[m\].
     pub vertices: Vec<[f64; 2]>,
-    /// The material of its layer; `None`: that of the scene.
+    /// The material of its layer; `None` for the material of the scene.
     pub material: Option<String>,
-    /// Whether it is ground.
+    /// True if the block is ground.
     pub fixed: bool,
 }
 
 /// The layer whose blocks are ground.
 pub const GROUND: &str = "ground";
-/// The layer that every drawing has: its blocks are of the scene's material.
+/// The layer that every drawing has: its blocks have the material of the scene.
 const UNNAMED: &str = "0";
-/// Arcs are cut into chords of so many degrees at the most.
+/// Greatest angle of a chord of an arc \[°\].
 const CHORD: f64 = 1.0;
 /// Layers of a profile.
 const CURVES: [&str; 2] = ["intrados", "extrados"];
@@ -65,7 +65,7 @@ impl Polyline {
         format!("{} on layer \"{}\"", self.entity, self.layer)
     }
 
-    /// Its points \[m\] with arcs cut into chords; consecutive ones differ.
+    /// Returns the points \[m\], with arcs divided into chords; consecutive points differ.
     fn points(&self, unit: f64) -> Vec<[f64; 2]> {
         let mut points: Vec<[f64; 2]> = Vec::new();
         let count = self.corners.len();
@@ -83,7 +83,7 @@ impl Polyline {
     }
 }
 
-/// Points inside the arc from a corner to the next.
+/// Returns the points inside the arc from a corner to the next.
 fn arc(from: &Corner, to: [f64; 2]) -> Vec<[f64; 2]> {
     let angle = 4.0 * from.bulge.atan();
     if angle == 0.0 {
@@ -91,7 +91,7 @@ fn arc(from: &Corner, to: [f64; 2]) -> Vec<[f64; 2]> {
     }
     let [x, y] = from.point;
     let [dx, dy] = [to[0] - x, to[1] - y];
-    // The centre lies beside the middle of the chord, by cot(angle/2)/2 of its length.
+    // The distance of the centre from the middle of the chord is cot(angle/2)/2 of the length of the chord.
     let beside = 0.5 / (angle / 2.0).tan();
     let centre = [x + dx / 2.0 - dy * beside, y + dy / 2.0 + dx * beside];
     let pieces = (angle.abs().to_degrees() / CHORD).ceil().max(1.0) as usize;
@@ -104,8 +104,8 @@ fn arc(from: &Corner, to: [f64; 2]) -> Vec<[f64; 2]> {
 }
 
 impl Drawing {
-    /// Points of the intrados and the extrados \[m\], each from left to right: those of the one polyline on the layer of that
-    /// name. `unit` \[m\].
+    /// Returns the points of the intrados and the extrados \[m\], each from left to right. Each curve is the only polyline on the
+    /// layer with its name. `unit` \[m\].
     pub fn profile(&self, unit: f64) -> Result<[Vec<[f64; 2]>; 2], Vec<String>> {
         let (mut curves, mut wrong) = ([Vec::new(), Vec::new()], Vec::new());
         for (name, curve) in CURVES.iter().zip(&mut curves) {
@@ -140,8 +140,8 @@ impl Drawing {
         if wrong.is_empty() { Ok(curves) } else { Err(wrong) }
     }
 
-    /// Closed polylines as blocks \[m\]. Their layer is the name of one of the `materials`, or `ground` for blocks that are
-    /// fixed, or `0` for those of the scene's material. `unit` \[m\].
+    /// Returns closed polylines as blocks \[m\]. Their layer is the name of one of the `materials`, or `ground` for fixed blocks,
+    /// or `0` for blocks with the material of the scene. `unit` \[m\].
     pub fn blocks(&self, unit: f64, materials: &[&str]) -> Result<Vec<DrawnBlock>, Vec<String>> {
         let (mut blocks, mut wrong): (Vec<DrawnBlock>, Vec<String>) = (Vec::new(), Vec::new());
         let mut numbers: BTreeMap<&str, usize> = BTreeMap::new();
@@ -199,7 +199,7 @@ mod tests {
         Drawing { unit: Some(1e-3), polylines, loose: Vec::new() }
     }
 
-    /// A profile drawn from right to left in millimetres, its extrados as one arc.
+    /// A profile drawn from right to left in millimetres; its extrados is one arc.
     #[test]
     fn a_profile_is_its_points() {
         let intrados = line("Intrados", false, &[[3000.0, 0.0], [1500.0, 750.0], [0.0, 0.0]]);

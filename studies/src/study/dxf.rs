@@ -1,8 +1,8 @@
 //! DXF files: the polylines of a drawing, and the lines and arcs that belong to no polyline.
 //!
-//! A file is a list of pairs, a group code and a value: two lines of text, or binary. An entity begins with the code 0. The codes that are
-//! read are those of the DXF reference of AutoCAD 2024 (Autodesk): 5 handle, 8 layer, 10 20 30 points, 42 bulge, 67 paper space, 70
-//! flags, 210 220 230 normal.
+//! A file is a list of pairs of a group code and a value, as two lines of text or binary. An entity begins with the code 0.
+//! The codes are those in the DXF reference of AutoCAD 2024 (Autodesk): 5 handle, 8 layer, 10 20 30 points, 42 bulge, 67
+//! paper space, 70 flags, 210 220 230 normal.
 
 use super::drawing::{Corner, Drawing, Polyline};
 
@@ -27,7 +27,7 @@ impl Entity<'_> {
         self.pairs.iter().find(|pair| pair.code == code)
     }
 
-    /// A number; `default` if it is not given. Numbers have been checked.
+    /// Returns a number; `default` if it is not given. Numbers are already checked.
     fn number(&self, code: i32, default: f64) -> f64 {
         self.value(code).and_then(|pair| pair.value.parse().ok()).unwrap_or(default)
     }
@@ -40,7 +40,7 @@ impl Entity<'_> {
         self.value(8).map_or("0", |pair| &pair.value)
     }
 
-    /// The kind, the handle and its line.
+    /// Returns the kind, the handle and its line.
     fn name(&self) -> String {
         match self.value(5) {
             None => self.kind.to_string(),
@@ -53,7 +53,7 @@ impl Entity<'_> {
         format!("{} on layer \"{}\" does not lie in the plane of the drawing", self.name(), self.layer())
     }
 
-    /// The points of a polyline with their bulges.
+    /// Returns the points of a polyline with their bulges.
     fn corners(&self) -> Vec<Corner> {
         let mut corners: Vec<Corner> = Vec::new();
         for pair in self.pairs {
@@ -69,10 +69,10 @@ impl Entity<'_> {
     }
 }
 
-/// The polylines of a DXF file, of which `text` holds the characters, or the bytes as characters.
+/// Returns the polylines of a DXF file. `text` contains its characters, or its bytes as characters.
 ///
 /// # Errors
-/// The mistake, and its line in a file of text.
+/// The mistake, and its line if the file is text.
 pub(super) fn read_drawing(text: &str) -> Result<Drawing, String> {
     let pairs = if text.starts_with(BINARY.trim_end_matches('\0')) { binary_pairs(text)? } else { text_pairs(text)? };
     let mut drawing = Drawing { unit: unit(&pairs), ..Drawing::default() };
@@ -83,7 +83,7 @@ pub(super) fn read_drawing(text: &str) -> Result<Drawing, String> {
         while let Some(vertex) = next.next_if(|next| entity.kind == "POLYLINE" && next.kind == "VERTEX") {
             vertices.push(vertex);
         }
-        // Paper space holds frames and titles.
+        // Paper space contains only frames and titles.
         if entity.number(67, 0.0) == 0.0 {
             add(entity, &vertices, &mut drawing)?;
         }
@@ -91,7 +91,7 @@ pub(super) fn read_drawing(text: &str) -> Result<Drawing, String> {
     Ok(drawing)
 }
 
-/// The pairs of a file of text.
+/// Returns the pairs of a text file.
 fn text_pairs(text: &str) -> Result<Vec<Pair>, String> {
     let lines: Vec<&str> = text.lines().map(str::trim).collect();
     let pair = |(i, pair): (usize, &[&str])| {
@@ -104,7 +104,7 @@ fn text_pairs(text: &str) -> Result<Vec<Pair>, String> {
     lines.chunks_exact(2).enumerate().map(pair).collect()
 }
 
-/// The pairs of a binary file, of which each character is a byte.
+/// Returns the pairs of a binary file; each character is a byte.
 fn binary_pairs(text: &str) -> Result<Vec<Pair>, String> {
     let bytes: Option<Vec<u8>> = text.chars().map(|c| u8::try_from(u32::from(c)).ok()).collect();
     let bytes = bytes.ok_or("a binary DXF file holds bytes that were changed to text: save it as text")?;
@@ -121,7 +121,7 @@ fn binary_pairs(text: &str) -> Result<Vec<Pair>, String> {
     Ok(pairs)
 }
 
-/// The pair at a place, which moves behind it. `None` if the file ends before.
+/// Returns the pair at a position and moves the position behind it. `None` if the file ends before.
 fn binary_pair(bytes: &[u8], at: &mut usize) -> Option<Pair> {
     let mut take = |count: usize| {
         let taken = bytes.get(*at..*at + count)?;
@@ -157,7 +157,7 @@ fn binary_pair(bytes: &[u8], at: &mut usize) -> Option<Pair> {
     Some(Pair { code, value, line: 0 })
 }
 
-/// The entities of the section ENTITIES. `None` if there is no such section, or if it does not end.
+/// Returns the entities of the section ENTITIES. `None` if there is no such section, or if it does not end.
 fn entities(pairs: &[Pair]) -> Option<Vec<Entity<'_>>> {
     let is = |pair: &Pair, code: i32, value: &str| pair.code == code && pair.value == value;
     let start = pairs.windows(2).position(|two| is(&two[0], 0, "SECTION") && is(&two[1], 2, "ENTITIES"))? + 2;
@@ -168,7 +168,7 @@ fn entities(pairs: &[Pair]) -> Option<Vec<Entity<'_>>> {
     Some(begins.iter().zip(ends).map(|(b, e)| Entity { kind: &own[*b].value, pairs: &own[b + 1..e] }).collect())
 }
 
-/// Adds an entity, a POLYLINE with its vertices.
+/// Adds an entity; a POLYLINE with its vertices.
 fn add(entity: &Entity, vertices: &[&Entity], drawing: &mut Drawing) -> Result<(), String> {
     let corners = match entity.kind {
         "LWPOLYLINE" => entity.corners(),
@@ -193,7 +193,7 @@ fn add(entity: &Entity, vertices: &[&Entity], drawing: &mut Drawing) -> Result<(
     Ok(())
 }
 
-/// One unit of a drawing \[m\], by the variable $INSUNITS of the header.
+/// Returns one unit of a drawing \[m\], by the variable $INSUNITS of the header.
 fn unit(pairs: &[Pair]) -> Option<f64> {
     let at = pairs.iter().position(|pair| pair.code == 9 && pair.value == "$INSUNITS")?;
     match pairs.get(at + 1)?.value.as_str() {
@@ -250,7 +250,7 @@ mod tests {
         assert!(why.starts_with("LWPOLYLINE 2A (line 22) on layer \"intrados\" does not lie"), "{why}");
     }
 
-    /// An old POLYLINE with its vertices, and lines in paper space, which are left out.
+    /// An old POLYLINE with its vertices, and lines in paper space, which are ignored.
     #[test]
     fn vertices_belong_to_their_polyline() {
         let vertex = |x: f64, y: f64| format!("0\nVERTEX\n8\nintrados\n10\n{x:?}\n20\n{y:?}\n30\n0.0\n");

@@ -1,10 +1,10 @@
-//! Why there is no study: what a caller of the library is told.
+//! The errors of reading a study.
 
 use crate::config::diagnostic::LocatedDiagnostic;
 use std::path::PathBuf;
 use std::{fmt, io};
 
-/// Why a study cannot be read.
+/// The reason why a study cannot be read.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum StudyError {
@@ -12,15 +12,15 @@ pub enum StudyError {
     File {
         /// The file.
         path: PathBuf,
-        /// What the operating system says.
+        /// The message of the operating system.
         error: io::Error,
     },
-    /// Everything that is wrong with it, each with its place and key.
+    /// All mistakes in the study, each with its place and key.
     Mistakes(Vec<LocatedDiagnostic>),
 }
 
 impl StudyError {
-    /// Everything that is wrong with the study; empty where its file could not be read.
+    /// Returns all mistakes in the study; empty if its file could not be read.
     pub fn mistakes(&self) -> &[LocatedDiagnostic] {
         match self {
             StudyError::File { .. } => &[],

@@ -11,7 +11,7 @@ use voussoir_core::model::{Assembly, Bond, Joint, PointForce, Stage, fill_weight
 /// Depth of the ground behind a support without a shape, as a share of its face.
 const GROUND: f64 = 0.5;
 
-/// The study in TOML. An error says what has no counterpart there.
+/// Returns the study in TOML. The error names the part that the scene `blocks` does not have.
 pub fn as_blocks(case: &Case, name: &str) -> Result<String, String> {
     let assembly = &case.assembly;
     let damage = case.resolved.at("scene.damage").and_then(|list| Vec::<Damage>::deserialize(list).ok());
@@ -40,7 +40,7 @@ pub fn as_blocks(case: &Case, name: &str) -> Result<String, String> {
     Ok(format!("{}{text}", if resists { remark } else { "" }))
 }
 
-/// Numbers that are not there are no keys.
+/// Removes keys with the value `null`.
 fn without_nulls(value: Json) -> Json {
     match value {
         Json::Object(table) => table
@@ -53,8 +53,9 @@ fn without_nulls(value: Json) -> Json {
     }
 }
 
-/// A stage; where fill has weight, before it one with all weights, which its factor does not multiply. They grow together
-/// there, as loads: gravity alone would have to be carried by blocks that do not stand without their fill.
+/// Returns the tables of a stage. If the fill has weight, a stage with all weights comes before it, because the factor of
+/// the stage must not multiply them. In this stage the weights grow together as loads: with gravity alone, blocks would have
+/// to stand without their fill.
 fn stage_tables(assembly: &Assembly, stage: &Stage, table: &Json, gravity: Vec2) -> Vec<Json> {
     let weights = fill_weights(assembly, gravity);
     let point = |force: &PointForce| {
@@ -74,7 +75,7 @@ fn stage_tables(assembly: &Assembly, stage: &Stage, table: &Json, gravity: Vec2)
     vec![json!({ "name": name, "loads": loads }), own]
 }
 
-/// `[scene]`.
+/// Returns the table `[scene]`.
 fn scene(case: &Case) -> Result<Json, String> {
     let assembly = &case.assembly;
     let catalogue = &assembly.catalogue;
@@ -119,7 +120,7 @@ fn scene(case: &Case) -> Result<Json, String> {
     }))
 }
 
-/// A block of ground behind the joints of a support without a shape.
+/// Returns a block of ground behind the joints of a support without a shape.
 fn ground<'a>(body: usize, joints: impl Iterator<Item = &'a Joint>) -> Vec<Vec2> {
     let joints: Vec<&Joint> = joints.collect();
     let Some(first) = joints.first() else { return Vec::new() };

@@ -1,4 +1,4 @@
-//! A study file whose axes are read: the cases are made from here, all of them to be held, or one at a time.
+//! A study file with its axes: makes the cases, all at once or one at a time.
 
 use super::case::{build_case, shared_key};
 use super::diagnostics::located;
@@ -22,30 +22,30 @@ use serde_json::{Map, Value as Json};
 use std::collections::HashMap;
 use voussoir_core::plugin::{KeyValue, Parameter, Shape};
 
-/// Greatest number of cases of a study whose path proofs are written unless it asks for them or refuses them.
+/// Greatest number of cases of a study for which path proofs are written by default.
 const MOST_WITH_PATH_PROOFS: usize = 20;
-/// Greatest number of numbers in the states of a path that are then written: 4 MB.
+/// Greatest number of numbers in the states of a path for which its proof is written by default: 4 MB.
 const SMALL_PATH_PROOF: usize = 200_000;
 /// Greatest number of different mistakes reported.
 const MAX_MISTAKES: usize = 100;
-/// Cases that are made before they are handed over.
+/// Number of cases that are made before they are passed on.
 const AT_ONCE: usize = 64;
 /// Greatest number of different notes of a sweep that are kept.
 const MAX_NOTES: usize = 100;
 
-/// A study file with a scene: variants, scenes and axes are read, no case is made yet.
+/// A study file with a scene: variants, scenes and axes are read; no case is made yet.
 #[derive(Debug)]
 pub struct StudyFile {
     root: Node,
     expansion: Expansion,
     checked: CheckedKeys,
     outline: Outline,
-    /// Found wrong so far.
+    /// Mistakes so far.
     diagnostics: Vec<LocatedDiagnostic>,
 }
 
 impl StudyFile {
-    /// Reads the axes of a source. Mistakes that leave them readable are told with those of the cases.
+    /// Reads the axes of a source. Mistakes that do not affect the axes are reported with the mistakes of the cases.
     pub fn read(source: StudySource) -> Result<Self, StudyError> {
         let StudySource { root, sets, mut diagnostics } = source;
         if kind(kind_of(&root)).is_some_and(|kind| kind.file_keys().is_some()) {
@@ -69,19 +69,19 @@ impl StudyFile {
         check_sets(&sets, &expansion, &mut diagnostics);
         let outline =
             Outline { variants: expansion.variants(), scenes: expansion.scenes(), axes: expansion.axes(), table };
-        // Of a table that holds mistakes nothing more is known.
+        // If the table has mistakes, its content is not checked further.
         if table_is_fine {
             check_outline(&root, &outline, &mut diagnostics);
         }
         Ok(StudyFile { root, expansion, checked: CheckedKeys::default(), outline, diagnostics })
     }
 
-    /// Number of cases.
+    /// Returns the number of cases.
     pub fn count(&self) -> usize {
         self.expansion.count()
     }
 
-    /// The study with all its cases; every mistake at once.
+    /// Returns the study with all its cases. The error contains all mistakes.
     pub fn study(mut self) -> Result<Study, StudyError> {
         let mut cases = Vec::new();
         let few = self.expansion.count() <= MOST_WITH_PATH_PROOFS;
@@ -96,7 +96,7 @@ impl StudyFile {
         Ok(Study { name, kind, outline, output, cases, resolved, expansion, checked })
     }
 
-    /// The study with none of its cases kept; each is made once, so that every mistake is told at once.
+    /// Returns the study without its cases. Each case is made once for its check, so that the error contains all mistakes.
     pub fn sweep(mut self) -> Result<Sweep, StudyError> {
         let (mut first, mut notes) = (None, Vec::new());
         make_cases(&self.expansion, &self.checked, &mut self.diagnostics, |case| {
@@ -110,21 +110,22 @@ impl StudyFile {
         self.sweep_of(first.as_ref()).map(|sweep| Sweep { notes, ..sweep })
     }
 
-    /// The study with none of its cases made but the first: for those who know that [`StudyFile::sweep`] takes it.
+    /// Returns the study without its cases; only the first one is made. The caller must know that [`StudyFile::sweep`] accepts
+    /// the study.
     pub fn sweep_unchecked(mut self) -> Result<Sweep, StudyError> {
         let first = self.expansion.case(0).and_then(|expanded| build_case(0, expanded, &|_| None));
         let first = first.map_err(|wrong| self.diagnostics.extend(wrong)).ok();
         self.sweep_of(first.as_ref())
     }
 
-    /// What does not depend on the cases but the first, or all mistakes.
+    /// Returns the part of the study that does not depend on cases other than the first, or all mistakes.
     fn sweep_of(mut self, first: Option<&Case>) -> Result<Sweep, StudyError> {
         if !self.diagnostics.is_empty() {
             sort(&mut self.diagnostics);
             return Err(self.diagnostics.into());
         }
         let first = first.map(|case| &case.resolved);
-        // A sweep or a variant may have changed it.
+        // A sweep or a variant may have changed the name.
         if let Some(why) = first.and_then(|case| case.read::<String>("name")).as_deref().and_then(no_file_name) {
             return Err(vec![LocatedDiagnostic::new(&self.root.place("name"), "name", why).help(FILE_NAME)].into());
         }
@@ -142,15 +143,15 @@ impl StudyFile {
     }
 }
 
-/// What is written besides the results, from the checked table `[output]`.
+/// Returns the output settings, from the checked table `[output]`.
 fn output(table: &Json, cases: usize) -> Option<Output> {
     let OutputKeys { curve, figures, animation, vtu, path_proofs, .. } = own_keys(table)?;
     let WriterKeys { writers, options } = own_keys(table)?;
     Some(Output { curve, figures: Drawn::of(figures, cases), animation, vtu, path_proofs, writers, options })
 }
 
-/// Makes every case, side by side where the caller works so, and hands them over in order; a mistake that several cases
-/// have stands once, with the first of them where not all have it.
+/// Makes every case, in parallel if the caller does so, and passes them on in order. A mistake that several cases share is
+/// reported once. It names the first of these cases if other cases do not have it.
 fn make_cases(
     expansion: &Expansion,
     checked: &CheckedKeys,
@@ -162,7 +163,7 @@ fn make_cases(
     let mut order: Vec<(LocatedDiagnostic, String)> = Vec::new();
     let known = |name: &str| if count > 1 { shared_key(checked, expansion, name) } else { None };
     let one = |id: &usize| expansion.case(*id).and_then(|expanded| build_case(*id, expanded, &known));
-    // No more at once than fit: a study may have a million.
+    // Cases are made in chunks to bound the memory: a study may have a million cases.
     let chunks = (0..count).step_by(AT_ONCE).map(|from| (from..count.min(from + AT_ONCE)).collect::<Vec<_>>());
     let made = chunks.flat_map(|ids| in_order(&ids, one));
     for (id, result) in made.enumerate() {
@@ -200,7 +201,7 @@ fn check_variants(root: &Node, diagnostics: &mut Vec<LocatedDiagnostic>) {
     diagnostics.append(&mut checker.diagnostics);
 }
 
-/// A swept key that is set on the command line besides.
+/// Reports swept keys that are also set on the command line.
 fn check_sets(sets: &[(String, String)], expansion: &Expansion, diagnostics: &mut Vec<LocatedDiagnostic>) {
     for (path, _) in sets.iter().filter(|(path, _)| expansion.swept().any(|swept| swept == path)) {
         let message = "is swept, so setting it has no effect";
@@ -209,7 +210,7 @@ fn check_sets(sets: &[(String, String)], expansion: &Expansion, diagnostics: &mu
     }
 }
 
-/// The table of the study's kind, checked; a table of another kind is a mistake.
+/// Returns the checked table of the study's kind; the table of another kind is a mistake.
 fn kind_table(root: &Node, diagnostics: &mut Vec<LocatedDiagnostic>) -> Map<String, Json> {
     let (kind, tables, mut own) = (kind_of(root), kind_tables(), Map::new());
     let of_kinds = |parameter: &&Parameter| tables.contains(&parameter.name);
@@ -230,7 +231,7 @@ fn kind_table(root: &Node, diagnostics: &mut Vec<LocatedDiagnostic>) -> Map<Stri
     own
 }
 
-/// What the study's kind finds wrong with its axes and its table.
+/// Adds the mistakes that the study's kind finds in its axes and its table.
 fn check_outline(root: &Node, outline: &Outline, diagnostics: &mut Vec<LocatedDiagnostic>) {
     let Some(kind) = kind(kind_of(root)) else { return };
     diagnostics.extend(kind.check(outline).into_iter().map(|wrong| located(root, wrong)));

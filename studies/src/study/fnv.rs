@@ -3,7 +3,7 @@
 use serde::Serialize;
 use std::io::Write;
 
-/// The hash of what is written to it.
+/// The hash of the written bytes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Fnv(u128);
 
@@ -11,10 +11,10 @@ impl Fnv {
     const OFFSET: u128 = 0x6c62_272e_07bb_0142_62b8_2175_6295_c58d;
     const PRIME: u128 = (1 << 88) + 0x13b;
 
-    /// The hash of a value's JSON.
+    /// Returns the hash of a value's JSON.
     pub fn of(value: &impl Serialize) -> Self {
         let mut hash = Fnv(Fnv::OFFSET);
-        // What hashes does not fail.
+        // Writing to a hash does not fail.
         let _ = serde_json::to_writer(&mut hash, value);
         hash
     }
@@ -29,7 +29,7 @@ impl Fnv {
         self.add(&other.0.to_le_bytes());
     }
 
-    /// In hexadecimal.
+    /// Returns the hash in hexadecimal.
     pub fn text(self) -> String {
         format!("{:032x}", self.0)
     }
@@ -50,7 +50,7 @@ impl Write for Fnv {
 mod tests {
     use super::*;
 
-    /// Values of the draft's test vectors.
+    /// The test vectors of the draft.
     #[test]
     fn hashes_are_those_of_the_draft() {
         let hash = |text: &str| {

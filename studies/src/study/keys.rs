@@ -11,10 +11,11 @@ use voussoir_core::law::{BulkMaterial, InterfaceLaw};
 use voussoir_core::model::Scene;
 use voussoir_core::plugin::{Card, Keys, Need, Parameter, PluginKind, Shape, card, cards_of};
 
-/// `[output]` with the registered writers: which of them write, and a table of options for each that has keys.
+/// Returns the shape of `[output]` with the registered writers: the list of active writers, and a table of options for each
+/// writer that has keys.
 fn output() -> Shape {
     let cards = cards_of(PluginKind::Writer);
-    // Made once, from a registry that lives as long as the program.
+    // Made once, from a registry with the lifetime of the program.
     let tags: &'static [&'static str] = Vec::leak(cards.iter().map(|card| card.tag).collect());
     let tag: &'static Shape = Box::leak(Box::new(Shape::Choice(tags)));
     let with_keys = cards.into_iter().filter(|card| !card.parameters.is_empty());
@@ -31,7 +32,7 @@ fn output() -> Shape {
     Shape::Table(OutputKeys::PARAMETERS.iter().copied().chain(of_writers).collect::<Vec<_>>().leak())
 }
 
-/// Cards of study kinds that read a table of their own, `[compare]` and the like, named as their tag.
+/// Returns the cards of study kinds that have their own table, such as `[compare]`, with their tag as its name.
 fn kinds_with_tables() -> impl Iterator<Item = &'static Card> {
     kinds()
         .into_iter()
@@ -40,19 +41,19 @@ fn kinds_with_tables() -> impl Iterator<Item = &'static Card> {
         .filter(|card| !card.parameters.is_empty())
 }
 
-/// Names of the tables of study kinds, which are no part of a case.
+/// Returns the names of the tables of study kinds, which are not part of a case.
 pub fn kind_tables() -> &'static [&'static str] {
     static TABLES: LazyLock<Vec<&'static str>> = LazyLock::new(|| kinds_with_tables().map(|card| card.tag).collect());
     &TABLES
 }
 
-/// The top-level keys that are part of a case.
+/// Returns the top-level keys that are part of a case.
 pub fn case_keys() -> impl Iterator<Item = &'static Parameter> {
     let apart = |name: &str| ["sweep", "variants"].contains(&name) || kind_tables().contains(&name);
     study_keys().iter().filter(move |parameter| !apart(parameter.name))
 }
 
-/// The keys of a study file: those that every study has, and the table of each study kind that reads one.
+/// Returns the keys of a study file: the keys of every study, and the tables of study kinds.
 pub fn study_keys() -> &'static [Parameter] {
     static KEYS: LazyLock<Vec<Parameter>> = LazyLock::new(|| {
         let table = |card: &Card| {
@@ -71,11 +72,11 @@ pub fn study_keys() -> &'static [Parameter] {
     &KEYS
 }
 
-/// A list of stages, with the registered load kinds.
+/// Returns the shape of the list of stages, with the registered load kinds.
 fn stages() -> Shape {
     let list = Shape::List { of: load_shape(), min: 0, max: usize::MAX };
     let loads = |key: &Parameter| if key.name == "loads" { Parameter { shape: list, ..*key } } else { *key };
-    // Made once, from a registry that lives as long as the program.
+    // Made once, from a registry with the lifetime of the program.
     let stage = Box::leak(Box::new(Shape::Table(Vec::leak(StageTable::PARAMETERS.iter().map(loads).collect()))));
     Shape::List { of: stage, min: 1, max: usize::MAX }
 }

@@ -1,4 +1,4 @@
-//! From the text of a study file to a [`Study`]: every mistake of the whole file at once.
+//! From the text of a study file to a [`Study`]. The error contains all mistakes of the file.
 
 use super::case::{build_case, shared_key};
 use super::error::StudyError;
@@ -12,20 +12,20 @@ use crate::config::origin::Origin;
 use crate::config::overlay::set;
 use serde_json::Value as Json;
 
-/// Reads a study. `file` is its name in messages, `sets` the `--set KEY=VALUE` of the command line;
-/// a value that is no TOML is taken as text.
+/// Reads a study. `file` is its name in messages, `sets` the `--set KEY=VALUE` of the command line; a value that is not
+/// valid TOML is a text.
 pub fn load(text: &str, file: &str, sets: &[(String, String)]) -> Result<Study, StudyError> {
     Study::from_source(StudySource::parse(text, file, sets)?)
 }
 
 impl Study {
-    /// The study that a source describes.
+    /// Returns the study of a source.
     pub fn from_source(source: StudySource) -> Result<Study, StudyError> {
         StudyFile::read(source)?.study()
     }
 
-    /// Case `id` with other values of some keys, numbers or texts, as a study kind needs it that chooses values itself. Its `id`
-    /// and `parameters` are those of the case, with the keys that are set.
+    /// Returns case `id` with other values of some keys, numbers or texts, for study kinds that choose values themselves. Its
+    /// `id` and `parameters` are those in the case, with the changed keys.
     pub fn at(&self, id: usize, values: &[(String, Json)]) -> Result<Case, StudyError> {
         let mut expanded = self.expansion.case(id)?;
         for (key, value) in values {
@@ -45,7 +45,7 @@ impl Study {
 }
 
 impl Sweep {
-    /// Case `id < count()`.
+    /// Returns case `id < count()`.
     pub fn case(&self, id: usize) -> Result<Case, StudyError> {
         Ok(build_case(id, self.expansion.case(id)?, &|name| shared_key(&self.checked, &self.expansion, name))?)
     }

@@ -1,7 +1,7 @@
-//! Studies: what the keys of a study file mean, and the cases it becomes.
+//! Studies: the meaning of the keys of a study file, and its cases.
 //!
-//! [`study_keys`] is the schema of the file, [`load`](load()) the way from text to [`Study`]. Every mistake of
-//! the whole file is reported at once. Solving the cases is not done here.
+//! [`study_keys`] is the schema of the file; [`load`](load()) converts text into a [`Study`]. All mistakes of the file are
+//! reported at once. Cases are solved elsewhere, in [`crate::solve`].
 
 mod assemble;
 mod builder;

@@ -1,5 +1,4 @@
-//! A study as it was read: its cases, each with everything that is needed to solve it. How it is read
-//! stands in [`super::load`].
+//! A study after reading: its cases, each with all data that are needed to solve it. [`super::load`] reads it.
 
 use super::fnv::Fnv;
 use super::numeric_keys::NumericKey;
@@ -15,10 +14,10 @@ use voussoir_core::limit::LimitSolver;
 use voussoir_core::model::{Assembly, Stage};
 use voussoir_core::path::{PathSettings, PathSolver};
 
-/// Who solves a case.
+/// The solver of a case.
 #[derive(Debug, Clone)]
 pub enum SelectedSolver {
-    /// The cheapest that answers, chosen by the cards of solvers.
+    /// Chosen automatically: the fastest solver that supports the case, by the cards of the solvers.
     Auto,
     /// This limit solver, with its tag.
     Limit(String, Arc<dyn LimitSolver>),
@@ -26,25 +25,25 @@ pub enum SelectedSolver {
     Path(String, Arc<dyn PathSolver>),
 }
 
-/// How a case is to be solved: `[solver]`, built.
+/// The table `[solver]` with its plug-ins.
 #[derive(Debug, Clone)]
 pub struct SolverChoice {
-    /// Who solves it.
+    /// The solver of the case.
     pub solver: SelectedSolver,
-    /// What a path solver is told; its tolerance is that of certificates too.
+    /// Settings of a path solver; certificates use the same tolerance.
     pub settings: PathSettings,
-    /// Who solves a stage that names its own limit solver, by index.
+    /// The solver of each stage, by index; `None` if the stage does not name a limit solver.
     pub of_stages: Vec<Option<SelectedSolver>>,
 }
 
-/// One case, ready to be solved.
+/// One case with all data for its solution.
 #[derive(Debug, Clone)]
 pub struct Case {
     /// Index from 0, variants outermost.
     pub id: usize,
     /// Name of its variant, if the study has variants.
     pub variant: Option<String>,
-    /// Name of its scene, where the study compares several.
+    /// Name of its scene, if the study compares several.
     pub scene: Option<String>,
     /// Swept key → value.
     pub parameters: Map<String, Json>,
@@ -52,41 +51,42 @@ pub struct Case {
     pub assembly: Assembly,
     /// Loads, stage by stage.
     pub stages: Vec<Stage>,
-    /// How it is to be solved.
+    /// Solver and settings.
     pub solver: SolverChoice,
-    /// Whether force-displacement points are asked for.
+    /// True if force-displacement points are requested.
     pub output_curve: bool,
-    /// How many states of a path are kept.
+    /// Number of states of a path that are kept.
     pub output_states: usize,
-    /// Numbers with respect to which the load factor is differentiated; none unless that is asked for.
+    /// Numbers with respect to which the load factor is differentiated; empty unless this is requested.
     pub output_sensitivities: Vec<NumericKey>,
-    /// Whether the error of the load factor is estimated.
+    /// True if the error of the load factor is estimated.
     pub output_accuracy: bool,
     /// True if results describe a load that is carried: forces of joints, reserve.
     pub output_joints: bool,
-    /// For which of these loads results have the zone of thrust.
+    /// Selects the carried loads for which results contain the zone of thrust.
     pub output_zone: ZoneOfThrust,
-    /// Whether results keep the forces and motions that prove them.
+    /// True if results contain the forces and motions that prove them.
     pub output_fields: bool,
-    /// Most numbers in the states of a path for which they are kept with the witnesses that prove its end; 0 keeps none.
+    /// Greatest number of numbers in the states of a path for which the states and the witnesses of its end are kept; 0 keeps
+    /// none.
     pub output_path_proofs: usize,
-    /// Keys that were given and have no influence.
+    /// Notes, such as keys that are given but unused.
     pub notes: Vec<String>,
-    /// One of many made from another case, which has the weights that both have: its results leave them out.
+    /// True for one of many cases made from another case: its results omit the weights that both share.
     pub brief: bool,
     /// The case's own study file: numbers in SI units, defaults filled in.
     pub resolved: Resolved,
 }
 
 impl Case {
-    /// The hash of this case in results of this program.
+    /// Returns the hash of this case in results of this program.
     pub fn hash(&self) -> String {
         self.hash_in(this_program())
     }
 
-    /// A hash of this case: commit, sources and plug-ins of the program, its label and its whole resolved study. It has 128
-    /// bits of FNV-1a in hexadecimal. Tables enter with their own hashes, which cases share. It finds confused cases, not
-    /// forged ones.
+    /// Returns a hash of this case: commit, sources and plug-ins of the program, its label and its whole resolved study. It is
+    /// 128 bits of FNV-1a in hexadecimal. Tables contribute their own hashes, which cases share. The hash detects confused
+    /// cases, not forged ones.
     pub fn hash_in(&self, origin: &Origin) -> String {
         let label = (self.id, &self.variant, &self.scene, &self.parameters);
         let mut hash = Fnv::of(&(origin.program(), label));
@@ -95,35 +95,35 @@ impl Case {
     }
 }
 
-/// For which loads that are carried a result has the zone of thrust.
+/// Selects the carried loads for which a result contains the zone of thrust.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum ZoneOfThrust {
-    /// For none.
+    /// No zone is computed.
     #[default]
     Never,
-    /// For scenes whose zone costs little.
+    /// Scenes whose zone is cheap to compute.
     Cheap,
-    /// For all.
+    /// All carried loads.
     Always,
 }
 
-/// Which cases of a study are drawn, in figures and in the report.
+/// Selects the cases of a study that are drawn, in figures and in the report.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Drawn {
-    /// Every one.
+    /// All cases.
     #[default]
     All,
-    /// The worst of each variant.
+    /// The worst case of each variant.
     Worst,
-    /// None.
+    /// No case.
     Nothing,
 }
 
 impl Drawn {
-    /// Cases up to which all are drawn where a study does not say.
+    /// Greatest number of cases that are all drawn by default.
     const MOST: usize = 50;
 
-    /// The value of the key `figures` in a study with this number of cases.
+    /// Returns the value of the key `figures` for a study with this number of cases.
     pub(crate) fn of(key: Figures, cases: usize) -> Drawn {
         match key {
             Figures::Any(false) | Figures::These(DrawnWord::None) => Drawn::Nothing,
@@ -134,50 +134,49 @@ impl Drawn {
         }
     }
 
-    /// Whether anything is drawn.
+    /// Returns true if some case is drawn.
     pub fn anything(self) -> bool {
         self != Drawn::Nothing
     }
 }
 
-/// What is written besides the results.
+/// Output besides the results.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Output {
     /// Force-displacement points.
     pub curve: bool,
-    /// Which cases are drawn.
+    /// Selection of the cases that are drawn.
     pub figures: Drawn,
-    /// The load of an envelope on its way.
+    /// True if an envelope has a drawing of its moving load.
     pub animation: bool,
-    /// Files for ParaView.
+    /// True if files for ParaView are written.
     pub vtu: bool,
-    /// True if path_proofs.jsonl is asked for, false if it is not wanted; `None` leaves it to the number of cases.
+    /// True if path_proofs.jsonl is written, false if not; `None` decides by the number of cases.
     pub path_proofs: Option<bool>,
-    /// Tags of the writers that are wanted; all where there is no list.
+    /// Tags of the requested writers; `None` for all.
     pub writers: Option<Vec<String>>,
     /// Options of writers by tag, defaults filled in.
     pub options: Map<String, Json>,
 }
 
-/// A study file that holds no mistake.
+/// A study file without mistakes.
 #[derive(Debug, Clone)]
 pub struct Study {
     /// Its name.
     pub name: String,
-    /// What is done with the cases: the tag of a study kind.
+    /// Tag of the study kind.
     pub kind: String,
-    /// Its axes and the table of its kind.
+    /// Axes of the study and the table of its kind.
     pub outline: Outline,
-    /// What is written.
+    /// Output settings.
     pub output: Output,
     /// All cases in order.
     pub cases: Vec<Case>,
-    /// The file with `--set` applied. Values stand as they were written and defaults are not filled
-    /// in, because a variant may change what a default or a specific weight means; read again, it
-    /// makes exactly the same cases.
+    /// The file with `--set` applied. Values are unchanged and defaults are not filled in, because a variant may change the
+    /// meaning of a default or of a specific weight. If this file is read again, it gives exactly the same cases.
     pub resolved: toml::Value,
-    /// Its base, variants, scenes and axes, from which cases are made.
+    /// Base, variants, scenes and axes, from which cases are made.
     pub(crate) expansion: Expansion,
-    /// What all of them share.
+    /// Checked keys that all cases share.
     pub(super) checked: CheckedKeys,
 }

@@ -1,5 +1,5 @@
-//! The numbers of a checked case by dotted key, with what the schema says of each: for sliders, and for derivatives
-//! of a load factor.
+//! The numbers of a checked case by dotted key, with their description in the schema. Sliders and derivatives of the load
+//! factor use them.
 
 use crate::config::common_keys::common_parameters;
 use crate::config::dotted_key::join;
@@ -7,36 +7,36 @@ use crate::config::key_meaning::outer_form;
 use serde_json::Value as Json;
 use voussoir_core::plugin::{Parameter, PluginKind, Quantity, Range, Shape, candidate};
 
-/// Tables of a study file whose numbers say what stands there and what it carries; not how it is solved or written.
+/// Tables of a study file whose numbers describe structure and loads, not solution or output.
 const TABLES: [&str; 6] = ["scene", "materials", "joints", "vehicles", "stages", "factors"];
-/// Tables below these that steer solvers.
+/// Tables below these that control solvers.
 const STEERING: [&str; 5] = ["continuation", "stop", "solver", "factor_min", "factor_max"];
 
-/// What values a number may take.
+/// The values that a number may have.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum NumberKind {
-    /// Any number of a range, in the quantity's unit.
+    /// A real number in a range, in the unit of the quantity.
     Real(Quantity, Range),
-    /// A whole number between two.
+    /// A whole number from a least to a greatest value.
     Whole(i64, i64),
 }
 
 /// A number of a case.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NumericKey {
-    /// Its dotted key; entries of lists by index.
+    /// Its dotted key, with indices for entries of lists.
     pub key: String,
-    /// What it may be.
+    /// Type and range.
     pub kind: NumberKind,
-    /// What it is, in SI units; `None` for a key that is optional and not given.
+    /// Value in SI units; `None` if the key is optional and not given.
     pub value: Option<f64>,
-    /// What the schema says of it.
+    /// Description in the schema.
     pub doc: &'static str,
 }
 
-/// The numbers of a checked case ([`super::Case::resolved`]) in the order of the schema. Optional numbers that are
-/// not given are listed too where they stand in a table by themselves. Lists of more than `longest` numbers or
-/// tables are left out: they are data, not parameters. `keys` are those of study files ([`super::study_keys`]).
+/// Returns the numbers of a checked case ([`super::Case::resolved`]) in the order of the schema. Optional numbers that are
+/// not given are listed too, if they are keys of a table. Lists of more than `longest` numbers or tables are omitted: they
+/// are data, not parameters. `keys` are the keys of study files ([`super::study_keys`]).
 pub fn numeric_keys(keys: &[Parameter], resolved: &Json, longest: usize) -> Vec<NumericKey> {
     let mut walk = Walk { longest, found: Vec::new() };
     for parameter in keys.iter().filter(|parameter| TABLES.contains(&parameter.name)) {
@@ -119,7 +119,8 @@ impl Walk {
     }
 }
 
-/// The number that a key may hold by itself; a whole number that is not given counts something else.
+/// Returns the type of a key that is a plain number. An optional whole number that is not given is no parameter: its absence
+/// has another meaning.
 fn plain_number(shape: &Shape) -> Option<NumberKind> {
     match shape {
         Shape::Number(quantity, range) => Some(NumberKind::Real(*quantity, *range)),

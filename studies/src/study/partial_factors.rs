@@ -1,7 +1,7 @@
-//! Partial factors: from the characteristic values of a study to the design values that are computed with.
+//! Partial factors: from the characteristic values of a study to the design values of the computation.
 //!
-//! The resolved case keeps what was written; blocks, joints, fill and loads are built from its design values. Weights and
-//! loads are multiplied, strengths and coefficients of friction are divided.
+//! The resolved case keeps the characteristic values; blocks, joints, fill and loads are built from the design values.
+//! Weights and loads are multiplied, strengths and coefficients of friction are divided.
 
 use super::diagnostics::DiagnosticList;
 use super::resolved::Resolved;
@@ -61,7 +61,7 @@ pub struct Factors {
     backing_strength: Option<f64>,
 }
 
-/// Which numbers of a table a factor changes.
+/// The numbers of a table that a factor changes.
 enum Change {
     Times,
     Over,
@@ -78,7 +78,7 @@ impl Change {
     }
 }
 
-/// The tables under a dotted path, in which `*` stands for every entry of a table or a list.
+/// Applies `act` to the tables under a dotted path; `*` matches every entry of a table or a list.
 fn each<'a>(value: &'a mut Json, path: &str, act: &mut dyn FnMut(&mut Json)) {
     let (first, rest) = path.split_once('.').map_or((path, None), |(first, rest)| (first, Some(rest)));
     let mut next = |value: &mut Json| match rest {
@@ -97,7 +97,7 @@ fn each<'a>(value: &'a mut Json, path: &str, act: &mut dyn FnMut(&mut Json)) {
     }
 }
 
-/// What each factor changes.
+/// The numbers that each factor changes.
 const CHANGES: &[(&str, &str, Change)] = &[
     ("masonry_weight", "materials.*.density", Change::Times),
     ("fill_weight", "scene.fill.density", Change::Times),
@@ -116,7 +116,7 @@ const CHANGES: &[(&str, &str, Change)] = &[
     ("backing_strength", "scene.fill.haunching.strength", Change::Over),
 ];
 
-/// The tables of a checked case with its design values; factors that change nothing are noted.
+/// Returns the tables of a checked case with its design values. Adds a note for factors that change nothing.
 pub fn design<'a>(resolved: &'a Resolved, notes: &mut Vec<String>) -> Cow<'a, Resolved> {
     let Some(factors) = resolved.get("factors").and_then(Json::as_object) else { return Cow::Borrowed(resolved) };
     let mut out = resolved.clone();
@@ -147,7 +147,7 @@ pub fn design<'a>(resolved: &'a Resolved, notes: &mut Vec<String>) -> Cow<'a, Re
     Cow::Owned(out)
 }
 
-/// Joint laws that cannot be with their design values, and stages that do not exist.
+/// Reports joint laws that are not valid with their design values, and stages that do not exist.
 pub(super) fn check(
     diagnostics: &mut DiagnosticList<'_>,
     resolved: &Resolved,
@@ -191,7 +191,7 @@ pub(super) fn multiply_loads(stages: &mut [Stage], resolved: &Resolved) {
     }
 }
 
-/// What a user should know of factors on strengths where blocks yield by laws of their own.
+/// Adds a note if factors on strengths are given and blocks have a yielding material, which the factors do not change.
 pub(super) fn note_of_yielding(assembly: &Assembly, resolved: &Resolved, notes: &mut Vec<String>) {
     let given = resolved.read::<Factors>("factors").is_some_and(|own| {
         [own.friction, own.cohesion, own.tensile_strength, own.compressive_strength].iter().any(Option::is_some)

@@ -1,4 +1,4 @@
-//! Warnings: what can be computed and is hardly meant. They become notes of the case, not mistakes.
+//! Warnings: input that can be computed but is probably not meant. They become notes of the case, not mistakes.
 
 use super::resolved::Resolved;
 use crate::config::common_keys::tag_of;
@@ -9,20 +9,20 @@ use voussoir_core::model::geometry::{Vec2, bounding_box};
 use voussoir_core::model::{Assembly, Body, Joint, Stage, Target, root};
 use voussoir_core::plugin::PluginKind;
 
-/// Densities of masonry and its fills \[kg/m³\].
+/// Plausible densities of masonry and fill \[kg/m³\].
 const DENSITIES: [f64; 2] = [1000.0, 3500.0];
-/// Friction from which it is doubted: an angle of 56°.
+/// Greatest plausible coefficient of friction: an angle of 56°.
 const FRICTION: f64 = 1.5;
-/// Angle of friction of a fill below which it is doubted \[°\].
+/// Least plausible angle of friction of a fill \[°\].
 const FILL_FRICTION: f64 = 2.0;
-/// Share of the scene's size below which an opening between blocks is doubted.
+/// An opening between blocks that is smaller than this share of the scene's size causes a warning.
 const GAP: f64 = 1e-3;
-/// Sine of the angle between edges that face each other, at most.
+/// Greatest sine of the angle between edges that face each other.
 const SLANT: f64 = 0.05;
-/// Names listed before the others are counted.
+/// Greatest number of names in a warning; further ones are counted.
 const LISTED: usize = 3;
 
-/// What is hardly meant in a case, from its checked study and its scene.
+/// Returns the warnings of a case, from its checked study and its scene.
 pub(super) fn warnings(resolved: &Resolved, assembly: &Assembly, stages: &[Stage]) -> Vec<String> {
     let mut found = Vec::new();
     densities(assembly, &mut found);
@@ -46,7 +46,7 @@ pub(super) fn warnings(resolved: &Resolved, assembly: &Assembly, stages: &[Stage
     {
         found.push(format!("scene.thickness = {thickness} m is more than the span of {span} m"));
     }
-    // Other scenes make their joints themselves.
+    // Other scenes create their joints themselves.
     if resolved.get("scene").is_some_and(|scene| tag_of(PluginKind::Scene, scene) == "blocks") {
         small_gaps(assembly, &mut found);
         floating(assembly, &mut found);
@@ -72,7 +72,7 @@ fn densities_of_fill(fill: &Fill, found: &mut Vec<String>) {
     found.extend(given.filter_map(|(key, density)| doubted(&format!("scene.fill.{key}"), density)));
 }
 
-/// Angles of friction of a fill that are so small that they may be radians or coefficients.
+/// Warns of angles of friction of a fill that are so small that they may be radians or coefficients.
 fn frictions_of_fill(fill: &Fill, found: &mut Vec<String>) {
     let layers = fill.layers.iter().enumerate();
     let layers = layers.map(|(i, layer)| (format!("layers.{i}.friction_angle"), layer.friction_angle));
@@ -86,7 +86,7 @@ fn frictions_of_fill(fill: &Fill, found: &mut Vec<String>) {
     }
 }
 
-/// Loads that point upwards, and supports of arches that move further than the ring is thick.
+/// Warns of loads that point upwards, and of supports of arches that move further than the thickness of the ring.
 fn doubted_stage(index: usize, stage: &Stage, assembly: &Assembly, found: &mut Vec<String>) {
     let sense = match stage.target {
         Target::Factor(factor) => factor,
@@ -115,7 +115,7 @@ fn doubted_stage(index: usize, stage: &Stage, assembly: &Assembly, found: &mut V
     }
 }
 
-/// What is said of a density that masonry and its fill hardly have; what is weightless is meant.
+/// Returns a warning if a density is unusual for masonry and fill; zero is intended and gives none.
 fn doubted(key: &str, density: f64) -> Option<String> {
     let help = if (10.0..40.0).contains(&density) {
         format!("; a specific weight is written \"{density} kN/m3\"")
@@ -129,13 +129,13 @@ fn doubted(key: &str, density: f64) -> Option<String> {
     })
 }
 
-/// The greatest distance of two edges over the length on which they face each other; `None` where they do not, or
-/// touch.
+/// Returns the greatest distance of two edges over the length on which they face each other; `None` if they do not face each
+/// other, or if they touch.
 fn facing([a, b]: [Vec2; 2], [c, d]: [Vec2; 2], size: f64) -> Option<f64> {
     let length = (b - a).norm();
     let along = (b - a) / length;
     let (across, other) = (Vec2::new(-along.y, along.x), d - c);
-    // Both polygons run the same way round: facing edges run against each other.
+    // Both polygons have the same orientation: facing edges have opposite directions.
     if other.dot(&along) >= 0.0 || other.dot(&across).abs() > SLANT * other.norm() {
         return None;
     }
@@ -154,7 +154,7 @@ fn edges(body: &Body) -> impl Iterator<Item = [Vec2; 2]> {
     (0..body.vertices.len()).map(|i| [body.vertices[i], body.vertices[(i + 1) % body.vertices.len()]])
 }
 
-/// Blocks that nearly touch and share no joint.
+/// Warns of blocks that nearly touch and share no joint.
 fn small_gaps(assembly: &Assembly, found: &mut Vec<String>) {
     let size = assembly.size();
     let boxes: Vec<(usize, Vec2, Vec2)> = (0..assembly.bodies.len())
@@ -195,7 +195,7 @@ fn small_gaps(assembly: &Assembly, found: &mut Vec<String>) {
     }
 }
 
-/// Free blocks that no chain of joints leads from to the ground.
+/// Warns of free blocks without a chain of joints to the ground.
 fn floating(assembly: &Assembly, found: &mut Vec<String>) {
     let mut parent: Vec<usize> = (0..assembly.bodies.len()).collect();
     for joint in &assembly.joints {

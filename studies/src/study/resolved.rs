@@ -1,4 +1,4 @@
-//! The tables of a checked case by name. Those that cases of a study have in common are held, and hashed, once.
+//! The tables of a checked case by name. Tables that cases share are stored and hashed once.
 
 use super::fnv::Fnv;
 use serde::de::DeserializeOwned;
@@ -25,17 +25,17 @@ impl From<Json> for CheckedValue {
 pub struct Resolved(Vec<(&'static str, Arc<CheckedValue>)>);
 
 impl Resolved {
-    /// Adds a key that is not there yet.
+    /// Adds a new key.
     pub(super) fn insert(&mut self, name: &'static str, value: Arc<CheckedValue>) {
         self.0.push((name, value));
     }
 
-    /// Takes a key away.
+    /// Removes a key.
     pub(super) fn remove(&mut self, name: &str) {
         self.0.retain(|(own, _)| *own != name);
     }
 
-    /// The value of a key, to be changed in this case alone.
+    /// Returns the value of a key for changes in this case alone.
     pub(super) fn get_mut(&mut self, name: &str) -> Option<&mut Json> {
         let (_, checked) = self.0.iter_mut().find(|(own, _)| *own == name)?;
         let checked = Arc::make_mut(checked);
@@ -51,17 +51,17 @@ impl Resolved {
         }
     }
 
-    /// The value of a top-level key.
+    /// Returns the value of a top-level key.
     pub fn get(&self, name: &str) -> Option<&Json> {
         self.0.iter().find(|(own, _)| *own == name).map(|(_, checked)| &checked.value)
     }
 
-    /// The value of a top-level key as a type; `None` if it is absent or no such value.
+    /// Returns the value of a top-level key as a type; `None` if it is absent or has another form.
     pub fn read<T: DeserializeOwned>(&self, name: &str) -> Option<T> {
         T::deserialize(self.get(name)?).ok()
     }
 
-    /// The value at a dotted path; entries of lists by index.
+    /// Returns the value at a dotted path with indices for entries of lists.
     pub fn at(&self, path: &str) -> Option<&Json> {
         let mut keys = path.split('.');
         let table = self.get(keys.next()?)?;
@@ -71,12 +71,12 @@ impl Resolved {
         })
     }
 
-    /// All names with their values.
+    /// Returns all names with their values.
     pub fn iter(&self) -> impl Iterator<Item = (&'static str, &Json)> {
         self.0.iter().map(|(name, checked)| (*name, &checked.value))
     }
 
-    /// All of it as one value.
+    /// Returns all values as one table.
     pub fn to_json(&self) -> Json {
         Json::Object(self.iter().map(|(name, value)| (name.to_string(), value.clone())).collect::<Map<_, _>>())
     }
@@ -88,7 +88,7 @@ impl PartialEq for Resolved {
     }
 }
 
-/// The value of a key that may be absent: `null` then.
+/// Returns the value of a key that may be absent; `null` if it is.
 impl Index<&str> for Resolved {
     type Output = Json;
 

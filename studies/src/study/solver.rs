@@ -1,5 +1,5 @@
-//! `[solver]` of a case: which solver it names, what that solver needs of the laws, and the solver itself,
-//! built. A table that cannot be read is a mistake, never silently another solver.
+//! `[solver]` of a case: the chosen solver, the check of its requirements on the laws, and its construction. A table that
+//! cannot be read is a mistake; it never selects another solver silently.
 
 use super::diagnostics::DiagnosticList;
 use super::model::{SelectedSolver, SolverChoice};
@@ -26,7 +26,7 @@ fn or_none(tags: &[&str]) -> String {
     if tags.is_empty() { "none registered".into() } else { tags.join(", ") }
 }
 
-/// The solver that is asked for, and a mistake for each thing it needs and does not get.
+/// Returns the requested solver. Reports a mistake for each requirement that is not met.
 pub(super) fn choose_solver(
     diagnostics: &mut DiagnosticList<'_>,
     solver: &Json,
@@ -60,7 +60,7 @@ pub(super) fn choose_solver(
     Some(SolverChoice { solver: built?, settings: settings?, of_stages: own })
 }
 
-/// The solver of a stage that names its own. A path is followed by one solver from its first stage to its last.
+/// Returns the solver of a stage that names its own. A path has one solver from its first stage to its last.
 fn stage_solver(
     diagnostics: &mut DiagnosticList<'_>,
     stage: &StageTable,
@@ -90,7 +90,7 @@ fn stage_solver(
     Some(SelectedSolver::Limit(tag.to_string(), Arc::from(solver)))
 }
 
-/// What each stage asks a path solver for besides.
+/// Returns the additional settings of each stage for a path solver.
 fn stage_settings(diagnostics: &mut DiagnosticList<'_>, stages: &[StageTable]) -> Option<Vec<StageSettings>> {
     let one = |(index, stage): (usize, &StageTable)| -> Option<StageSettings> {
         let stop = stage.stop.map(|Stop { displacement, factor }| [displacement, factor]);
@@ -102,7 +102,7 @@ fn stage_settings(diagnostics: &mut DiagnosticList<'_>, stages: &[StageTable]) -
     stages.iter().enumerate().map(one).collect()
 }
 
-/// The continuation strategy of a table, where there is one; `None` where it cannot be read.
+/// Returns the continuation strategy of a table, if it has one; `None` if it cannot be read.
 fn strategy(
     diagnostics: &mut DiagnosticList<'_>,
     table: Option<&Json>,
@@ -114,7 +114,7 @@ fn strategy(
     Some(Some(Arc::from(strategy)))
 }
 
-/// The solver that the table configures; without a card it is `auto`.
+/// Returns the solver that the table configures; without a card it is `auto`.
 fn build_solver(diagnostics: &mut DiagnosticList<'_>, solver: &Json, chosen: Option<&Card>) -> Option<SelectedSolver> {
     let Some(card) = chosen else { return Some(SelectedSolver::Auto) };
     let mut table = solver.as_object()?.clone();
@@ -129,7 +129,7 @@ fn build_solver(diagnostics: &mut DiagnosticList<'_>, solver: &Json, chosen: Opt
     }
 }
 
-/// What a path solver is told.
+/// Returns the settings of a path solver.
 fn build_settings(
     diagnostics: &mut DiagnosticList<'_>,
     common: &SolverKeys,
@@ -147,8 +147,8 @@ fn build_settings(
     })
 }
 
-/// The plug-in that a table configures; else a diagnostic at the key that its reader does not take, with the
-/// nearest right name.
+/// Returns the plug-in that a table configures, or a diagnostic at the key that its reader refuses, with the nearest valid
+/// name.
 fn read_solver<T: serde::de::DeserializeOwned>(
     diagnostics: &mut DiagnosticList<'_>,
     at: &str,
@@ -160,7 +160,7 @@ fn read_solver<T: serde::de::DeserializeOwned>(
         Ok(plugin) => return Some(plugin),
         Err(error) => error,
     };
-    // The key without which the reader says something else.
+    // The key without which the reader returns another message.
     let culprit = table.as_object().into_iter().flatten().map(|(key, _)| key).find(|key| {
         let mut rest = table.clone();
         rest.as_object_mut().map(|rest| rest.remove(*key));
@@ -190,7 +190,7 @@ fn needs_finite_displacements(diagnostics: &mut DiagnosticList<'_>, tag: &str, c
     diagnostics.wrong("solver.kinematics", message, "set kinematics = \"small\"");
 }
 
-/// What a solver asks of laws and materials, against what their cards give.
+/// Compares the requirements of a solver on laws and materials with their cards.
 fn needs_capabilities(
     diagnostics: &mut DiagnosticList<'_>,
     tag: &str,
@@ -198,7 +198,7 @@ fn needs_capabilities(
     resolved: &Resolved,
     assembly: &Assembly,
 ) {
-    // `auto` needs at least what every solver needs.
+    // `auto` has at least the requirements that all solvers share.
     static EVERYONE: LazyLock<Vec<Requirement>> = LazyLock::new(|| {
         let all = cards_of(PluginKind::LimitSolver).into_iter().flat_map(|card| card.requires);
         all.filter(|need| solvers_that(|solver| !solver.requires.contains(need)).is_empty()).copied().collect()
@@ -226,7 +226,7 @@ fn needs_capabilities(
     }
 }
 
-/// What only a path answers needs something that deforms, and no limit analysis.
+/// Output that only a path provides needs a deformable part, and no limit analysis.
 fn needs_deformation(
     diagnostics: &mut DiagnosticList<'_>,
     stages: &[StageTable],
@@ -267,7 +267,7 @@ fn needs_deformation(
     }
 }
 
-/// Keys that no limit analysis reads.
+/// Returns the keys that no limit analysis reads.
 pub(super) fn unused_by_limit_analysis(resolved: &Resolved, stages: &[StageTable]) -> Vec<String> {
     let mut notes = Vec::new();
     for (name, law) in resolved.get("joints").and_then(Json::as_object).into_iter().flatten() {

@@ -1,4 +1,4 @@
-//! The text of a study file, read and with the `--set KEY=VALUE` of the command line in it.
+//! The text of a study file, parsed, with the `--set KEY=VALUE` of the command line.
 
 use super::error::StudyError;
 use super::survey::{ReadFile, import, no_files};
@@ -10,25 +10,25 @@ use crate::config::origin::Origin;
 use crate::config::overlay::set;
 use serde_json::Value as Json;
 
-/// A study file as a tree of keys, and what was found wrong with it so far.
+/// A study file as a tree of keys, and the mistakes so far.
 #[derive(Debug, Clone)]
 pub struct StudySource {
     /// The whole file.
     pub root: Node,
     /// Keys set on the command line, with their values.
     pub sets: Vec<(String, String)>,
-    /// Found wrong so far.
+    /// Mistakes so far.
     pub diagnostics: Vec<LocatedDiagnostic>,
 }
 
 impl StudySource {
-    /// Reads a study file. `file` is its name in messages, `sets` the `--set KEY=VALUE` of the command line;
-    /// a value that is no TOML is taken as text. Errors are those of syntax.
+    /// Reads a study file. `file` is its name in messages, `sets` the `--set KEY=VALUE` of the command line; a value that is not
+    /// valid TOML is a text. The error contains syntax errors.
     pub fn parse(text: &str, file: &str, sets: &[(String, String)]) -> Result<Self, StudyError> {
         Self::parse_with(text, file, sets, &no_files)
     }
 
-    /// As [`StudySource::parse`]; the files that the study names are read by `read`.
+    /// Like [`StudySource::parse`]; `read` reads the files that the study names.
     pub fn parse_with(text: &str, file: &str, sets: &[(String, String)], read: ReadFile) -> Result<Self, StudyError> {
         let mut source = StudySource { root: parse(text, file)?, sets: sets.to_vec(), diagnostics: Vec::new() };
         for (path, value) in sets {
@@ -38,8 +38,8 @@ impl StudySource {
         source.complete(read)
     }
 
-    /// A study from a value that a program has made, with the tables and keys of a study file; then `sets`, keys
-    /// and values in order. Errors are values that no study can hold.
+    /// Returns a study from a value that a program has made, with the tables and keys of a study file. Then `sets` are applied,
+    /// keys and values in order. The error lists values that no study can contain.
     pub fn of_value(value: &Json, sets: &[(String, Json)]) -> Result<Self, StudyError> {
         let mut source = StudySource { root: from_json(value)?, sets: Vec::new(), diagnostics: Vec::new() };
         for (path, value) in sets {
@@ -52,8 +52,8 @@ impl StudySource {
         self.diagnostics.extend(set(&mut self.root, path, value, origin).err().map(|wrong| *wrong));
     }
 
-    /// The same with what it names besides: documented vehicles, and points of files; and with what is wrong with its name.
-    /// What a file lacks would be missing in the study too: then that is all that is said.
+    /// Adds documented vehicles and the points of files that the study names, and checks the name of the study. If a file cannot
+    /// be read, the keys that it replaces would be missing too: only the mistake in the file is then reported.
     fn complete(mut self, read: ReadFile) -> Result<Self, StudyError> {
         documented_vehicles::add(&mut self.root);
         let before = self.diagnostics.len();
@@ -73,28 +73,28 @@ impl StudySource {
         Ok(self)
     }
 
-    /// The tag of the study's kind.
+    /// Returns the tag of the study's kind.
     pub fn kind(&self) -> &str {
         kind_of(&self.root)
     }
 }
 
-/// A value as TOML, or else as text.
+/// Parses a value as TOML; other values are texts.
 pub(crate) fn value_of(text: &str, origin: &Origin) -> Node {
     parse_value(text, origin)
         .or_else(|| parse_value(&format!("{text:?}"), origin))
         .unwrap_or_else(|| Node { value: Value::String(text.into()), origin: origin.clone() })
 }
 
-/// The word after `kind`.
+/// Returns the value of the key `kind`.
 pub fn kind_of(root: &Node) -> &str {
     root.table().and_then(|table| table.get("kind")?.text()).unwrap_or("run")
 }
 
-/// What to do about a name that is none of a folder.
+/// Advice for a name that is not valid for a folder.
 pub(super) const FILE_NAME: &str = "results go into a folder of this name: use letters, digits, blanks, - and _";
 
-/// Why a study's name cannot be that of a folder beside others.
+/// Returns the reason why a study's name is not valid for a folder.
 pub(super) fn no_file_name(name: &str) -> Option<String> {
     let unfit = |c: char| c.is_control() || "/\\:*?\"<>|".contains(c);
     match name {

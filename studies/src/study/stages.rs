@@ -1,4 +1,4 @@
-//! The stages of a case: what its loads, gravity and settlements do to the blocks.
+//! The stages of a case: the action of loads, gravity and settlements on the blocks.
 
 use super::diagnostics::DiagnosticList;
 use super::resolved::Resolved;
@@ -11,7 +11,7 @@ use serde_json::Value as Json;
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::model::{Assembly, Joint, Settlement, Stage, Target};
 
-/// All stages, or `None` where there is no list of them.
+/// Returns all stages; `None` if there is no list of them.
 pub(super) fn build_stages(
     diagnostics: &mut DiagnosticList<'_>,
     resolved: &Resolved,
@@ -47,7 +47,7 @@ pub(super) fn build_stages(
             factor_min: factors[0],
             factor_max: factors[1],
         };
-        // A vehicle that is off the bridge is no mistake: its note says so.
+        // A vehicle that is off the bridge is not a mistake: a note reports it.
         let stands_off = !own.is_empty();
         notes.extend(own);
         if whole && assembly.is_some() && diagnostics.found.len() == before && !stands_off && raises_nothing(&stage) {
@@ -61,7 +61,7 @@ pub(super) fn build_stages(
     Some(out)
 }
 
-/// Whether a stage that goes until collapse has nothing that grows.
+/// Returns true if a stage continues until collapse but has no growing load.
 fn raises_nothing(stage: &Stage) -> bool {
     stage.target == Target::Collapse
         && stage.forces.iter().all(|force| force.force.norm() == 0.0)
@@ -69,14 +69,14 @@ fn raises_nothing(stage: &Stage) -> bool {
         && stage.settlements.is_empty()
 }
 
-/// What loads need besides their own keys: vehicles, and how the fill spreads loads. The tables have passed their check.
+/// Returns the tables to which loads refer: vehicles, and the law of dispersion in the fill. They are already checked.
 fn load_tables(resolved: &Resolved) -> LoadTables {
     let vehicles = resolved.read("vehicles");
     let dispersion = resolved.at("scene.fill.dispersion").and_then(|law| Deserialize::deserialize(law).ok());
     LoadTables { vehicles: vehicles.unwrap_or_default(), dispersion }
 }
 
-/// Where a stage goes, and the least and greatest factor searched; its name is checked too.
+/// Returns the end of a stage, and the least and greatest factor of its search; also checks its name.
 fn build_target(
     diagnostics: &mut DiagnosticList<'_>,
     stages: &[StageTable],
@@ -107,12 +107,12 @@ fn build_target(
     (target, [least, greatest])
 }
 
-/// A value of `until` in a sentence.
+/// Returns a value of `until` as words in a sentence.
 fn until_words(until: &str) -> &str {
     if until == Until::FirstLimitPoint.word() { "the first limit point" } else { until }
 }
 
-/// Forces on blocks and accelerations of all of them, load by load; whether all loads are among them.
+/// Returns forces on blocks and accelerations of all blocks, load by load, and true if no load is missing.
 fn build_loads(
     diagnostics: &mut DiagnosticList<'_>,
     loads: &[Json],
@@ -157,7 +157,7 @@ fn build_loads(
     (all, whole)
 }
 
-/// The movements of supports of a stage.
+/// Returns the movements of supports in a stage.
 fn build_settlements(
     diagnostics: &mut DiagnosticList<'_>,
     list: &[SettlementTable],

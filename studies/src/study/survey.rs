@@ -1,5 +1,5 @@
-//! Surveyed profiles: `profile = { shape = …, file = "survey.csv" }` becomes the points of the file, so that the
-//! resolved study needs the file no longer. The file may be a drawing, `survey.dxf`, and so may that of a scene of blocks.
+//! Surveyed profiles: `profile = { shape = …, file = "survey.csv" }` becomes the points in the file, so that the resolved
+//! study does not need the file. The file can also be a drawing, `survey.dxf`; a scene of blocks can have a drawing too.
 
 use super::drawing::{Drawing, DrawnBlock};
 use super::dxf::read_drawing;
@@ -13,10 +13,10 @@ use std::io::{ErrorKind, Read};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Reads a file that a study names; the error says why not.
+/// Reads a file that a study names; the error is the reason of a failure.
 pub type ReadFile<'a> = &'a dyn Fn(&str) -> Result<String, String>;
 
-/// For studies that come from no place where files could be.
+/// Refuses all files, for studies that do not come from a folder.
 pub fn no_files(_: &str) -> Result<String, String> {
     Err("files are read where a study is read from a file; give the points themselves".into())
 }
@@ -32,7 +32,7 @@ pub fn read_bounded(path: &Path) -> std::io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Reads files that stand beside a study file.
+/// Reads files in the folder of a study file.
 pub fn beside(study: &Path) -> impl Fn(&str) -> Result<String, String> {
     let folder = study.parent().unwrap_or(Path::new("")).to_path_buf();
     move |file| {
@@ -41,7 +41,7 @@ pub fn beside(study: &Path) -> impl Fn(&str) -> Result<String, String> {
         let bytes = bytes.map_err(|error| error.to_string())?;
         match String::from_utf8(bytes) {
             Ok(text) => Ok(text),
-            // Older drawings have one byte a character.
+            // Older drawings have one byte per character.
             Err(error) if is_drawing(file) => Ok(error.as_bytes().iter().copied().map(char::from).collect()),
             Err(error) => Err(error.to_string()),
         }
@@ -52,17 +52,17 @@ fn is_drawing(file: &str) -> bool {
     file.to_lowercase().ends_with(".dxf")
 }
 
-/// Shapes of profiles whose points may stand in a file.
+/// Shapes of profiles whose points may be in a file.
 const SHAPES: [&str; 2] = ["points", "surveyed"];
 
-/// Replaces every `file` of a profile of points, and of a scene of blocks, by what it holds.
+/// Replaces every `file` of a profile of points, and of a scene of blocks, by its content.
 pub fn import(root: &mut Node, read: ReadFile, mistakes: &mut Vec<LocatedDiagnostic>) {
     let table = root.table().and_then(|root| root.get("materials")).and_then(Node::table);
     let materials: Vec<String> = table.into_iter().flat_map(Table::keys).map(String::from).collect();
     Import { read, materials, mistakes }.node(root);
 }
 
-/// What a file stands for.
+/// The keys that a file replaces.
 #[derive(Clone, Copy)]
 enum Wanted {
     Profile,
@@ -70,7 +70,7 @@ enum Wanted {
 }
 
 impl Wanted {
-    /// What a table with a `file` asks for.
+    /// Returns the keys that the `file` of a table replaces.
     fn of(table: &Table) -> Option<Wanted> {
         let word = |key: &str| table.get(key).and_then(Node::text);
         match (word("shape"), word("scene")) {
@@ -80,7 +80,7 @@ impl Wanted {
         }
     }
 
-    /// Keys that the file takes the place of.
+    /// Returns the names of the keys that the file replaces.
     fn keys(self) -> &'static [&'static str] {
         match self {
             Wanted::Profile => &CURVES,
@@ -111,7 +111,7 @@ impl Import<'_> {
         }
     }
 
-    /// The entries that a table's `file` stands for; `None` where it names none.
+    /// Returns the entries that a table's `file` replaces; `None` if it names no file.
     fn imported(&self, table: &Table) -> Option<Result<Vec<Entry>, Vec<LocatedDiagnostic>>> {
         let wanted = Wanted::of(table)?;
         let node = table.get("file")?;
@@ -141,7 +141,7 @@ impl Import<'_> {
         }
     }
 
-    /// The same of the text of a drawing.
+    /// Returns the same entries from the text of a drawing.
     fn of_drawing(
         &self,
         wanted: Wanted,
@@ -155,7 +155,7 @@ impl Import<'_> {
     }
 }
 
-/// What a drawing stands for, in its own unit or another one.
+/// Returns the entries of a drawing, in its own unit or another one.
 fn drawn(
     drawing: &Drawing,
     wanted: Wanted,
@@ -187,14 +187,14 @@ fn entry(key: &str, value: Value, origin: &Origin) -> Entry {
     Entry { key: key.into(), origin: origin.clone(), node: Node { value, origin: origin.clone() } }
 }
 
-/// Points as a list of pairs.
+/// Returns points as a list of pairs.
 fn points_value(points: Vec<[f64; 2]>, origin: &Origin) -> Value {
     let node = |value: Value| Node { value, origin: origin.clone() };
     let point = |point: [f64; 2]| node(Value::Array(point.map(|x| node(Value::Float(x))).into()));
     Value::Array(points.into_iter().map(point).collect())
 }
 
-/// A block as an entry of the key `blocks`.
+/// Returns a block as an entry of the key `blocks`.
 fn block_node(block: DrawnBlock, origin: &Origin) -> Node {
     let mut entries = vec![
         entry("name", Value::String(block.name), origin),
@@ -211,7 +211,7 @@ struct Survey {
     curves: [Vec<[f64; 2]>; 2],
 }
 
-/// What a column holds: the curve it is of (`None`: that of the line), and x or y.
+/// Content of a column: its curve (`None` if each line names the curve), and x or y.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Column {
     Curve,
@@ -223,7 +223,7 @@ const CURVES: [&str; 2] = ["intrados", "extrados"];
 const UNITS: [(&str, f64); 5] = [("m", 1.0), ("mm", 1e-3), ("cm", 1e-2), ("ft", 0.3048), ("in", 0.0254)];
 const COLUMNS: [&str; 7] = ["curve", "x", "y", "intrados_x", "intrados_y", "extrados_x", "extrados_y"];
 
-/// A line of the file as its cells, each with the column of its first character.
+/// Splits a line of the file into cells, each with the column of its first character.
 fn cells(line: &str, separator: char) -> Vec<(usize, &str)> {
     let mut at = 0;
     line.split(separator)
@@ -237,7 +237,7 @@ fn cells(line: &str, separator: char) -> Vec<(usize, &str)> {
 }
 
 impl Survey {
-    /// Reads a table: a header, then a line a point. Every mistake with its line and column.
+    /// Reads a table: a header, then one line for each point. The error lists all mistakes with line and column.
     fn read(text: &str, file: &str) -> Result<Survey, Vec<LocatedDiagnostic>> {
         let name: Arc<str> = file.into();
         let at = |line: usize, column: usize| Origin::File { file: name.clone(), line, column };
@@ -266,7 +266,7 @@ impl Survey {
         if mistakes.is_empty() { Ok(survey) } else { Err(mistakes) }
     }
 
-    /// What the columns hold, by their names.
+    /// Returns the content of the columns, by their names.
     fn columns(header: &[(usize, &str)], at: &dyn Fn(usize) -> Origin) -> Result<Vec<Column>, Vec<LocatedDiagnostic>> {
         let (mut columns, mut mistakes) = (Vec::new(), Vec::new());
         for &(place, title) in header {
@@ -314,7 +314,7 @@ impl Survey {
         if mistakes.is_empty() { Ok(columns) } else { Err(mistakes) }
     }
 
-    /// The keys `intrados` and `extrados`.
+    /// Returns the keys `intrados` and `extrados`.
     fn entries(self, origin: &Origin) -> Vec<Entry> {
         CURVES
             .into_iter()
@@ -332,7 +332,7 @@ struct Row<'a> {
 }
 
 impl Row<'_> {
-    /// Its points with the curve they are of; a pair of empty cells is none.
+    /// Returns the points of the line, each with its curve; a pair of empty cells gives no point.
     fn points(&self, at: &dyn Fn(usize) -> Origin) -> Result<Vec<(usize, [f64; 2])>, Box<LocatedDiagnostic>> {
         let mut of_line = None;
         let mut found = [[None; 2]; 3];
@@ -390,7 +390,7 @@ mod tests {
             .map_err(|wrong| wrong.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))
     }
 
-    /// The same four points written joint by joint, point by point, in millimetres with decimal commas.
+    /// The same four points joint by joint, point by point, and in millimetres with decimal commas.
     #[test]
     fn every_form_gives_the_same_points() {
         let expected = Survey { curves: [vec![[0.0, 0.0], [3.0, 0.25]], vec![[-0.5, 0.5], [3.5, 0.75]]] };
@@ -404,7 +404,7 @@ mod tests {
         }
     }
 
-    /// Mistakes say file, line and column.
+    /// Mistakes have file, line and column.
     #[test]
     fn mistakes_have_their_line_and_column() {
         let message = |text: &str| read(text).unwrap_err();
@@ -423,7 +423,7 @@ mod tests {
         assert!(message("").contains("no line with the names"));
     }
 
-    /// A drawing's polylines become the keys that a study would have given; its unit is its own, or the one beside the file.
+    /// The polylines of a drawing become the keys of a study; the unit comes from the drawing or from the key beside the file.
     #[test]
     fn a_drawing_stands_for_points_and_blocks() {
         use crate::study::drawing::{Corner, Polyline};

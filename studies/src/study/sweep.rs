@@ -1,36 +1,36 @@
-//! A study of so many cases that they are made one at a time, and none is kept.
+//! A study with so many cases that they are made one at a time and not kept.
 
 use super::model::Output;
 use super::outline::Outline;
 use crate::config::checked_keys::CheckedKeys;
 use crate::config::expand::Expansion;
 
-/// A study file that holds no mistake, without its cases: what it takes does not grow with their number.
+/// A study file without mistakes and without its cases: its size in memory does not grow with their number.
 #[derive(Debug, Clone)]
 pub struct Sweep {
     /// Its name.
     pub name: String,
-    /// What is done with the cases: the tag of a study kind.
+    /// Tag of the study kind.
     pub kind: String,
-    /// Its axes and the table of its kind.
+    /// Axes of the study and the table of its kind.
     pub outline: Outline,
-    /// What is written.
+    /// Output settings.
     pub output: Output,
-    /// Different notes of its cases, up to a hundred.
+    /// Different notes of its cases, at most 100.
     pub notes: Vec<String>,
-    /// The file with `--set` applied, as of [`super::Study`].
+    /// The file with `--set` applied, as in [`super::Study`].
     pub resolved: toml::Value,
     pub(crate) expansion: Expansion,
     pub(super) checked: CheckedKeys,
 }
 
 impl Sweep {
-    /// Number of cases.
+    /// Returns the number of cases.
     pub fn count(&self) -> usize {
         self.expansion.count()
     }
 
-    /// Swept keys, outermost first.
+    /// Returns the swept keys, outermost first.
     pub fn keys(&self) -> Vec<String> {
         self.expansion.swept().map(String::from).collect()
     }

@@ -1,4 +1,4 @@
-//! Units and words of the swept keys of a study, for columns, axes and titles.
+//! Units and descriptions of the swept keys of a study, for columns, axes and titles.
 
 use super::keys::study_keys;
 use super::model::{Case, Study};
@@ -27,14 +27,14 @@ struct SweptKey {
 #[derive(Debug, Clone, Default)]
 pub struct SweptKeys(Vec<SweptKey>);
 
-/// The meaning of a key in a case; `None` if the schema does not know the key.
+/// Returns the meaning of a key in a case; `None` if the schema does not have the key.
 pub fn meaning_in(resolved: &Resolved, key: &str) -> Option<KeyMeaning> {
     key_meaning(study_keys(), &|name| resolved.get(name), key)
 }
 
 impl SweptKeys {
-    /// The axes of an expansion. `parameters` are the top-level keys of the study file. One case is read for each variant,
-    /// scene and text of an axis, because these decide which plug-in owns a key.
+    /// Returns the axes of an expansion. `parameters` are the top-level keys of the study file. One case is read for each
+    /// variant, scene and text of an axis, because these decide which plug-in owns a key.
     pub(crate) fn of_expansion(parameters: &'static [Parameter], expansion: &Expansion) -> Self {
         let swept = |(key, number)| SweptKey { key, meanings: Vec::new(), number };
         let mut keys = SweptKeys(expansion.number_keys().into_iter().map(swept).collect());
@@ -75,12 +75,12 @@ impl SweptKeys {
         self.0.iter().any(|own| own.key == key && own.number)
     }
 
-    /// The first meaning of a key.
+    /// Returns the first meaning of a key.
     pub fn first(&self, key: &str) -> Option<&KeyMeaning> {
         self.meanings(key).first()
     }
 
-    /// Different texts of the meanings of a key, joined.
+    /// Joins the different texts of the meanings of a key.
     fn joined(&self, key: &str, text: impl Fn(&KeyMeaning) -> String) -> String {
         let mut texts: Vec<String> = Vec::new();
         for text in self.meanings(key).iter().map(text) {
@@ -91,44 +91,45 @@ impl SweptKeys {
         texts.join(" or ")
     }
 
-    /// The unit of a key; `m or -` if it has several. `None` for pure numbers, texts and unknown keys.
+    /// Returns the unit of a key; `m or -` if it has several. `None` for pure numbers, texts and unknown keys.
     pub fn unit(&self, key: &str) -> Option<String> {
         let unit = self.joined(key, |meaning| meaning.unit().unwrap_or("-").into());
         Some(unit).filter(|unit| !["", "-"].contains(&unit.as_str()))
     }
 
-    /// The name of a column: the key with its unit.
+    /// Returns the name of a column: the key with its unit.
     pub fn column(&self, key: &str) -> String {
         self.with_unit(key, key.into())
     }
 
-    /// A key in words; the key itself if the schema does not know it.
+    /// Returns the description of a key; the key itself if the schema does not have it.
     pub fn words(&self, key: &str) -> String {
         self.told_apart(key, KeyMeaning::words, KeyMeaning::words_in_place)
     }
 
-    /// A key in words, after the names of the tables above it.
+    /// Returns the description of a key, after the names of the tables above it.
     pub fn words_in_place(&self, key: &str) -> String {
         Some(self.joined(key, KeyMeaning::words_in_place)).filter(|words| !words.is_empty()).unwrap_or(key.into())
     }
 
-    /// The title of an axis or a column in words: `rise of the intrados [m]`.
+    /// Returns the title of an axis or a column: `rise of the intrados [m]`.
     pub fn title(&self, key: &str) -> String {
         self.with_unit(key, self.words(key))
     }
 
-    /// Values of keys in one line: `rise = 2.99 m, friction = 0.6`.
+    /// Returns values of keys in one line: `rise = 2.99 m, friction = 0.6`.
     pub fn text(&self, values: &Map<String, Json>) -> String {
         let entries = values.iter().map(|(key, value)| format!("{} = {}", self.name(key), self.value(key, value)));
         entries.collect::<Vec<_>>().join(", ")
     }
 
-    /// The short name of a key; the whole key if another one has the same name.
+    /// Returns the short name of a key; the whole key if another one has the same name.
     pub fn name(&self, key: &str) -> String {
         self.told_apart(key, KeyMeaning::short_name, |_| key.into())
     }
 
-    /// The value of a key with its unit; a text contains its unit already. Stresses have the unit in which they are short.
+    /// Returns the value of a key with its unit; a text already contains its unit. Stresses have the unit that gives the
+    /// shortest number.
     pub fn value(&self, key: &str, value: &Json) -> String {
         match value.as_f64() {
             Some(number) => format_quantity(number, &self.unit(key).unwrap_or_default()),
@@ -140,7 +141,7 @@ impl SweptKeys {
         self.unit(key).map_or(words.clone(), |unit| format!("{words} [{unit}]"))
     }
 
-    /// The short text of a key, or the long one if the short one belongs to another key too.
+    /// Returns the short text of a key, or the long one if another key has the same short one.
     fn told_apart(&self, key: &str, short: fn(&KeyMeaning) -> String, long: impl Fn(&KeyMeaning) -> String) -> String {
         if self.meanings(key).is_empty() {
             return key.into();

@@ -1,4 +1,4 @@
-//! Tables of a study file with a scene that are read as structs, whose fields declare their keys.
+//! Tables of a study file with a scene that are read as structs; the fields declare the keys.
 
 use super::resolved::Resolved;
 use crate::config::common_keys::Stop;
@@ -41,7 +41,7 @@ pub enum Until {
 }
 
 impl Until {
-    /// As a study file has it.
+    /// Returns the word in a study file.
     pub fn word(self) -> &'static str {
         match self {
             Until::Collapse => "collapse",
@@ -87,7 +87,7 @@ pub struct StageTable {
     pub solver: Option<String>,
 }
 
-/// The stages of a checked case; none if they hold mistakes.
+/// Returns the stages of a checked case; empty if they have mistakes.
 pub(crate) fn stage_tables(resolved: &Resolved) -> Vec<StageTable> {
     resolved.read("stages").unwrap_or_default()
 }

@@ -37,7 +37,7 @@ fn retrace(asked: &PathAsked, story: &mut Story, status: Status) -> Option<()> {
     Some(())
 }
 
-/// Renames the target in all states and in the answer.
+/// Ends the path early and claims that its last state has reached the target.
 fn claim_target(asked: &PathAsked, story: &mut Story, keep: f64) -> Option<()> {
     story.falls()?;
     let index = story.below(keep)?;
