@@ -57,7 +57,7 @@ pub struct Arch {
 }
 
 impl Arch {
-    /// The ring, or every mistake in the geometry, with paths from the scene's table.
+    /// Returns the ring, or all mistakes in the geometry, with paths from the scene's table.
     pub fn ring(&self) -> Result<Ring, Vec<Diagnostic>> {
         let mut diagnostics = Vec::new();
         diagnostics.extend(out_of_range("width", self.width, Range::POSITIVE));
@@ -78,7 +78,7 @@ impl Arch {
         }
     }
 
-    /// A ring given by points may run into itself, as nearly a full circle does.
+    /// Reports a ring given by points that overlaps itself, as can happen near a full circle.
     fn overlap(&self, ring: &Ring) -> Option<Diagnostic> {
         if ring.is_plainly_simple() {
             return None;
@@ -243,7 +243,8 @@ mod tests {
         assert!(wrong[0].path == "scene.profile" && wrong[0].message.contains("overlap"), "{wrong:?}");
     }
 
-    /// What the outline proves, the voussoirs confirm pair by pair: spirals of points, some of which run into themselves.
+    /// Spirals of points, some of which overlap themselves: the check of the outline agrees with the check of all pairs of
+    /// voussoirs.
     #[test]
     fn a_ring_with_a_plainly_simple_outline_has_no_overlaps() {
         let mut simple = 0;

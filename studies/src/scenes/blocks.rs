@@ -1,4 +1,4 @@
-//! `blocks`: a free assembly of polygonal blocks.
+//! `blocks`: an assembly of polygonal blocks.
 #![doc = include_str!("blocks.md")]
 
 use super::keys::{PlaneState, SceneKeys};
@@ -69,7 +69,7 @@ pub struct Blocks {
     pub mesh: Option<Mesh>,
 }
 
-/// The polygon of a list of vertices, anticlockwise and beginning at the same vertex.
+/// Returns the polygon of a list of vertices, anticlockwise, with the same first vertex.
 fn polygon(vertices: &[[f64; 2]]) -> Result<Vec<Vec2>, String> {
     let mut polygon: Vec<_> = vertices.iter().map(|&[x, y]| Vec2::new(x, y)).collect();
     if polygon.len() < 3 {
@@ -86,7 +86,7 @@ fn polygon(vertices: &[[f64; 2]]) -> Result<Vec<Vec2>, String> {
     }
     let (area, _) = area_and_centroid(&polygon);
     let flat = area.abs() <= 1e-12 * size * size;
-    // Two edges that fold back on each other touch as neighbours, which the test of crossing leaves out.
+    // The test of crossing ignores neighbouring edges, so edges that fold back on each other are tested here.
     let folds = |i: usize| {
         let (one, other) = (polygon[(i + 1) % n] - polygon[i], polygon[(i + 2) % n] - polygon[(i + 1) % n]);
         cross(one, other).abs() <= 1e-12 * one.norm() * other.norm() && one.dot(&other) < 0.0
@@ -106,7 +106,7 @@ fn polygon(vertices: &[[f64; 2]]) -> Result<Vec<Vec2>, String> {
     Ok(polygon)
 }
 
-/// Openings are ≥ 0, and a table goes along the joint.
+/// Checks that openings are ≥ 0, and that a table covers the joint in order.
 fn gap_mistakes(path: &str, gap: &Gap) -> Vec<Diagnostic> {
     let table = match gap {
         Gap::Uniform(gap) => return out_of_range(path, *gap, Range::NON_NEGATIVE).into_iter().collect(),
@@ -128,7 +128,7 @@ fn gap_mistakes(path: &str, gap: &Gap) -> Vec<Diagnostic> {
 }
 
 impl Blocks {
-    /// Polygons, and every mistake that needs no catalogue, with paths from the scene's table.
+    /// Returns the polygons, and all mistakes that need no catalogue, with paths from the scene's table.
     fn shapes(&self) -> (Vec<Option<Vec<Vec2>>>, Vec<Diagnostic>) {
         let mut diagnostics = Vec::new();
         diagnostics.extend(out_of_range("width", self.width, Range::POSITIVE));
@@ -187,13 +187,13 @@ impl Blocks {
         self.blocks.iter().position(|block| block.name == name)
     }
 
-    /// The pair of two blocks, with its index.
+    /// Returns the pair of two blocks, with its index.
     fn pair(&self, a: usize, b: usize) -> Option<(usize, &Pair)> {
         let (a, b) = (&self.blocks[a].name, &self.blocks[b].name);
         self.pairs.iter().enumerate().find(|(_, pair)| pair.is_between(a, b))
     }
 
-    /// The name of the law between two blocks, and the key that gives it.
+    /// Returns the name of the law between two blocks, and the key that defines it.
     fn law_name(&self, a: usize, b: usize) -> Result<(&str, String), Diagnostic> {
         if let Some((i, pair)) = self.pair(a, b)
             && let Some(name) = &pair.joint
@@ -239,7 +239,7 @@ impl Blocks {
         self.blocks.iter().zip(shapes).zip(materials).map(body).collect()
     }
 
-    /// Joints of sound bodies; overlaps, and pairs that share no joint, are mistakes.
+    /// Returns the joints of valid bodies. Overlaps, and pairs that share no joint, are mistakes.
     fn joints(&self, bodies: &[Body], bond: impl Fn(usize, usize) -> Bond) -> Result<Vec<Joint>, Vec<Diagnostic>> {
         let (low, high) = bounding_box(bodies.iter().flat_map(|body| &body.vertices));
         let gap = |a, b| self.pair(a, b).map_or(Gap::default(), |(_, pair)| pair.gap.clone());
@@ -291,7 +291,7 @@ impl Scene for Blocks {
         if missing {
             diagnostics.push(Diagnostic::new("material", "is missing: the material of blocks that name none"));
         }
-        // Names are checked whether or not a joint uses them.
+        // Names are checked also if no joint uses them.
         if let Some(name) = &self.material {
             diagnostics.extend(material(catalogue, name, "material").err());
         }

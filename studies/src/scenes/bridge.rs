@@ -1,4 +1,4 @@
-//! `bridge`: spans of one or several rings on abutments and piers, with fill.
+//! `bridge`: spans with one or several rings on abutments and piers, with fill.
 #![doc = include_str!("bridge.md")]
 
 mod builder;
@@ -60,19 +60,19 @@ pub struct BridgeScene {
     pub mesh: Option<Mesh>,
 }
 
-/// All parts in place.
+/// All parts at their positions.
 struct Shapes {
     spans: Vec<SpanBlocks>,
     piers: Vec<PierBlocks>,
 }
 
-/// Prefixes the paths of issues.
+/// Adds a prefix to the paths of diagnostics.
 fn within(path: &str, diagnostics: Vec<Diagnostic>) -> impl Iterator<Item = Diagnostic> + '_ {
     diagnostics.into_iter().map(move |wrong| Diagnostic { path: format!("{path}.{}", wrong.path), ..wrong })
 }
 
 impl BridgeScene {
-    /// The blocks, or every mistake in the geometry, with paths from the scene's table.
+    /// Returns the blocks, or all mistakes in the geometry, with paths from the scene's table.
     fn shapes(&self) -> Result<Shapes, Vec<Diagnostic>> {
         let mut diagnostics = Vec::new();
         diagnostics.extend(out_of_range("width", self.width, Range::POSITIVE));
@@ -117,7 +117,7 @@ impl BridgeScene {
     }
 }
 
-/// Materials and laws by index.
+/// Indices of materials and laws.
 struct Indices {
     spans: Vec<usize>,
     piers: Vec<usize>,
@@ -155,7 +155,7 @@ impl BridgeScene {
         indices.ok_or(diagnostics)
     }
 
-    /// Bodies, joints and upper faces.
+    /// Builds bodies, joints and upper faces.
     fn put_together(&self, shapes: &Shapes, indices: &Indices) -> Builder {
         let mut builder = Builder::default();
         let [joint, ring_joint] = [indices.joint, indices.ring_joint].map(Bond::Law);
@@ -174,7 +174,7 @@ impl BridgeScene {
     }
 }
 
-/// Parts that run into each other, as wide rings over a narrow valley do.
+/// Reports parts that overlap, as can happen with wide rings over a narrow valley.
 fn overlap(bodies: &[Body]) -> Option<Diagnostic> {
     let (low, high) = bounding_box(bodies.iter().flat_map(|body| &body.vertices));
     let (_, overlaps) = find_joints(bodies, (high - low).norm(), |_, _| (Bond::Bonded, Gap::default()));
@@ -197,7 +197,7 @@ impl Scene for BridgeScene {
             return Err(from_root(vec![wrong]));
         }
         let ends = [shapes.spans[0].springing(0)[0], shapes.spans[shapes.spans.len() - 1].springing(1)[0]];
-        // A repointed joint is two: then joints are not numbered along the ring.
+        // A repointed joint consists of two joints; then joints are not numbered along the ring.
         let alone = shapes.spans.len() == 1 && shapes.spans[0].rings.len() == 1 && other.is_empty();
         let ring = || {
             let joints = &shapes.spans[0].rings[0].joints;

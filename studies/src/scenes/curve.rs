@@ -1,9 +1,9 @@
-//! The curves of intrados: points at equal arc length, normals, and where an offset of the curve
-//! meets a plane. Reads no configuration.
+//! The curves of intrados: points at equal arc length, normals, and the intersection of an offset curve with a plane. Reads
+//! no configuration.
 //!
-//! Every curve is symmetric, convex and described on its right half only, from the crown (x = 0)
-//! to the springing (x = span/2, y = 0); the left half is its exact mirror image. A point is named
-//! by the angle φ of its outward normal (sin φ, cos φ), which is 0 at a smooth crown.
+//! Every curve is symmetric and convex. It is described by its right half, from the crown (x = 0) to the springing
+//! (x = span/2, y = 0); the left half is the exact mirror image. The parameter of a point is the angle φ of its outward
+//! normal (sin φ, cos φ), which is 0 at a smooth crown.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use voussoir_core::model::geometry::{Vec2, cross};
@@ -59,19 +59,19 @@ impl Curve {
     /// R = (rise² + span²/4)/span, centres on the springing line.
     pub fn pointed(span: f64, rise: f64) -> Curve {
         let radius = (rise * rise + span * span / 4.0) / span;
-        // R − span/2 = (rise − span/2)(rise + span/2)/span, without its cancellation.
+        // R − span/2 = (rise − span/2)(rise + span/2)/span, in a form without cancellation.
         let centre = (rise - span / 2.0) * (rise + span / 2.0) / span;
         Curve::Pointed { span, rise, radius, opening: rise.atan2(centre) }
     }
 
-    /// Side radius r = (2R rise − rise² − span²/4)/(2R − span), the side arcs upright at the springings.
+    /// Side radius r = (2R rise − rise² − span²/4)/(2R − span); the side arcs are vertical at the springings.
     pub fn three_centred(span: f64, rise: f64, crown: f64) -> Curve {
         let side = (2.0 * crown * rise - rise * rise - span * span / 4.0) / (2.0 * crown - span);
         Curve::ThreeCentred { span, rise, crown, side, turn: (span / 2.0 - side).atan2(crown - rise) }
     }
 
-    /// Intrados point and unit outward normal at the share `part / of` of the right half's length,
-    /// counted from the crown. The apex of a pointed curve gets the normal of its symmetry axis.
+    /// Returns the intrados point and the unit outward normal at the share `part / of` of the right half's length, measured from
+    /// the crown. The apex of a pointed curve gets the normal of its symmetry axis.
     pub fn at_share(&self, part: usize, of: usize) -> (Vec2, Vec2) {
         if part == 0 {
             return (Vec2::new(0.0, self.rise()), Vec2::new(0.0, 1.0));
@@ -123,7 +123,7 @@ impl Curve {
         }
     }
 
-    /// The point with normal angle φ, beyond the springing too.
+    /// Returns the point with normal angle φ, also beyond the springing.
     pub fn point(&self, angle: f64) -> Vec2 {
         match *self {
             Curve::Segmental { radius, rise, .. } => crown_arc(rise, radius, angle),
@@ -152,13 +152,12 @@ impl Curve {
         }
     }
 
-    /// Where the curve `thickness` outside of this one meets the plane that leaves the right
-    /// springing at `inclination` \[rad\] above the horizontal, rising outwards. `None` where it
-    /// does not, on this side of the crown, or where the plane leaves the springing into the opening.
+    /// Returns the intersection of the curve offset outwards by `thickness` with the plane that leaves the right springing at
+    /// `inclination` \[rad\] above the horizontal, rising outwards. `None` if there is no intersection on this side of the crown,
+    /// or if the plane leaves the springing into the opening.
     ///
-    /// Along the offset curve the distance from the plane changes at the rate
-    /// −(ρ + thickness) sin(φ + inclination), so there is at most one such point with
-    /// 0 < φ + inclination < π; the other crossing of the plane lies behind the springing.
+    /// Along the offset curve the distance from the plane changes at the rate −(ρ + thickness) sin(φ + inclination). So there is
+    /// at most one such point with 0 < φ + inclination < π; the other intersection is behind the springing.
     pub fn offset_on_plane(&self, thickness: f64, inclination: f64) -> Option<Vec2> {
         let (sine, cosine) = inclination.sin_cos();
         let along = Vec2::new(cosine, sine);
@@ -169,9 +168,9 @@ impl Curve {
         let offset = |angle: f64| self.point(angle) + direction(angle) * thickness - springing;
         let (first, last) = self.angles();
         let (low, high) = (first.max(-inclination), last.min(PI - inclination));
-        // Negated: the distance falls as φ grows.
+        // Negated, because the distance decreases as φ grows.
         let distance = |angle: f64| -cross(along, offset(angle));
-        // A plane through the very end of the range is met there, to rounding.
+        // A plane through the end of the range counts as an intersection there, within rounding.
         let slack = 1e-14 * (self.half_span() + self.rise() + thickness);
         if low >= high || distance(low) > slack || distance(high) < -slack {
             return None;
@@ -184,17 +183,17 @@ impl Curve {
         (reach > 0.0).then(|| springing + along * reach)
     }
 
-    /// Least and greatest normal angle of the right half, extended beyond the springing.
+    /// Returns the least and greatest normal angle of the right half, extended beyond the springing.
     fn angles(&self) -> (f64, f64) {
         match *self {
             Curve::Segmental { .. } | Curve::Elliptical { .. } | Curve::ThreeCentred { .. } => (0.0, PI),
-            // Steep legs never become upright.
+            // The legs of these curves never become vertical.
             Curve::Parabolic { .. } | Curve::Catenary { .. } => (0.0, FRAC_PI_2 - 1e-9),
             Curve::Pointed { opening, .. } => (FRAC_PI_2 - opening, PI),
         }
     }
 
-    /// Radius of curvature at the normal angle φ.
+    /// Returns the radius of curvature at the normal angle φ.
     fn curvature_radius(&self, angle: f64) -> f64 {
         match *self {
             Curve::Segmental { radius, .. } | Curve::Pointed { radius, .. } => radius,
@@ -229,7 +228,7 @@ impl Curve {
         }
     }
 
-    /// x of the right springing.
+    /// Returns x of the right springing.
     pub fn half_span(&self) -> f64 {
         match *self {
             Curve::Elliptical { half_span, .. } => half_span,
@@ -241,7 +240,7 @@ impl Curve {
         }
     }
 
-    /// y of the crown.
+    /// Returns y of the crown.
     pub fn rise(&self) -> f64 {
         match *self {
             Curve::Segmental { rise, .. }
@@ -258,13 +257,13 @@ fn direction(angle: f64) -> Vec2 {
     Vec2::new(angle.sin(), angle.cos())
 }
 
-/// On the circle through (0, rise) about (0, rise − radius), `angle` from the vertical. The drop is
-/// written with sin² so that flat arcs keep their digits.
+/// Returns the point on the circle through (0, rise) about (0, rise − radius), at `angle` from the vertical. The drop is
+/// written with sin² to keep the digits of flat arcs.
 fn crown_arc(rise: f64, radius: f64, angle: f64) -> Vec2 {
     Vec2::new(radius * angle.sin(), rise - 2.0 * radius * (angle / 2.0).sin().powi(2))
 }
 
-/// On the circle through (span/2, 0) about (span/2 − radius, 0), `above` the horizontal.
+/// Returns the point on the circle through (span/2, 0) about (span/2 − radius, 0), at the angle `above` the horizontal.
 fn side_arc(span: f64, radius: f64, above: f64) -> Vec2 {
     Vec2::new(span / 2.0 - 2.0 * radius * (above / 2.0).sin().powi(2), radius * above.sin())
 }
@@ -274,8 +273,8 @@ fn elliptic_speed(a: f64, b: f64, t: f64) -> f64 {
     (a * t.cos()).hypot(b * t.sin())
 }
 
-/// Arc length of the ellipse (a sin t, b cos t) from 0 to t: Gauss's rule on panels that are halved
-/// until halving changes nothing beyond rounding.
+/// Arc length of the ellipse (a sin t, b cos t) from 0 to t: Gauss's rule on panels that are halved until the change is
+/// below rounding.
 fn elliptic_length(a: f64, b: f64, t: f64) -> f64 {
     fn panel(a: f64, b: f64, low: f64, high: f64) -> f64 {
         let (middle, half) = ((low + high) / 2.0, (high - low) / 2.0);
@@ -306,8 +305,8 @@ const GAUSS_10: [(f64, f64); 5] = [
     (0.973_906_528_517_171_7, 0.066_671_344_308_688_14),
 ];
 
-/// Root in \[low, high\] of an increasing function given with its slope: Newton's method, bisection
-/// where it would leave the bracket. Ends when a step is below rounding.
+/// Root in \[low, high\] of an increasing function given with its slope: Newton's method, with bisection if a step would leave
+/// the bracket. Ends when a step is below rounding.
 pub(crate) fn increasing_root(low: f64, high: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
     let (mut low, mut high) = (low, high);
     let mut x = (low + high) / 2.0;

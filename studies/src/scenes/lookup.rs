@@ -1,23 +1,23 @@
-//! Names and numbers of a scene's table, and what is said where they are wrong.
+//! Names and numbers in a scene's table, and the messages for wrong ones.
 
 use voussoir_core::model::Catalogue;
 use voussoir_core::plugin::{Diagnostic, Range, nearest};
 
-/// Index of a material, or a mistake at `path`.
+/// Returns the index of a material, or a mistake at `path`.
 pub(super) fn material(catalogue: &Catalogue, name: &str, path: &str) -> Result<usize, Diagnostic> {
     catalogue
         .material(name)
         .ok_or_else(|| unknown(path, "material", name, catalogue.materials.iter().map(|(name, _)| name.as_str())))
 }
 
-/// Index of an interface law, or a mistake at `path`.
+/// Returns the index of an interface law, or a mistake at `path`.
 pub(super) fn law(catalogue: &Catalogue, name: &str, path: &str) -> Result<usize, Diagnostic> {
     catalogue
         .law(name)
         .ok_or_else(|| unknown(path, "joint law", name, catalogue.laws.iter().map(|(name, _)| name.as_str())))
 }
 
-/// "There is no such thing", with the nearest right name.
+/// Reports an unknown name, with the nearest valid name.
 pub(crate) fn unknown<'a>(path: &str, kind: &str, name: &str, names: impl Iterator<Item = &'a str>) -> Diagnostic {
     let diagnostic = Diagnostic::new(path, format!("there is no {kind} called \"{name}\""));
     match nearest(name, names) {
@@ -26,17 +26,17 @@ pub(crate) fn unknown<'a>(path: &str, kind: &str, name: &str, names: impl Iterat
     }
 }
 
-/// A diagnostic at a number that breaks a range; `None` where it does not.
+/// Returns a diagnostic for a number outside its range; `None` if it is inside.
 pub(super) fn out_of_range(path: &str, value: f64, range: Range) -> Option<Diagnostic> {
     (!range.contains(value)).then(|| Diagnostic::new(path, format!("{value} must be {}", range.describe())))
 }
 
-/// The value, or its mistake added to the list.
+/// Returns the value, or adds its mistake to the list.
 pub(super) fn take<T>(result: Result<T, Diagnostic>, diagnostics: &mut Vec<Diagnostic>) -> Option<T> {
     result.map_err(|diagnostic| diagnostics.push(diagnostic)).ok()
 }
 
-/// Issues with paths from the scene's table, as a card's check gives them.
+/// Returns diagnostics with paths from the scene's table in the form of a card's check.
 pub(super) fn pairs_of(diagnostics: Vec<Diagnostic>) -> Vec<(String, String)> {
     let words = |diagnostic: Diagnostic| match diagnostic.help {
         Some(help) => (diagnostic.path, format!("{}; {help}", diagnostic.message)),
@@ -45,7 +45,7 @@ pub(super) fn pairs_of(diagnostics: Vec<Diagnostic>) -> Vec<(String, String)> {
     diagnostics.into_iter().map(words).collect()
 }
 
-/// Issues with paths from the scene's table, now from the study's root.
+/// Converts paths from the scene's table into paths from the study's root.
 pub(super) fn from_root(diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
     diagnostics
         .into_iter()

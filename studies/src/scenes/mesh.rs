@@ -1,4 +1,4 @@
-//! `[scene.mesh]`: how deformable blocks are meshed, the same key in every scene.
+//! `[scene.mesh]`: the mesh of deformable blocks, with the same keys in every scene.
 
 use super::lookup::out_of_range;
 use voussoir_core::elastic::MeshDensity;
@@ -58,19 +58,20 @@ const MAX_ORDER: usize = MeshDensity::MAX_ORDER;
 const MAX_CONDENSED_NUMBERS: f64 = 2.5e7;
 const GRADING: Range = Range::new(1.0, false, 10_000.0, false);
 
-/// The density of a scene's mesh, where it gives none the default.
+/// Returns the density of a scene's mesh, or the default.
 pub(super) fn density(mesh: Option<Mesh>) -> MeshDensity {
     mesh.unwrap_or_default().into()
 }
 
-/// Entries of the matrix that condenses a block: displacements of all nodes for a force at each node of its edges.
+/// Returns the number of entries of the matrix that condenses a block: displacements of all nodes for a force at each node of
+/// its edges.
 fn condensed_numbers(mesh: &Mesh) -> f64 {
     let [along, across] = mesh.elements.map(|count| (count * mesh.order + 1) as f64);
     let edges = 2.0 * (along + across);
     (2.0 * along * across) * (2.0 * edges)
 }
 
-/// Mistakes in a scene's mesh, with paths from the scene's table.
+/// Returns the mistakes in a scene's mesh, with paths from the scene's table.
 pub(super) fn mesh_diagnostics(mesh: Option<&Mesh>) -> Vec<Diagnostic> {
     let Some(mesh) = mesh else {
         return Vec::new();

@@ -1,4 +1,4 @@
-//! Scenes: geometry that becomes an assembly of blocks, one file each; file = tag.
+//! Scenes: each converts its geometry into an assembly of blocks. One file each; file = tag.
 
 pub mod arch;
 pub mod blocks;

@@ -1,10 +1,9 @@
-//! The profile of an arch: its intrados, and from it the vertices of a ring of straight-sided
-//! voussoirs. x = 0 at midspan, y = 0 at the intrados springings.
+//! The profile of an arch: its intrados, and the vertices of a ring of straight-sided voussoirs on it. x = 0 at midspan, y = 0
+//! at the intrados springings.
 //!
-//! Joints are normal to the intrados at equal arc length (on a segmental arch at equal angles, the
-//! same thing), the thickness is measured along them; it may grow from the crown to the springings. At the apex of a pointed arch, where the
-//! intrados has no normal, the joint is upright. Sources: plane geometry; the catenary after
-//! Bernoulli, Huygens and Leibniz (1691).
+//! Joints are normal to the intrados at equal arc length; on a segmental arch this means equal angles. The thickness is
+//! measured along the joints and may grow from the crown to the springings. At the apex of a pointed arch the intrados has no
+//! normal; the joint there is vertical. Sources: plane geometry; the catenary after Bernoulli, Huygens and Leibniz (1691).
 
 use super::curve::Curve;
 use super::lookup::out_of_range;
@@ -130,7 +129,7 @@ pub enum Springing {
 
 const INCLINATION: Range = Range::new(-90.0, true, 90.0, false);
 impl Springing {
-    /// \[left, right\] \[deg\], each with its key.
+    /// Returns \[left, right\] \[deg\], each with its key.
     fn sides(self) -> [(f64, &'static str); 2] {
         match self {
             Springing::Both(angle) => [(angle, "springing"); 2],
@@ -153,14 +152,14 @@ pub struct Ring {
 }
 
 impl Ring {
-    /// Voussoir k, anticlockwise: intrados from left to right, extrados from right to left.
+    /// Returns voussoir k, anticlockwise: intrados from left to right, extrados from right to left.
     pub fn voussoir(&self, k: usize) -> Vec<Vec2> {
         vec![self.intrados[k], self.intrados[k + 1], self.extrados[k + 1], self.extrados[k]]
     }
 
-    /// Whether the ring's outline proves that no two voussoirs overlap. Convex voussoirs of one sense, each joined
-    /// to the next along a whole edge, are a disc laid into the plane without folds: every point is covered
-    /// as often as the outline winds around it, which is once at the most where the outline does not cross itself.
+    /// Returns true if the ring's outline proves that no two voussoirs overlap. Convex voussoirs of one orientation, each joined
+    /// to the next along a whole edge, form a disc that is laid into the plane without folds. Every point is covered as often as
+    /// the outline winds around it, which is at most once if the outline does not cross itself.
     pub fn is_plainly_simple(&self) -> bool {
         let outline: Vec<Vec2> = self.intrados.iter().chain(self.extrados.iter().rev()).copied().collect();
         let convex = |k: usize| {
@@ -170,15 +169,15 @@ impl Ring {
         (0..self.voussoirs()).all(convex) && !crosses_itself(&outline)
     }
 
-    /// Number of voussoirs.
+    /// Returns the number of voussoirs.
     pub fn voussoirs(&self) -> usize {
         self.intrados.len() - 1
     }
 }
 
 impl Profile {
-    /// The ring of `voussoirs` voussoirs, `thickness` \[m\] thick. Both must be given, except for
-    /// `points`, which hold them. Issues have paths from the scene's table.
+    /// Returns the ring with `voussoirs` voussoirs and the thickness `thickness` \[m\]. Both must be given, except for `points`,
+    /// which define them. Diagnostics have paths from the scene's table.
     pub fn ring(
         &self,
         thickness: Option<Thickness>,
@@ -229,7 +228,7 @@ impl Profile {
         Ok(ring)
     }
 
-    /// The intrados, unless it cannot exist.
+    /// Returns the intrados, or the reasons why it cannot exist.
     fn curve(&self) -> Result<Curve, Vec<Diagnostic>> {
         let (span, rise) = match *self {
             Profile::Segmental { span, rise }
@@ -269,8 +268,8 @@ impl Profile {
     }
 }
 
-/// With rise < span/2 the side radius lies between 0 and the crown radius exactly where the crown
-/// radius exceeds that of the segmental arc; with more rise the crown arc would turn beyond the upright.
+/// With rise < span/2 the side radius is between 0 and the crown radius exactly if the crown radius is greater than the
+/// radius of the segmental arc. With a greater rise the crown arc would turn beyond the vertical.
 fn three_centred(span: f64, rise: f64, crown: f64) -> Result<Curve, Diagnostic> {
     if rise >= span / 2.0 {
         let message =
@@ -290,7 +289,7 @@ fn three_centred(span: f64, rise: f64, crown: f64) -> Result<Curve, Diagnostic> 
     }
 }
 
-/// Joints normal to the curve at equal arc length. Joint N − k is the exact mirror image of joint k.
+/// Builds joints normal to the curve at equal arc length. Joint N − k is the exact mirror image of joint k.
 fn ring_on(curve: &Curve, thickness: Thickness, voussoirs: usize) -> Ring {
     let (mut intrados, mut extrados) = (Vec::new(), Vec::new());
     for k in 0..=voussoirs {
@@ -331,7 +330,7 @@ fn move_springings(
     if diagnostics.is_empty() { Ok(()) } else { Err(diagnostics) }
 }
 
-/// Every voussoir must have an area and not cross itself.
+/// Checks that every voussoir has an area and does not cross itself.
 fn check_voussoirs(ring: &Ring, springing: Option<Springing>) -> Result<(), Vec<Diagnostic>> {
     let last = ring.voussoirs() - 1;
     let sound = |k: usize| is_sound(&ring.voussoir(k));
@@ -352,7 +351,7 @@ fn check_voussoirs(ring: &Ring, springing: Option<Springing>) -> Result<(), Vec<
     if diagnostics.is_empty() { Ok(()) } else { Err(diagnostics) }
 }
 
-/// Whether an anticlockwise polygon has an area beyond rounding and does not cross itself.
+/// Returns true if an anticlockwise polygon has an area beyond rounding and does not cross itself.
 fn is_sound(vertices: &[Vec2]) -> bool {
     let (low, high) = bounding_box(vertices);
     area_and_centroid(vertices).0 > 1e-12 * (high - low).norm_squared() && !crosses_itself(vertices)

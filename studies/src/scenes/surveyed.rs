@@ -1,4 +1,4 @@
-//! Surveyed faces of a ring, cut into voussoirs: joints at equal length along the intrados, normal to it.
+//! Surveyed faces of a ring, cut into voussoirs. Joints have equal distances along the intrados and are normal to it.
 
 use voussoir_core::model::geometry::{Vec2, cross};
 use voussoir_core::plugin::Diagnostic;
@@ -26,7 +26,7 @@ impl Polyline {
         self.lengths[self.lengths.len() - 1]
     }
 
-    /// The point at a length from its beginning; its ends beyond them.
+    /// Returns the point at a length from the start; the ends beyond them.
     fn at(&self, s: f64) -> Vec2 {
         let i = self.lengths.partition_point(|&length| length <= s).clamp(1, self.points.len() - 1);
         let (from, to) = (self.lengths[i - 1], self.lengths[i]);
@@ -34,7 +34,7 @@ impl Polyline {
         self.points[i - 1] + (self.points[i] - self.points[i - 1]) * share
     }
 
-    /// Where a ray first meets it.
+    /// Returns the first intersection with a ray.
     fn met_by(&self, from: Vec2, direction: Vec2) -> Option<Vec2> {
         let meets = |pair: &[Vec2]| {
             let along = pair[1] - pair[0];
@@ -48,9 +48,9 @@ impl Polyline {
     }
 }
 
-/// Cuts a ring between two faces into voussoirs. The first and the last joint join the ends of the faces; the direction of the
-/// intrados at a joint is that of its chord over one voussoir, so that the scatter of single points counts little.
-/// Issues have paths from the scene's table.
+/// Cuts a ring between two faces into voussoirs. The first and the last joint connect the ends of the faces. The direction of
+/// the intrados at a joint is the direction of its chord over one voussoir, so that the scatter of single points has little
+/// influence. Diagnostics have paths from the scene's table.
 pub fn cut(intrados: &[[f64; 2]], extrados: &[[f64; 2]], voussoirs: usize) -> Result<JointEnds, Vec<Diagnostic>> {
     let mut diagnostics = Vec::new();
     for (key, points) in [("intrados", intrados), ("extrados", extrados)] {
@@ -98,8 +98,8 @@ pub fn cut(intrados: &[[f64; 2]], extrados: &[[f64; 2]], voussoirs: usize) -> Re
 mod tests {
     use super::*;
 
-    /// Two arcs as a survey might see them, at places that have nothing to do with joints: cut into voussoirs they
-    /// are the ring of the segmental profile, to the error of the chords.
+    /// Two arcs with points as in a survey, independent of the joints: cut into voussoirs they agree with the ring of the
+    /// segmental profile, within the error of the chords.
     #[test]
     fn a_finely_surveyed_segmental_ring_is_that_ring() {
         let (span, rise, thickness, n) = (6.0_f64, 1.5, 0.4, 11);

@@ -1,4 +1,4 @@
-//! Thickness of a ring: the same all along, or growing from the crown to the springings.
+//! Thickness of a ring: constant, or growing from the crown to the springings.
 
 use super::lookup::out_of_range;
 use voussoir_core::plugin::{Diagnostic, Keys, Range};
@@ -26,7 +26,7 @@ pub struct Taper {
 }
 
 impl Thickness {
-    /// At a share of the way along the intrados from the middle (0) to a springing (1) \[m\].
+    /// Returns the thickness at a share of the length along the intrados from the middle (0) to a springing (1) \[m\].
     pub fn at(&self, share: f64) -> f64 {
         match *self {
             Thickness::Even(thickness) => thickness,
@@ -34,7 +34,7 @@ impl Thickness {
         }
     }
 
-    /// The one number, where it is the same all along \[m\].
+    /// Returns the thickness if it is constant \[m\].
     pub fn even(&self) -> Option<f64> {
         match *self {
             Thickness::Even(thickness) => Some(thickness),
@@ -42,7 +42,7 @@ impl Thickness {
         }
     }
 
-    /// What is wrong with its numbers, with paths from the scene's or the span's table.
+    /// Returns the mistakes in its numbers, with paths from the scene's or the span's table.
     pub fn mistakes(&self) -> Vec<Diagnostic> {
         let numbers = match *self {
             Thickness::Even(thickness) => vec![("thickness", thickness)],

@@ -76,7 +76,7 @@ const SNAP: f64 = 1e-6;
 type Course = Vec<[f64; 2]>;
 
 impl Wall {
-    /// Widths in brick lengths, from the bottom; each mistake with a path from the scene's table.
+    /// Returns the widths in brick lengths, from the bottom; each mistake has a path from the scene's table.
     fn widths(&self, diagnostics: &mut Vec<Diagnostic>) -> Vec<Vec<f64>> {
         if let Some(rows) = &self.rows {
             for (key, given) in [("courses", self.courses), ("bricks", self.bricks)] {
@@ -117,7 +117,7 @@ impl Wall {
         (0..courses).map(|course| if course % 2 == 0 { vec![1.0; bricks] } else { odd.clone() }).collect()
     }
 
-    /// Sides of the bricks, course by course from the bottom.
+    /// Returns the sides of the bricks, course by course from the bottom.
     fn courses(&self) -> Result<Vec<Course>, Vec<Diagnostic>> {
         let mut diagnostics = Vec::new();
         diagnostics.extend(out_of_range("width", self.width, Range::POSITIVE));
@@ -195,8 +195,8 @@ impl Wall {
     }
 }
 
-/// Sides of the bricks of a row. Widths are summed in brick lengths, where halves are exact, so that
-/// sides one above the other are the same numbers.
+/// Returns the sides of the bricks of a row. Widths are summed in brick lengths, in which halves are exact. Therefore sides
+/// that are one above the other have the same coordinates.
 fn course(row: &[f64], length: f64) -> Course {
     let mut sum = 0.0;
     let mut course = Vec::new();
@@ -210,7 +210,7 @@ fn course(row: &[f64], length: f64) -> Course {
     course
 }
 
-/// x of the right end of a wall \[m\].
+/// Returns x of the right end of a wall \[m\].
 fn right_end(courses: &[Course]) -> f64 {
     courses.iter().flatten().fold(0.0, |end: f64, brick| end.max(brick[1]))
 }
@@ -322,7 +322,7 @@ mod tests {
         }
     }
 
-    /// A cut under the middle of a brick gives it two joints with the ground; the parts do not touch each other in joints.
+    /// A cut under the middle of a brick gives it two joints with the ground; there is no joint between the parts of the ground.
     #[test]
     fn a_wall_stands_on_several_grounds() {
         let whole = wall(json!({ "courses": 2, "bricks": 4 })).unwrap();

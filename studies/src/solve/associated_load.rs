@@ -1,8 +1,8 @@
-//! The load of limit analysis with associated flow as an upper end for a path.
+//! The load of limit analysis with associated flow as an upper bound of a path.
 //!
-//! With small displacements and joints without any strength but friction every state of a path is an admissible field of
-//! rigid blocks, whatever the flow and the stiffness. So none lies above the associated load (static theorem). With
-//! strengths this holds only for fields at the path's own points, which limit analysis does not have.
+//! If displacements are small and joints have no strength except friction, every state of a path is an admissible field of
+//! rigid blocks, for any flow and stiffness. So no state is above the associated load (static theorem). With strengths this
+//! holds only for fields at the path's own points, which limit analysis does not have.
 
 use super::case_input::CaseInput;
 use super::limit::asked_of_solvers;
@@ -15,17 +15,18 @@ use voussoir_core::model::{Target, stage_loads};
 /// The greatest factor of the last stage with associated flow.
 #[derive(Debug, Clone)]
 pub(crate) struct AssociatedLoad {
-    /// The upper end that a mechanism proves.
+    /// The upper bound that a mechanism proves.
     pub factor: f64,
-    /// Size of the loads that do not vary over the size of those that do.
+    /// Size of the constant loads divided by the size of the growing loads.
     pub unit: f64,
-    /// Set if all joints have associated flow, so that an elastic path ends at this very load.
+    /// True if all joints have associated flow, so that an elastic path ends at this load.
     pub associated: bool,
     /// The mechanism of that load.
     pub motion: Vec<MotionEntry>,
 }
 
-/// The associated load of a case whose path has small displacements. `None` if it is no upper end or was not proved.
+/// Returns the associated load of a case whose path has small displacements. `None` if it is not an upper bound or was not
+/// proved.
 pub(crate) fn associated_load(input: &CaseInput) -> Option<AssociatedLoad> {
     let (assembly, index) = (input.assembly, input.stages.len().checked_sub(1)?);
     let stage = &input.stages[index];

@@ -1,8 +1,8 @@
-//! `solver = "auto"`: the cheapest solver that answers the question.
+//! `solver = "auto"`: chosen automatically, the fastest solver that supports the case.
 //!
-//! Solvers are found by their cards: `cost` gives the order, `provides` what a question needs (finite
-//! displacements, settlements, flow that is not associated), `requires` what laws and materials must give. Of those
-//! that remain, the first that does not refuse the problem solves it.
+//! The cards of solvers decide: `cost` gives the order, `provides` lists features that a question needs (finite displacements,
+//! settlements, non-associated flow), and `requires` lists the requirements on laws and materials. The first of the remaining
+//! solvers that does not refuse the problem solves it.
 
 use super::case_input::CaseInput;
 use crate::config::default_table::default_table;
@@ -18,14 +18,14 @@ pub type TaggedLimitSolver<'a> = (&'a str, &'a dyn LimitSolver);
 /// A path solver with its tag.
 pub type TaggedPathSolver = (String, Arc<dyn PathSolver>);
 
-/// Solvers of a kind that `auto` may take, the cheapest first.
+/// Returns the solvers of a kind that `auto` may choose, in order of their cost.
 fn by_cost(kind: PluginKind) -> Vec<&'static Card> {
     let mut all: Vec<_> = cards_of(kind).into_iter().filter(|card| card.cost.is_some()).collect();
     all.sort_by_key(|card| card.cost);
     all
 }
 
-/// Whether the laws of all joints and the materials of all free blocks meet a requirement.
+/// Returns true if the laws of all joints and the materials of all free blocks meet a requirement.
 fn met(assembly: &Assembly, need: Requirement) -> bool {
     let meets = |kind: PluginKind, tag: &str| card(kind, tag).is_some_and(|card| card.meets(need));
     let laws = assembly.joints.iter().filter_map(|joint| assembly.law(joint));
@@ -36,7 +36,7 @@ fn met(assembly: &Assembly, need: Requirement) -> bool {
             .all(|tag| meets(PluginKind::BulkMaterial, tag))
 }
 
-/// The path solvers to try, in order; none where limit analysis answers.
+/// Returns the path solvers to try, in order; empty if limit analysis solves the case.
 pub fn path_solvers(input: &CaseInput) -> Vec<TaggedPathSolver> {
     match input.solver {
         SelectedSolver::Limit(..) => return Vec::new(),
@@ -56,7 +56,7 @@ pub fn path_solvers(input: &CaseInput) -> Vec<TaggedPathSolver> {
     };
     let mut chosen: Vec<&Card> = all.iter().filter(fits).copied().collect();
     if chosen.is_empty() {
-        // The most general one says what it cannot do.
+        // The most general solver explains in its refusal why the case is not supported.
         chosen.extend(all.last());
     }
     chosen
@@ -65,7 +65,7 @@ pub fn path_solvers(input: &CaseInput) -> Vec<TaggedPathSolver> {
         .collect()
 }
 
-/// The first path solver that accepts the problem; else the tag of the last one and its reason.
+/// Returns the first path solver that accepts the problem; otherwise the tag of the last one and its reason.
 pub fn willing<'a>(
     solvers: &'a [TaggedPathSolver],
     problem: &PathProblem,
@@ -81,12 +81,12 @@ pub fn willing<'a>(
     Err(refusal)
 }
 
-/// The limit solvers to try, in order; those that `auto` chooses do not refuse the problem.
+/// Returns the limit solvers to try, in order; solvers that `auto` chooses do not refuse the problem.
 pub fn limit_solvers<'a>(
     selected: &'a SelectedSolver,
     problem: &'a LimitProblem,
 ) -> impl Iterator<Item = TaggedLimitSolver<'a>> {
-    // Every case of a study asks for them.
+    // Built once, because every case of a study needs them.
     static BUILT: LazyLock<Vec<(&Card, Arc<dyn LimitSolver>)>> = LazyLock::new(|| {
         let solvers = by_cost(PluginKind::LimitSolver).into_iter();
         solvers.filter_map(|card| Some((card, Arc::from(built::<dyn LimitSolver>(card)?)))).collect()
@@ -101,7 +101,7 @@ pub fn limit_solvers<'a>(
     named.into_iter().chain(willing.map(|(card, solver)| (card.tag, solver.as_ref())))
 }
 
-/// A solver with the defaults of its keys.
+/// Returns a solver with the defaults of its keys.
 fn built<T: ?Sized>(card: &Card) -> Option<Box<T>>
 where
     Box<T>: serde::de::DeserializeOwned,

@@ -11,7 +11,7 @@ use voussoir_core::limit::{LimitProblem, LimitQuestion, Status};
 use voussoir_core::model::{StageLoads, Target, stage_loads};
 use voussoir_solvers::limit::{thrust_zone, zone_costs_little};
 
-/// The description of the load of a case that stands and asks for it.
+/// Returns the description of the load of a case that stands.
 pub(crate) fn carried_load(case: &Case, result: &CaseResult) -> CarriedLoad {
     let last = case.stages.len() - 1;
     if !is_asked(case, result) {
@@ -27,7 +27,7 @@ pub(crate) fn carried_load(case: &Case, result: &CaseResult) -> CarriedLoad {
         Target::Factor(factor) => Some(factor),
         Target::Collapse => result.proof.field_factor,
     };
-    // The zone of blocks that have moved is another one.
+    // The zone of displaced blocks is different and is not computed.
     if let Some(factor) = factor.filter(|_| !case.solver.settings.finite) {
         add_zone(case, (&problem, factor), &mut carried);
     }
@@ -41,7 +41,7 @@ pub(crate) fn is_asked(case: &Case, result: &CaseResult) -> bool {
     case.output_joints && !case.brief && result.status == Status::Stands && result.certificate.passed
 }
 
-/// Adds the interval of eccentricities to each joint, if it is asked for or costs little.
+/// Adds the interval of eccentricities to each joint, if it is requested or cheap to compute.
 fn add_zone(case: &Case, (problem, factor): (&LimitProblem, f64), carried: &mut CarriedLoad) {
     let wanted = match case.output_zone {
         ZoneOfThrust::Never => false,
@@ -60,7 +60,7 @@ fn add_zone(case: &Case, (problem, factor): (&LimitProblem, f64), carried: &mut 
     }
 }
 
-/// The reserve of the last stage. `None` if the stage has no loads that grow, or goes to a factor that is not positive.
+/// Returns the reserve of the last stage. `None` if the stage has no growing loads, or if its target factor is not positive.
 fn reserve(case: &Case, (problem, loads): (&LimitProblem, &StageLoads), flow: ReserveFlow) -> Option<ReserveEntry> {
     let last = case.stages.len() - 1;
     let stage = &case.stages[last];

@@ -1,4 +1,4 @@
-//! Solving cases: one, or several side by side.
+//! Solves cases: one, or several in parallel.
 
 use super::accuracy::{estimate, words};
 use super::auto::path_solvers;
@@ -21,7 +21,7 @@ use voussoir_core::limit::{Greatest, Status};
 use voussoir_core::path::{PathObserver, PathProblem, PathState, Unobserved};
 use voussoir_core::plugin::{PluginKind, card};
 
-/// Solves a case; an observer sees the states of a path. The label and `seconds` are left for the caller to fill.
+/// Solves a case; an observer gets the states of a path. The caller sets the label and `seconds`.
 pub fn solve_input(input: &CaseInput, observer: &mut dyn PathObserver) -> CaseResult {
     let solvers = path_solvers(input);
     if solvers.is_empty() {
@@ -34,7 +34,7 @@ pub fn solve_input(input: &CaseInput, observer: &mut dyn PathObserver) -> CaseRe
     stands_without_a_path(input, &result).unwrap_or(result)
 }
 
-/// What tells a case from all others.
+/// Returns the label that identifies a case.
 pub fn label_of(case: &Case) -> CaseLabel {
     CaseLabel {
         id: case.id,
@@ -50,7 +50,7 @@ pub fn solve_case(case: &Case) -> CaseResult {
     solve_observed(case, &mut Unobserved)
 }
 
-/// The answer, or what a panic in a plug-in or a solver said: it ends its case, never the run.
+/// Returns the result, or a result with the message of a panic in a plug-in or a solver. A panic ends its case, not the run.
 fn caught(solve: impl FnOnce() -> CaseResult) -> CaseResult {
     catch_unwind(AssertUnwindSafe(solve)).unwrap_or_else(|panic| {
         let said = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
@@ -87,7 +87,7 @@ fn solve_observed(case: &Case, observer: &mut dyn PathObserver) -> CaseResult {
             Err(why) => result.notes.push(format!("no estimate of the load factor's error: {why}")),
         }
     }
-    // Last: everything above reads them.
+    // Last, because the steps above need these parts.
     leave_out(case, &mut result);
     result.seconds = started.elapsed().as_secs_f64();
     result
@@ -108,7 +108,7 @@ fn add_carried(case: &Case, result: &mut CaseResult) {
     }
 }
 
-/// Leaves out the parts of a result that the study does not ask for.
+/// Removes the parts of a result that the study does not request.
 fn leave_out(case: &Case, result: &mut CaseResult) {
     if !case.output_curve {
         result.path.curve = None;
@@ -118,7 +118,7 @@ fn leave_out(case: &Case, result: &mut CaseResult) {
     }
 }
 
-/// The result of a case that a stored path proves, without solving; the answer of the solver with this tag.
+/// Returns the result of a case that a stored path proves, without solving; it names the solver with this tag.
 ///
 /// # Errors
 /// The first reason why its states do not prove the end.
@@ -131,7 +131,7 @@ pub(crate) fn proved_case(case: &Case, tag: &str, path: &StoredPath) -> Result<C
     Ok(result)
 }
 
-/// An answer in which `verify` finds something wrong is no answer: what decides there decides here.
+/// Withdraws a result in which `verify` finds a mistake, so that both use the same criterion.
 fn withdraw(result: &mut CaseResult, wrong: Vec<String>) {
     if wrong.is_empty() {
         return;
@@ -149,15 +149,15 @@ fn withdraw(result: &mut CaseResult, wrong: Vec<String>) {
     result.certificate.failures.extend(wrong);
 }
 
-/// Solves one case while an observer looks on, and tells it; `None` where it has cancelled before that.
+/// Solves one case and reports it to an observer; `None` if the observer has cancelled before the result.
 pub fn solve_followed(case: &Case, observer: &dyn Observer) -> Option<CaseResult> {
     let result = solve_unless_cancelled(case, observer)?;
     observer.answered(&result);
     Some(result)
 }
 
-/// Solves the cases of a study whose ids are in `wanted`, `jobs` of them side by side; in order of `wanted`. Those
-/// that are not answered when the observer cancels are left out.
+/// Solves the cases of a study whose ids are in `wanted`, with `jobs` cases in parallel; results are in the order of `wanted`.
+/// Cases without a result when the observer cancels are omitted.
 pub fn solve_cases(study: &Study, wanted: &[usize], jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {
     let one = |id: &usize| solve_followed(&study.cases[*id], observer);
     if jobs > 1 {
@@ -167,17 +167,17 @@ pub fn solve_cases(study: &Study, wanted: &[usize], jobs: usize, observer: &dyn 
     }
 }
 
-/// Solves one case; `None` where the observer has cancelled before it was answered.
+/// Solves one case; `None` if the observer has cancelled before the result.
 pub fn solve_unless_cancelled(case: &Case, observer: &dyn Observer) -> Option<CaseResult> {
     if observer.cancelled() {
         return None;
     }
     let result = solve_observed(case, &mut Followed { case, observer, states: 0 });
-    // A path that was cut short is stalled; one that came to its end in the same moment is answered.
+    // A path that was cancelled is stalled. A path that ended at the same moment has its result.
     (result.status.is_answer() || !observer.cancelled()).then_some(result)
 }
 
-/// Tells an observer of a study how far the path of a case has come.
+/// Reports the progress of the path of a case to the observer of a study.
 struct Followed<'a> {
     case: &'a Case,
     observer: &'a dyn Observer,

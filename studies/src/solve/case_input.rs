@@ -1,32 +1,33 @@
-//! What is needed to solve a case, without the study that it came from.
+//! The data that are needed to solve a case, without its study.
 
 use crate::study::{Case, SelectedSolver};
 use voussoir_core::model::{Assembly, Stage};
 use voussoir_core::path::PathSettings;
 
-/// One case, ready to be solved.
+/// One case with all data for its solution.
 #[derive(Debug, Clone, Copy)]
 pub struct CaseInput<'a> {
     /// Blocks and joints.
     pub assembly: &'a Assembly,
     /// Stages in order.
     pub stages: &'a [Stage],
-    /// Which solver.
+    /// The solver of the case.
     pub solver: &'a SelectedSolver,
-    /// Which limit solver answers a stage that names its own, by index.
+    /// The limit solver of each stage, by index; `None` if the stage does not name one.
     pub of_stages: &'a [Option<SelectedSolver>],
-    /// Whether the points of a path are asked for.
+    /// True if the points of a path are requested.
     pub curve: bool,
-    /// How many states of a path are kept.
+    /// Number of states of a path that are kept.
     pub states: usize,
-    /// Most numbers in the states of a path for which they are kept with the witnesses that prove its end; 0 keeps none.
+    /// Greatest number of numbers in the states of a path for which the states and the witnesses of its end are kept; 0 keeps
+    /// none.
     pub stored_numbers: usize,
-    /// What a path solver is told; its tolerance is the greatest relative gap between bounds too.
+    /// Settings of a path solver; the tolerance is also the greatest relative gap between bounds.
     pub settings: &'a PathSettings,
 }
 
 impl<'a> CaseInput<'a> {
-    /// What a case of a study asks for.
+    /// Returns the input of a case of a study.
     pub fn of(case: &'a Case) -> Self {
         CaseInput {
             assembly: &case.assembly,

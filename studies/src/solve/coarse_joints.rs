@@ -1,14 +1,14 @@
-//! Joints whose contact points stand too far apart for the fracture energy of their law.
+//! Joints whose contact points are too far apart for the fracture energy of their law.
 
 use voussoir_core::law::PlaneElasticity;
 use voussoir_core::model::Assembly;
 use voussoir_core::path::PathProblem;
 
-/// Contact points over the length of a cohesive zone below which a joint counts as coarse (Turon,
-/// Dávila, Camanho & Costa 2007, Engng Fract. Mech. 74: three elements and more).
+/// Least number of contact points over the length of a cohesive zone; a joint with fewer points is coarse (Turon, Dávila,
+/// Camanho & Costa 2007, Engng Fract. Mech. 74: three elements and more).
 const POINTS_IN_ZONE: f64 = 3.0;
 
-/// A joint whose contact points stand too far apart for the fracture energy of its law.
+/// A joint whose contact points are too far apart for the fracture energy of its law.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SoftensOver {
     /// Index of the joint.
@@ -19,8 +19,8 @@ pub struct SoftensOver {
     pub spacing: f64,
 }
 
-/// Joints between elastic blocks of which the contact points stand farther apart than a third of the
-/// characteristic length of their law: the path then has a peak and a snap-back for every point.
+/// Returns the joints between elastic blocks whose contact points are farther apart than a third of the characteristic length
+/// of their law: the path then has a peak and a snap-back for every point.
 pub fn coarse_joints(problem: &PathProblem, assembly: &Assembly) -> Vec<SoftensOver> {
     let mut found: Vec<SoftensOver> = Vec::new();
     for (index, pair) in problem.contacts.windows(2).enumerate() {

@@ -1,4 +1,4 @@
-//! Explaining a study: what will be solved, after everything that the scene does not need is gone.
+//! Explains a study: the problem that will be solved, without the parts that the scene does not need.
 
 use super::auto::{TaggedPathSolver, limit_solvers, path_solvers, willing};
 use super::case_input::CaseInput;
@@ -12,12 +12,12 @@ use voussoir_core::model::{Bond, Target, stage_loads};
 use voussoir_core::path::{LoadStepEnd, PathProblem};
 use voussoir_core::plugin::{PluginKind, card};
 
-/// What will be solved, in words, for the first case; the others differ by their parameters only.
+/// Describes the problem of the first case in words; the other cases differ only by their parameters.
 pub fn explain(study: &Study) -> String {
     explain_first(&study.name, &study.kind, study.cases.len(), study.cases.first())
 }
 
-/// The same of a study by name, kind, number of cases and its first case.
+/// Describes a study by its name, kind, number of cases and first case.
 pub fn explain_first(name: &str, kind: &str, cases: usize, first: Option<&Case>) -> String {
     let mut text = format!("study \"{name}\" ({kind}): {cases} case(s)\n");
     match first {

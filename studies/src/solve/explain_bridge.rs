@@ -1,4 +1,4 @@
-//! The parts of a bridge, in words.
+//! The description of the parts of a bridge.
 
 use crate::config::common_keys::own_keys;
 use crate::loads::VehicleAxles;
@@ -9,14 +9,14 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use voussoir_core::model::{Assembly, Bridge};
 
-/// Bodies whose names begin alike.
+/// Bodies whose names have the same beginning.
 struct Named<'a> {
     assembly: &'a Assembly,
     prefix: String,
 }
 
 impl Named<'_> {
-    /// Their number, mass \[kg\], and the first and last name.
+    /// Returns their number, mass \[kg\], and the first and last name.
     fn sum(&self) -> Option<(usize, f64, &str, &str)> {
         let named = |body: &usize| self.assembly.bodies[*body].name.starts_with(&self.prefix);
         let own: Vec<usize> = (0..self.assembly.bodies.len()).filter(named).collect();
@@ -26,7 +26,7 @@ impl Named<'_> {
     }
 }
 
-/// One line for every ring, pier and piece of damage, and for road, fill, vehicles and factors.
+/// Adds one line for every ring, pier and piece of damage, and for road, fill, vehicles and factors.
 pub fn explain_bridge(case: &Case, bridge: &Bridge, text: &mut String) {
     let assembly = &case.assembly;
     let scene: Option<BridgeScene> = case.resolved.get("scene").and_then(own_keys);
@@ -76,7 +76,7 @@ pub fn explain_bridge(case: &Case, bridge: &Bridge, text: &mut String) {
     }
 }
 
-/// A table in one line.
+/// Returns a table in one line.
 fn words(table: &Json) -> String {
     let entry = |(key, value): (&String, &Json)| match value {
         Json::String(text) => format!("{key} {text}"),

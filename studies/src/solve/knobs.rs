@@ -1,4 +1,4 @@
-//! What makes an answer more or less accurate: keys of a case's mesh and of the steps of its path, as overrides.
+//! Settings that change the accuracy of a result: keys of a case's mesh and of the steps of its path, as overrides.
 
 use crate::config::common_keys::tag_of;
 use crate::config::default_table::default_table;
@@ -9,20 +9,21 @@ use serde_json::{Map, Value as Json, json};
 use voussoir_core::plugin::{Capability, Card, PluginKind, card};
 use voussoir_solvers::path::continuation::LARGEST_FINITE_STEP;
 
-/// Dotted keys with the values they take.
+/// Dotted keys with their values.
 pub type Sets = Vec<(String, Json)>;
 
-/// The strategy of a path that names none.
+/// The strategy of a path by default.
 const STRATEGY: &str = "arc_length";
 
-/// The mesh of the scene, where it can have one: its table, elements filled in.
+/// Returns the mesh of the scene with its elements filled in, if the scene can have one.
 fn mesh_of(case: &Case) -> Option<Mesh> {
     card(PluginKind::Scene, tag_of(PluginKind::Scene, case.resolved.get("scene")?)).filter(|card| has(card, "mesh"))?;
     let mesh = case.resolved.at("scene.mesh").and_then(|mesh| Mesh::deserialize(mesh).ok());
     Some(mesh.unwrap_or_default())
 }
 
-/// So many times the elements along and across each block, one at least; nothing where the scene has no mesh.
+/// Multiplies the number of elements along and across each block by a factor, with at least one element; empty if the scene
+/// has no mesh.
 pub fn finer_mesh(case: &Case, times: f64) -> Sets {
     let finer = mesh_of(case).map(|mesh| {
         let elements = mesh.elements.map(|own| (times * own as f64).round().max(1.0) as usize);
@@ -31,13 +32,13 @@ pub fn finer_mesh(case: &Case, times: f64) -> Sets {
     finer.into_iter().collect()
 }
 
-/// Elements of another order; nothing where the scene has no mesh or has this order already.
+/// Sets elements of another order; empty if the scene has no mesh or already has this order.
 pub fn other_order(case: &Case, order: usize) -> Sets {
     let other = mesh_of(case).filter(|mesh| mesh.order != order);
     other.map(|mesh| ("scene.mesh".to_string(), json!(Mesh { order, ..mesh }))).into_iter().collect()
 }
 
-/// This share of the steps of every strategy that has any; nothing where the solver goes from event to event.
+/// Multiplies the steps of every strategy by a share; empty if the solver goes from event to event.
 pub fn smaller_steps(case: &Case, solver: &Card, share: f64) -> Sets {
     if !solver.offers(Capability::FINITE_DISPLACEMENTS) {
         return Vec::new();
@@ -56,7 +57,7 @@ pub fn smaller_steps(case: &Case, solver: &Card, share: f64) -> Sets {
     sets
 }
 
-/// A strategy with shorter steps, where it has some.
+/// Returns a strategy with shorter steps, if it has steps.
 fn shortened(mut table: Map<String, Json>, finite: bool, share: f64) -> Option<Json> {
     let card = card(PluginKind::Continuation, table.get("strategy")?.as_str()?)?;
     let defaults = default_table(card);

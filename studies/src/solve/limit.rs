@@ -1,4 +1,4 @@
-//! Solving a case by limit analysis: its stages in turn, each with its certificate.
+//! Solves a case by limit analysis, stage by stage, each with its certificate.
 
 use super::auto::limit_solvers;
 use super::case_input::CaseInput;
@@ -12,7 +12,7 @@ use voussoir_core::certificate::Hinge;
 use voussoir_core::limit::{Counters, LimitAnswer, LimitProblem, LimitQuestion, Status};
 use voussoir_core::model::{Assembly, Stage, StageLoads, Target, stage_loads};
 
-/// What is asked of a stage: can it stand at its start, and how far does it go from there?
+/// Returns the question of a stage: does it stand at its start, and up to which factor does it stand?
 fn ask(stage: &Stage, problem: &LimitProblem) -> LimitQuestion {
     let idle = problem.magnitude(&problem.varying) == 0.0;
     match stage.target {
@@ -23,7 +23,7 @@ fn ask(stage: &Stage, problem: &LimitProblem) -> LimitQuestion {
     }
 }
 
-/// Whether the next stage's own check of its start answers this stage too.
+/// Returns true if the check of the next stage's start also answers this stage.
 fn covered(stages: &[Stage], loads: &[StageLoads], index: usize) -> bool {
     let Some(next) = stages.get(index + 1) else {
         return false;
@@ -37,7 +37,7 @@ fn covered(stages: &[Stage], loads: &[StageLoads], index: usize) -> bool {
     idle && !moves && next.target == Target::Collapse && next.gravity.is_none() && search_start(next) == 0.0
 }
 
-/// Solves a case stage by stage, until one does not stand.
+/// Solves a case stage by stage, until a stage does not stand.
 pub(super) fn solve_by_limit_analysis(input: &CaseInput) -> CaseResult {
     let CaseInput { assembly, stages, .. } = *input;
     let loads = stage_loads(assembly, stages);
@@ -54,7 +54,7 @@ pub(super) fn solve_by_limit_analysis(input: &CaseInput) -> CaseResult {
                     take_inner_field(input, index, (&problem, &loads[index]), &mut result);
                 }
                 let hinges = settled_hinges(input, index, (&problem, &loads[index]), &mut result);
-                // How blocks have followed their supports may take back that the flow was read otherwise.
+                // The notes come last, because settlements may change how the flow was read.
                 result.notes.extend(readings(assembly, &problem, &result));
                 (result, hinges)
             }
@@ -74,7 +74,7 @@ pub(super) fn solve_by_limit_analysis(input: &CaseInput) -> CaseResult {
     CaseResult::stalled("the study has no stage")
 }
 
-/// Adds what stage `index` came to, and the stages before it that its check of its start answers too.
+/// Adds the result of stage `index`, and the earlier stages that the check of its start also answers.
 fn record_stages(
     done: &mut Vec<StageResult>,
     stages: &[Stage],
@@ -85,7 +85,7 @@ fn record_stages(
         let name = stages[index].name.clone();
         StageResult { name, status, factor, hinges, stability: Default::default() }
     };
-    // What supports cannot do says nothing against the loads.
+    // The immobility of supports is no evidence against the loads.
     let carried = result.supports_cannot_move() || !matches!(result.status, Status::NoEquilibrium | Status::Stalled);
     let status = if carried { Status::Stands } else { result.status };
     for (earlier, covered) in stages.iter().enumerate().take(index).skip(done.len()) {
@@ -102,7 +102,7 @@ fn record_stages(
     done.push(stage(index, result.status, reached, hinges));
 }
 
-/// How blocks have followed their supports by the end of a stage that stands, in its result, and the hinges.
+/// Adds the displacements due to settlements at the end of a stage that stands to its result. Returns the hinges.
 fn settled_hinges(
     input: &CaseInput,
     index: usize,
@@ -122,7 +122,7 @@ fn settled_hinges(
     }
 }
 
-/// The result of an answer with its certificate, and whether it proves the start; a stalled result if the answer is
+/// Returns the result of an answer with its certificate, and true if it proves the start; a stalled result if the answer is
 /// malformed.
 fn read(
     input: &CaseInput,
@@ -137,7 +137,7 @@ fn read(
     }
 }
 
-/// The first certified answer of the solvers to try, or the best that is proved without one.
+/// Returns the first certified answer of the solvers to try, or otherwise the best result that is proved.
 fn solve_stage(input: &CaseInput, index: usize, problem: &LimitProblem, all_loads: &[StageLoads]) -> CaseResult {
     let loads = &all_loads[index];
     let stage = &input.stages[index];
@@ -159,8 +159,8 @@ fn solve_stage(input: &CaseInput, index: usize, problem: &LimitProblem, all_load
     result
 }
 
-/// Replaces the field of the last stage, if it stands, by one that is as far from all bounds as any. The search for collapse
-/// ends at a corner of the admissible fields, where some joints press at an edge alone.
+/// Replaces the field of the last stage, if it stands, by the field that is farthest from all bounds. The search for collapse
+/// ends at a corner of the admissible fields, at which some joints are compressed at an edge only.
 fn take_inner_field(
     input: &CaseInput,
     index: usize,
@@ -180,16 +180,15 @@ fn take_inner_field(
     }
 }
 
-/// Returns true if the state at the start of a stage is proved: nothing acts there, or the stage before it was asked and
-/// ended with the same loads.
+/// Returns true if the state at the start of a stage is proved: no load acts there, or the previous stage was solved and ended
+/// with the same loads.
 fn start_is_proved(stages: &[Stage], index: usize, loads: &[StageLoads], start: f64) -> bool {
     let unloaded = start == 0.0 && loads[index].fixed.iter().all(|wrench| *wrench == [0.0; 3]);
     let continues = index > 0 && start == 0.0 && stages[index].gravity.is_none() && !covered(stages, loads, index - 1);
     unloaded || continues
 }
 
-/// Puts a question to the solvers to try, one after the other. Returns the result, and whether its answer proves the
-/// start.
+/// Asks the solvers to try, one after the other. Returns the result, and true if its answer proves the start.
 pub(super) fn asked_of_solvers(
     input: &CaseInput,
     index: usize,
@@ -200,7 +199,7 @@ pub(super) fn asked_of_solvers(
     let selected = input.of_stages.get(index).and_then(Option::as_ref).unwrap_or(input.solver);
     let mut notes = Vec::new();
     let mut best: Option<(CaseResult, bool)> = None;
-    // Those that `auto` chooses have been asked.
+    // Solvers that `auto` chooses have already been checked.
     let named = matches!(selected, SelectedSolver::Limit(..));
     for (tag, solver) in limit_solvers(selected, problem) {
         if named && let Some(why) = solver.refuses(problem) {
@@ -212,7 +211,7 @@ pub(super) fn asked_of_solvers(
         let (mut result, mut start_is_carried) = solve(problem);
         let bracketed = result.bounds.is_some() && result.non_associated.lower_proof.is_some();
         if !result.certificate.passed && !bracketed {
-            // Numbers of very unlike sizes are what solvers fail on; the certificate reads the laws as they are.
+            // Solvers fail at numbers of very different sizes, so they get bounded ones; the certificate uses the laws unchanged.
             let within = problem.within_reach();
             let bounded = within.as_ref().unwrap_or(problem).with_bounded_shear();
             let mut easier = [within, bounded].into_iter().flatten();
@@ -239,7 +238,7 @@ pub(super) fn asked_of_solvers(
     (CaseResult { notes, ..best }, start_is_carried)
 }
 
-/// Notes on how limit analysis reads a scene that says more.
+/// Returns notes on how limit analysis simplifies a scene with further properties.
 fn readings(assembly: &Assembly, problem: &LimitProblem, result: &CaseResult) -> Vec<String> {
     let mut notes = Vec::new();
     if result.flow_read_as.is_some() {

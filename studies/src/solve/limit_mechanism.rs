@@ -1,8 +1,8 @@
 //! The mechanism of limit analysis as a candidate for the rate at the end of a path that its solver left open.
 //!
-//! With small displacements and joints that resist by friction alone, no state of a path lies above the associated load.
-//! A last state at this load, with velocities that obey the laws' own flow at its forces, is a collapse: the load stands
-//! still along the velocities, and no rate raises it. It does not matter who proposes the velocities.
+//! With small displacements and joints that resist by friction alone, no state of a path is above the associated load. A last
+//! state at this load, with velocities that obey the laws' own flow at its forces, is a collapse: the load is stationary along
+//! the velocities, and no rate raises it. The velocities may come from any source.
 
 use super::associated_load::AssociatedLoad;
 use super::path_status::meeting_bounds;
@@ -13,7 +13,7 @@ use voussoir_core::model::Assembly;
 use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::path::{PathAnswer, PathProblem};
 
-/// Ends a path that is open at the associated load by the mechanism of this load, if its last state allows it.
+/// Ends a path that is open at the associated load with the mechanism of this load, if its last state allows it.
 pub(super) fn end_in_limit_mechanism(
     assembly: &Assembly,
     problem: &PathProblem,
@@ -36,7 +36,7 @@ pub(super) fn end_in_limit_mechanism(
     }
 }
 
-/// Velocities of the path's bodies about their poles.
+/// Returns velocities of the path's bodies about their poles.
 fn about_poles(assembly: &Assembly, problem: &PathProblem, load: &AssociatedLoad) -> Vec<[f64; 3]> {
     let mut rates = vec![[0.0; 3]; problem.bodies.len()];
     for (block, entry) in load.motion.iter().enumerate() {

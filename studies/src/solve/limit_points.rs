@@ -1,4 +1,4 @@
-//! Limit points, the reason why a path ends at one, and the end of its range, as a result states them.
+//! Limit points, the reason why a path ends at one, and the end of its range, in the form of a result.
 
 use super::case_input::CaseInput;
 use super::load_history::{AfterLimitPoint, LoadHistory};
@@ -9,8 +9,8 @@ use voussoir_core::path::{
     LimitPointEnd, LoadStep, LoadStepEnd, PathAnswer, PathProblem, PathSettings, PathState, ProvenPeak,
 };
 
-/// The factor of the first limit point of the load step at which the path ended. A mechanism that the path reaches first is
-/// the first limit point.
+/// Returns the factor of the first limit point of the load step at which the path ended. If the path reaches a mechanism
+/// first, the mechanism is the first limit point.
 pub(super) fn first_limit_point(solved: &PathAnswer) -> Option<f64> {
     let ends = matches!(solved.status, Status::Collapse | Status::LimitPoint);
     let first = solved.limit_points.iter().find(|peak| peak.load_step == solved.load_step);
@@ -26,7 +26,7 @@ pub(super) fn add_last_limit_point(solved: &mut PathAnswer) {
     }
 }
 
-/// All limit points of a path with what follows them.
+/// Returns all limit points of a path with the states after them.
 pub(super) fn limit_points(
     stages: &[Stage],
     problem: &PathProblem,
@@ -48,7 +48,7 @@ pub(super) fn limit_points(
     peaks.iter().zip(history.after(peaks, problem)).map(entry).collect()
 }
 
-/// The last state that the path has reached.
+/// Returns the last state that the path has reached.
 pub(super) fn followed_to(stages: &[Stage], problem: &PathProblem, history: &LoadHistory) -> Option<FollowedTo> {
     let last = history.last()?;
     let load_step = &problem.load_steps[last.load_step];
@@ -60,8 +60,8 @@ pub(super) fn followed_to(stages: &[Stage], problem: &PathProblem, history: &Loa
     })
 }
 
-/// The displacement of the load up to which a limit point is searched \[m\]: `stop.displacement`, else one span, or the height of a
-/// scene that is no arch. `None` if the path has a limit point, or goes to a factor.
+/// Returns the displacement of the load up to which a limit point is searched \[m\]: `stop.displacement`, otherwise one span,
+/// or the height of a scene that is not an arch. `None` if the path has a limit point, or has a target factor.
 pub(super) fn search_range(input: &CaseInput, problem: &PathProblem, solved: &PathAnswer) -> Option<f64> {
     let step = problem.load_steps.get(solved.load_step)?;
     let searches = matches!(step.end, LoadStepEnd::Collapse(_));
@@ -72,7 +72,7 @@ pub(super) fn search_range(input: &CaseInput, problem: &PathProblem, solved: &Pa
     Some(displacement.unwrap_or_else(|| input.assembly.search_range()))
 }
 
-/// The reason why a path ends at its limit point: that of the solver, else that of the question.
+/// Returns the reason why a path ends at its limit point: the reason of the solver, otherwise the reason in the question.
 pub(super) fn limit_point_end(
     settings: &PathSettings,
     problem: &PathProblem,
@@ -83,7 +83,7 @@ pub(super) fn limit_point_end(
     ended.then(|| solved.limit_point_end.or_else(asked)).flatten()
 }
 
-/// The reason that the question gives for a path that ends at a limit point of this load step.
+/// Returns the reason that the question gives for a path that ends at a limit point of this load step.
 pub(crate) fn asked_end(settings: &PathSettings, step: &LoadStep) -> Option<LimitPointEnd> {
     let stops_at_peak = settings.strategy(step.stage).is_some_and(|strategy| !strategy.passes_limit_points());
     match step.end {

@@ -1,4 +1,4 @@
-//! A limit solver's answer in the form of a result, with its certificate.
+//! The answer of a limit solver in the form of a result, with its certificate.
 
 use super::case_input::CaseInput;
 use super::ours::is_ours;
@@ -14,7 +14,7 @@ use voussoir_core::limit::{JointForce, LimitAnswer, LimitProblem, LimitQuestion,
 use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::model::{Assembly, Stage, StageLoads, Target};
 
-/// The result of one stage, certified, and whether a field of the answer carries the loads at the start of the stage.
+/// Returns the certified result of one stage, and true if a field of the answer carries the loads at the start of the stage.
 pub(super) fn certified(
     input: &CaseInput,
     stage: &Stage,
@@ -22,7 +22,7 @@ pub(super) fn certified(
     asked: LimitQuestion,
     (tag, mut solved): (&str, LimitAnswer),
 ) -> (CaseResult, bool) {
-    // The certificate checks only the end of the interval that is nearer to the start; the other end rests on the solver.
+    // The certificate checks only the end of the interval that is nearer to the start; the other end depends on the solver.
     solved.feasible_interval = solved.feasible_interval.filter(|_| is_ours(tag));
     let assembly = input.assembly;
     let field = solved.field.as_ref().map(|forces| contact_forces(problem, forces));
@@ -66,7 +66,7 @@ pub(super) fn certified(
     };
     let Verdict { certificate, status, bounds, greatest, start_is_carried } =
         certify(assembly, loads, &claim, input.settings.tolerance);
-    // Only evidence of the proved status goes into the result.
+    // The result contains only evidence of the proved status.
     let shows = |statuses: &[Status]| statuses.contains(&status);
     let believed = certificate.passed || is_ours(tag);
     let field = field.filter(|_| shows(&[Status::Stands, Status::Collapse, Status::Unbounded, Status::Open]));
@@ -80,7 +80,7 @@ pub(super) fn certified(
     }
     let [lower, upper] = bounds;
     let found = solved.factor.filter(|factor| own.is_some() && upper == Some(*factor) && believed);
-    // No check proves that a mechanism is the only one.
+    // No check proves that a mechanism is unique.
     let unique = solved.unique.filter(|unique| !unique || is_ours(tag));
     let result = CaseResult {
         status,
@@ -119,7 +119,8 @@ pub(super) fn certified(
     (result, start_is_carried)
 }
 
-/// Velocities of all bodies; those that refute equilibrium without a factor are scaled to a greatest jump of 1.
+/// Returns the velocities of all bodies; velocities that refute equilibrium without a factor are scaled to a greatest jump
+/// of 1.
 fn scaled_motion(assembly: &Assembly, problem: &LimitProblem, solved: &LimitAnswer) -> Option<Vec<CentroidVelocity>> {
     let mut motion = body_velocities(assembly, problem, solved.motion.as_ref()?);
     if (solved.status, solved.feasible_interval) == (Status::NoEquilibrium, None) {
@@ -129,8 +130,8 @@ fn scaled_motion(assembly: &Assembly, problem: &LimitProblem, solved: &LimitAnsw
     Some(motion)
 }
 
-/// Forces at the two ends of every joint; shear goes with the normal forces, so that each end's
-/// force lies in the cone of dry friction where the sum does.
+/// Returns the forces at the two ends of every joint. Shear is divided in proportion to the normal forces, so that the force
+/// at each end is in the cone of dry friction if the sum is.
 pub(super) fn contact_forces(problem: &LimitProblem, forces: &[JointForce]) -> Vec<ContactForce> {
     let mut contacts = Vec::with_capacity(2 * forces.len());
     for (joint, force) in problem.joints.iter().zip(forces).filter(|(joint, _)| joint.fill.is_none()) {
@@ -147,7 +148,7 @@ pub(super) fn contact_forces(problem: &LimitProblem, forces: &[JointForce]) -> V
     contacts
 }
 
-/// Velocity of every block at its centroid.
+/// Returns the velocity of every block at its centroid.
 pub(super) fn body_velocities(
     assembly: &Assembly,
     problem: &LimitProblem,

@@ -1,10 +1,10 @@
-//! Load and displacement of all states of a path, and what they say about each limit point: the energy that a dead load
-//! would release there, and the next state at the same load.
+//! Load and displacement of all states of a path, and data of each limit point: the energy that a dead load would release
+//! there, and the next state at the same load.
 
 use crate::results::NextState;
 use voussoir_core::path::{LoadStep, LoadStepEnd, PathProblem, PathState, ProvenPeak};
 
-/// Relative difference of two factors, or two displacements, that are the same.
+/// Relative difference up to which two factors, or two displacements, count as equal.
 const SAME: f64 = 1e-9;
 
 /// A state of a path.
@@ -12,7 +12,7 @@ const SAME: f64 = 1e-9;
 pub(super) struct Place {
     /// Index of the load step.
     pub load_step: usize,
-    /// λ.
+    /// Load factor λ.
     pub factor: f64,
     /// Work-conjugate displacement of the load \[m\].
     pub displacement: f64,
@@ -26,10 +26,10 @@ pub(super) struct LoadHistory {
     places: Vec<Place>,
 }
 
-/// What a path says about one of its limit points.
+/// Data of a limit point from the states of its path.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct AfterLimitPoint {
-    /// ∫ (λ_limit − λ) p·dq from the limit point until the load is back, or to the end of the path \[J\]. `None` if the path
+    /// ∫ (λ_limit − λ) p·dq from the limit point until the load has returned, or to the end of the path \[J\]. `None` if the path
     /// ends there or the stage moves supports.
     pub released_energy: Option<f64>,
     /// The next state at the same load that is not known to be unstable under it.
@@ -43,19 +43,19 @@ impl LoadHistory {
         self.places.push(Place { load_step, factor, displacement, stable_under_load });
     }
 
-    /// The last state.
+    /// Returns the last state.
     pub fn last(&self) -> Option<&Place> {
         self.places.last()
     }
 
-    /// How far the load has moved in a load step, at most \[m\].
+    /// Returns the greatest displacement of the load in a load step \[m\].
     pub fn moved(&self, load_step: usize) -> f64 {
         let own = || self.places.iter().filter(|at| at.load_step == load_step).map(|at| at.displacement);
         let start = own().next().unwrap_or(0.0);
         own().fold(0.0, |most, displacement| (displacement - start).abs().max(most))
     }
 
-    /// What follows each of these limit points, which are in the order of the path.
+    /// Returns the data after each of these limit points, which are in the order of the path.
     pub fn after(&self, limit_points: &[ProvenPeak], problem: &PathProblem) -> Vec<AfterLimitPoint> {
         let (mut load_step, mut from) = (None, 0);
         let one = |peak: &ProvenPeak| {
@@ -77,7 +77,7 @@ impl LoadHistory {
     }
 }
 
-/// 1 if the factor of a load step grows, −1 if it goes down.
+/// Returns 1 if the factor of a load step grows, −1 if it decreases.
 fn sense(step: &LoadStep) -> f64 {
     match step.end {
         LoadStepEnd::Factor(end) if end < step.start => -1.0,
@@ -92,13 +92,13 @@ struct Curve<'a> {
 }
 
 impl Curve<'_> {
-    /// How far a state is below a limit point.
+    /// Returns the difference between a limit point and a lower state.
     fn below(&self, peak: &ProvenPeak, at: &Place) -> f64 {
         (peak.factor - at.factor) * self.sense
     }
 
-    /// Index of the first state below a limit point and beyond it, searched from an index on. The limit point lies between two
-    /// states that are not above it, and one of them is a maximum of the states.
+    /// Returns the index of the first state below a limit point and beyond it, searched from an index on. The limit point is
+    /// between two states that are not above it, and one of them is a maximum of the states.
     fn beyond(&self, peak: &ProvenPeak, from: usize) -> Option<usize> {
         let slack = SAME * peak.factor.abs();
         let heights: Vec<f64> = self.places.iter().map(|at| -self.below(peak, at)).collect();
@@ -117,7 +117,7 @@ impl Curve<'_> {
         (top..self.places.len()).find(|at| heights[*at] < -slack)
     }
 
-    /// ∫ (λ_limit − λ) dδ from a limit point until the load is back, by the trapezoidal rule.
+    /// Returns ∫ (λ_limit − λ) dδ from a limit point until the load has returned, by the trapezoidal rule.
     fn released(&self, peak: &ProvenPeak, at: usize) -> f64 {
         let (mut height, mut place, mut area) = (0.0, peak.displacement, 0.0);
         for next in &self.places[at..] {
@@ -133,7 +133,7 @@ impl Curve<'_> {
         area * self.sense
     }
 
-    /// The first state that returns to the load of a limit point and is not known to be unstable.
+    /// Returns the first state that returns to the load of a limit point and is not known to be unstable.
     fn next_state(&self, peak: &ProvenPeak, at: usize) -> Option<NextState> {
         self.places[at..].windows(2).find_map(|pair| {
             let [before, after] = [self.below(peak, &pair[0]), self.below(peak, &pair[1])];
@@ -216,7 +216,7 @@ mod tests {
         let mut unstable = history(&SNAPS);
         unstable.places[4].stable_under_load = Some(false);
         assert_eq!(unstable.after(&[peak(1.0, 4.0)], &problem(SEARCH, Vec::new()))[0].next_state, None);
-        // The load falls and comes back once more, to a stable state.
+        // The load falls and returns again, to a stable state.
         for (place, stable) in [([6.0, 3.0], None), ([7.0, 5.0], Some(true))] {
             let [displacement, factor] = place;
             unstable.places.push(Place { load_step: 0, factor, displacement, stable_under_load: stable });

@@ -1,7 +1,7 @@
-//! From a case to its result: who solves it, and the answer with its certificate.
+//! From a case to its result: choice of the solver, solution and certificate.
 //!
-//! [`solve_case`] solves one case, [`solve_cases`] several side by side, [`explain`](explain::explain) says what
-//! would be solved. Checking a result without a solver is [`mod@crate::verify`].
+//! [`solve_case`] solves one case, [`solve_cases`] solves several in parallel, and [`explain`](explain::explain) describes the
+//! problem. [`mod@crate::verify`] checks a result without a solver.
 
 pub mod accuracy;
 pub(crate) mod associated_load;

@@ -1,82 +1,82 @@
-//! Looking on while a study is solved; libraries never print.
+//! Progress of a study while it is solved; libraries never print.
 
 use crate::results::CaseResult;
 use std::sync::atomic::{AtomicBool, Ordering};
 use voussoir_core::path::{PathProblem, PathState};
 
-/// Where the path of a case has come to.
+/// Progress of the path of a case.
 #[derive(Debug, Clone, Copy)]
 pub struct PathProgress<'a> {
     /// Id of the case.
     pub case: usize,
     /// Name of the stage.
     pub stage: &'a str,
-    /// Whether the stage's change of gravity grows, not its loads.
+    /// True if the stage's change of gravity grows, false if its loads grow.
     pub gravity: bool,
-    /// Factor of what grows.
+    /// Factor of the growing loads.
     pub factor: f64,
-    /// States in equilibrium so far: events of an exact path, steps of others.
+    /// Number of equilibrium states so far: events of an exact path, steps of other paths.
     pub states: u64,
-    /// What the path solver was given.
+    /// Problem of the path solver.
     pub problem: &'a PathProblem,
-    /// The state it has reached: displacements, contact forces, states of laws.
+    /// Current state: displacements, contact forces, states of laws.
     pub state: &'a PathState,
 }
 
-/// Follows a study while it is worked on.
+/// Follows the solution of a study.
 pub trait Observer: Sync {
-    /// So many cases are going to be solved.
+    /// Receives the number of cases that are going to be solved.
     fn begins(&self, cases: usize) {
         let _ = cases;
     }
 
-    /// What is done from now on, in a word or two, after the cases are solved.
+    /// Receives the name of the next phase, one or two words, after the cases are solved.
     fn phase(&self, what: &str) {
         let _ = what;
     }
 
-    /// A case is answered.
+    /// Receives the result of a case.
     fn answered(&self, case: &CaseResult) {
         let _ = case;
     }
 
-    /// A path has reached its next state; called often. Changes nothing.
+    /// Receives each state of a path; called often. Must not change anything.
     fn on_path(&self, at: &PathProgress) {
         let _ = at;
     }
 
-    /// Whether to stop: asked before each case and after each state of a path. A case that was cut short has no
-    /// result; those answered before keep theirs.
+    /// Returns true to stop. It is called before each case and after each state of a path. A cancelled case has no result;
+    /// earlier results are kept.
     fn cancelled(&self) -> bool {
         false
     }
 }
 
-/// Nobody looks on.
+/// An observer that does nothing.
 #[derive(Debug, Clone, Copy)]
 pub struct Unobserved;
 
 impl Observer for Unobserved {}
 
-/// What a [`Watch`] is told.
+/// An event for a [`Watch`].
 #[derive(Debug, Clone, Copy)]
 pub enum RunEvent<'a> {
-    /// So many cases are going to be solved.
+    /// The number of cases that are going to be solved.
     Begins(usize),
-    /// A path has reached its next state.
+    /// The next state of a path.
     State(&'a PathProgress<'a>),
-    /// A case is answered.
+    /// The result of a case.
     Answered(&'a CaseResult),
 }
 
-/// An observer made of a function that says whether to go on; once it said `false` it is not called again.
+/// An observer made of a function that returns false to stop; it is not called again after that.
 pub struct Watch<F> {
     watch: F,
     cancelled: AtomicBool,
 }
 
 impl<F: Fn(RunEvent) -> bool + Sync> Watch<F> {
-    /// An observer that calls a function.
+    /// Creates an observer that calls a function.
     pub fn new(watch: F) -> Self {
         Watch { watch, cancelled: AtomicBool::new(false) }
     }

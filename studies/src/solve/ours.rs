@@ -1,7 +1,7 @@
 //! The solvers and strategies that belong to this project.
 //!
-//! Some ends of paths are not proved by states and witnesses. They are believed if solver and strategy belong to this project; a path
-//! from elsewhere is then `open` at best.
+//! Some ends of paths are not proved by states and witnesses. They are accepted if solver and strategy belong to this
+//! project. The same end of a path by another solver is reported as `open`.
 
 use voussoir_core::path::PathSettings;
 

@@ -1,4 +1,4 @@
-//! Solves a case along its path and checks every state. A stored path can take the place of the solver.
+//! Solves a case along its path and checks every state. A stored path can replace the solver.
 
 use super::auto::{TaggedPathSolver, path_solvers, willing};
 use super::case_input::CaseInput;
@@ -13,20 +13,20 @@ use std::sync::Arc;
 use voussoir_core::certificate::{Displaced, PathChain, PathChecker, tolerance};
 use voussoir_core::path::{PathAnswer, PathObserver, PathProblem, PathSolver, PathState, Unobserved};
 
-/// A path's certificate, with somebody else who looks on.
+/// The certificate of a path, together with another observer.
 struct Watched<'a> {
     input: &'a CaseInput<'a>,
     structure: Arc<PathProblem>,
     checker: PathChecker,
     chain: PathChain,
     observer: &'a mut dyn PathObserver,
-    /// Whether that somebody has ended the path.
+    /// True if the other observer has ended the path.
     ended: bool,
     /// The last state of each stage, by index.
     ends: Vec<Option<PathState>>,
     progress: Progress,
     recorder: Recorder<'a>,
-    /// The first state that cannot be read, in words.
+    /// The error of the first state that cannot be read.
     malformed: Result<(), String>,
 }
 
@@ -40,7 +40,7 @@ impl PathObserver for Watched<'_> {
         self.progress.add(problem, state);
         self.recorder.state(problem, state);
         if self.chain.broken().is_none() {
-            // Gaps are not stored. The chain takes those that follow from forces and motions, now and when it is read back.
+            // Gaps are not stored. The chain computes them from forces and motions, now and when it is read back.
             let gap = Displaced::new(&self.structure, state, self.input.settings.finite).gaps();
             self.chain.add(&PathState { gap, ..state.clone() });
         }
@@ -68,7 +68,7 @@ impl<'a> Watched<'a> {
         })
     }
 
-    /// The result of a path whose states have been seen. If it is `believed`, parts that no check proves are kept.
+    /// Returns the result of a path from its recorded states. If it is `believed`, parts that no check proves are kept.
     fn result(
         self,
         problem: &PathProblem,
@@ -80,14 +80,14 @@ impl<'a> Watched<'a> {
         if let Err(why) = malformed.and_then(|()| solved.check_form(problem)) {
             return failed(tag, format!("{tag}: {why}"));
         }
-        // A solver may ask for less, never for more.
+        // A solver may require a stricter tolerance, never a looser one.
         let energy = solver.energy_tolerance().min(tolerance("path_energy").result);
         let seen = Seen { checker, chain, ends, progress, energy, states: recorder.chosen(), believed };
         path_result(input, tag, problem, solved, seen)
     }
 }
 
-/// Solves a case along its path by the first solver that accepts it; `observer` sees every state.
+/// Solves a case along its path by the first solver that accepts it; `observer` gets every state.
 pub(super) fn solve_by_path(
     input: &CaseInput,
     solvers: &[TaggedPathSolver],
@@ -118,8 +118,8 @@ fn traced(
     watched.result(problem, (tag, solver.as_ref()), solved, path_is_ours(tag, input.settings))
 }
 
-/// The result that the states and witnesses of a stored path prove, without solving and without trust in who has stored them.
-/// The answer is said to come from the solver `tag`.
+/// Returns the result that the states and witnesses of a stored path prove, without solving and for any author of the path.
+/// The result names the solver `tag`.
 ///
 /// # Errors
 /// The first reason why they do not prove the end of the path.

@@ -1,8 +1,8 @@
 //! The end of a path, proved by its states and witnesses without trust in its solver.
 //!
-//! The states are a chain: each follows from the one before. A witness is a proof about rates at one of them. So a limit point is proved
-//! by a witness that no rate raises the load there, a plateau by the same and a mechanism, a target by a chain that reaches it. If laws have
-//! a history, a limit point is proved for the loading set of the rate just beyond it.
+//! The states are a chain: each follows from the previous one. A witness is a proof about rates at one of them. A limit point
+//! is proved by a witness that no rate raises the load there. A plateau needs this witness and a mechanism. A target is proved
+//! by a chain that reaches it. If laws have a history, a limit point is proved for the loading set of the rate just beyond it.
 
 use super::limit_points::asked_end;
 use crate::results::EndProof;
@@ -15,10 +15,10 @@ use voussoir_core::path::{
 
 /// Share of the greatest limit point to which the load has fallen at the end of the range.
 const RANGE: f64 = 0.5;
-/// Relative difference of two loads that is rounding.
+/// Relative difference of two loads below which it is rounding.
 const SAME: f64 = 1e-12;
 
-/// Relative change of a load that stands still.
+/// Relative change of a load below which the load is stationary.
 const STANDS_STILL: f64 = 1e-6;
 
 /// Least dissipation of sliding, relative to the work of contact forces and of the load.
@@ -34,7 +34,7 @@ pub(super) struct PathProof<'a> {
     one_loading_set: Cell<bool>,
 }
 
-/// 1 if a load step raises its factor, else −1.
+/// Returns 1 if a load step raises its factor, otherwise −1.
 fn sense(step: &LoadStep) -> f64 {
     match step.end {
         LoadStepEnd::Factor(end) if end < step.start => -1.0,
@@ -43,7 +43,7 @@ fn sense(step: &LoadStep) -> f64 {
 }
 
 impl<'a> PathProof<'a> {
-    /// The proof of an answer whose states are a chain.
+    /// Creates the proof of an answer whose states are a chain.
     pub fn new(
         chain: &'a PathChain,
         problem: &'a PathProblem,
@@ -56,7 +56,7 @@ impl<'a> PathProof<'a> {
     /// Checks the end that the solver claims.
     ///
     /// # Errors
-    /// The first part that is not proved, in words.
+    /// The first part that is not proved.
     pub fn end(&self) -> Result<EndProof, String> {
         self.check_end()?;
         Ok(if self.one_loading_set.get() { EndProof::LoadingSet } else { EndProof::StatesAndWitnesses })
@@ -82,7 +82,7 @@ impl<'a> PathProof<'a> {
         }
     }
 
-    /// A mechanism at the last state, or a limit point below which the load stays up to the end of the range.
+    /// Checks that a mechanism is at the last state, or a limit point below which the load stays up to the end of the range.
     fn collapse(&self) -> Result<(), String> {
         self.check_falls()?;
         let state = &self.solved.state;
@@ -102,13 +102,13 @@ impl<'a> PathProof<'a> {
         by_mechanism().or_else(|why| by_range().map_err(|_| why))
     }
 
-    /// A mechanism that refutes equilibrium by itself. On another path friction that is not associated may carry the dead load.
+    /// Checks a mechanism that refutes equilibrium by itself. On another path, non-associated friction may carry the dead load.
     fn no_equilibrium(&self) -> Result<(), String> {
         let motion = self.solved.motion.as_deref().ok_or("no mechanism")?;
         self.chain.check_collapse(&self.solved.state, motion, &[])
     }
 
-    /// The ray that carries any load.
+    /// Checks the ray that carries any load.
     fn ray(&self) -> Result<(), String> {
         let state = &self.solved.state;
         let loading = &self.problem.load_steps[state.load_step].loading;
@@ -121,7 +121,7 @@ impl<'a> PathProof<'a> {
         self.chain.check_ray(self.witnesses(state).next().ok_or("no witness of the ray")?)
     }
 
-    /// A limit point with the reason why the path ends at it: the question, a joint that is lost, or that no rate leads on.
+    /// Checks a limit point with the reason why the path ends at it: the question, a lost joint, or that no rate continues.
     fn ends_at_limit_point(&self) -> Result<(), String> {
         let state = &self.solved.state;
         let asked = asked_end(self.settings, &self.problem.load_steps[state.load_step]);
@@ -148,7 +148,7 @@ impl<'a> PathProof<'a> {
         }
     }
 
-    /// No rate raises the load at a state of the chain; if laws have a history, none of one loading set.
+    /// Checks that no rate raises the load at a state of the chain; if laws have a history, no rate of one loading set.
     fn limit_point(&self, state: &PathState) -> Result<(), String> {
         let witnesses: Vec<&Witness> = self.witnesses(state).collect();
         if !self.chain.has_history() {
@@ -158,7 +158,7 @@ impl<'a> PathProof<'a> {
         self.chain.check_loading_set(state, &witnesses)
     }
 
-    /// Witnesses at a state.
+    /// Returns the witnesses at a state.
     fn witnesses(&self, state: &PathState) -> impl Iterator<Item = &Witness> {
         let (load_step, factor) = (state.load_step, state.factor);
         self.solved.witnesses.iter().filter(move |own| own.state.load_step == load_step && own.state.factor == factor)
@@ -168,7 +168,7 @@ impl<'a> PathProof<'a> {
         self.chain.states().filter(move |own| own.load_step == load_step)
     }
 
-    /// No state of its load step has a greater load, in the sense of the step.
+    /// Checks that no state of its load step has a greater load, in the direction of the step.
     fn is_greatest(&self, state: &PathState) -> Result<(), String> {
         let sense = sense(&self.problem.load_steps[state.load_step]);
         let lower = |own: &PathState| (own.factor - state.factor) * sense <= SAME * state.factor.abs();
@@ -179,17 +179,18 @@ impl<'a> PathProof<'a> {
         }
     }
 
-    /// The chain ends at a state.
+    /// Checks that the chain ends at a state.
     fn is_last(&self, state: &PathState) -> Result<(), String> {
         let last = self.chain.states().last();
         let ends = last.is_some_and(|last| last.load_step == state.load_step && last.factor == state.factor);
         if ends { Ok(()) } else { Err("the path goes on behind its limit point".into()) }
     }
 
-    /// States of the chain behind which the load falls after it has risen, each by more than a load that stands still.
+    /// Returns the states of the chain after which the load falls after it has risen, each by more than the tolerance of a
+    /// stationary load.
     fn maxima(&self) -> Vec<&PathState> {
         let mut found: Vec<&PathState> = Vec::new();
-        // The greatest load since the last trough, or the least one since the last limit point.
+        // The greatest load since the last minimum, or the least load since the last limit point.
         let mut turn: Option<(&PathState, bool)> = None;
         for state in self.chain.states() {
             let Some((last, rises)) = turn.filter(|(last, _)| last.load_step == state.load_step) else {
@@ -212,7 +213,7 @@ impl<'a> PathProof<'a> {
         found
     }
 
-    /// Every state behind which the load falls is a limit point, and the load never falls by mere unloading.
+    /// Checks that every state after which the load falls is a limit point, and that the load never falls by unloading only.
     fn check_falls(&self) -> Result<(), String> {
         self.maxima().into_iter().try_for_each(|state| self.limit_point(state))?;
         let states: Vec<&PathState> = self.chain.states().collect();
@@ -230,15 +231,15 @@ impl<'a> PathProof<'a> {
         Ok(())
     }
 
-    /// True if the load does not fall by unloading: friction dissipates, or the load moves on. If all that slid has stopped and the
-    /// structure is stable, its load moves back as it falls, and nothing dissipates. An elastic branch on which the load falls can
-    /// be followed no other way than on.
+    /// Returns true if the load does not fall by unloading: friction dissipates, or the load moves on. If all sliding has stopped
+    /// and the structure is stable, the load moves back as it falls, and nothing dissipates. An elastic branch with a falling load
+    /// can be followed only forwards.
     fn goes_on(&self, before: &PathState, after: &PathState) -> bool {
         let moved = (after.displacement - before.displacement) * sense(&self.problem.load_steps[after.load_step]);
         moved > 0.0 || self.dissipation(before, after) > DISSIPATES
     }
 
-    /// Dissipation between two states, relative to the work of contact forces and of the load.
+    /// Returns the dissipation between two states, relative to the work of contact forces and of the load.
     fn dissipation(&self, before: &PathState, after: &PathState) -> f64 {
         let forces = before.force.as_flattened().iter().zip(after.force.as_flattened()).map(|(a, b)| 0.5 * (a + b));
         let gaps = before.gap.as_flattened().iter().zip(after.gap.as_flattened()).map(|(a, b)| b - a);
@@ -249,8 +250,9 @@ impl<'a> PathProof<'a> {
         dissipated / size.max(work).max(f64::MIN_POSITIVE)
     }
 
-    /// After a state the load never exceeds it up to the end of the range: the end that the stage asks for, else half of this load, counted
-    /// from the start of its load step, or a displacement of one span. A joint that is lost ends the range too.
+    /// Checks that after a state the load never exceeds it up to the end of the range: the end that the stage requests, otherwise
+    /// half of this load, measured from the start of its load step, or a displacement of one span. A lost joint also ends the
+    /// range.
     fn falls_after(&self, state: &PathState) -> Result<(), String> {
         let step = &self.problem.load_steps[state.load_step];
         let of_step = || self.of_step(state.load_step);
@@ -274,7 +276,7 @@ impl<'a> PathProof<'a> {
         if ended { Ok(()) } else { Err("the states end before the end of the range".into()) }
     }
 
-    /// The limit points that are proved, as the states give them.
+    /// Returns the limit points that are proved by the states.
     pub fn limit_points(&self) -> Vec<ProvenPeak> {
         let maxima = self.maxima();
         let mut states = maxima.clone();

@@ -1,4 +1,4 @@
-//! A path solver's answer in the form of a result, with its certificate.
+//! The answer of a path solver in the form of a result, with its certificate.
 
 use super::associated_load::associated_load;
 use super::case_input::CaseInput;
@@ -37,7 +37,7 @@ use voussoir_core::path::{Branching, PathAnswer, PathEvent, PathProblem, PathSta
 const LOADING_SET: &str = "the limit point is proved for the loading set that was found: another set of points that soften or \
      yield may have a rate that raises the load";
 
-/// What was seen of a path.
+/// Recorded data of a path.
 pub(super) struct Seen {
     /// Residuals of all states.
     pub checker: PathChecker,
@@ -47,7 +47,7 @@ pub(super) struct Seen {
     pub ends: Vec<Option<PathState>>,
     /// The load steps that the states have reached.
     pub progress: Progress,
-    /// How much of the energy of a stage its steps may lose.
+    /// Share of the energy of a stage that its steps may lose.
     pub energy: f64,
     /// States that are kept.
     pub states: Vec<StateEntry>,
@@ -55,7 +55,7 @@ pub(super) struct Seen {
     pub believed: bool,
 }
 
-/// The result of a path.
+/// Returns the result of a path.
 pub(super) fn path_result(
     input: &CaseInput,
     tag: &str,
@@ -86,7 +86,7 @@ pub(super) fn path_result(
         leave_out_unproved(&mut solved, end_proof.is_some());
         solved.limit_points = limit_points;
         if finite {
-            // The rate just behind a limit point is not checked.
+            // The rate just after a limit point is not checked.
             solved.motion = None;
         }
     }
@@ -125,7 +125,7 @@ pub(super) fn path_result(
     };
     let rates = scaled_rates(assembly, problem, &solved);
     let motion = rates.as_ref().map(|rates| velocities(assembly, problem, rates, None));
-    // The mechanism is read at the undeformed place, velocities are those at the displaced one.
+    // The mechanism is evaluated in the undeformed position, velocities in the displaced one.
     let mechanism = motion
         .as_deref()
         .and_then(|motion| mechanism_of((assembly, problem), &solved.state, motion, solved.unique, finite))
@@ -183,7 +183,7 @@ pub(super) fn path_result(
     }
 }
 
-/// Removes the parts of an answer that no check proves. They are not believed if the solver is from outside this project.
+/// Removes the parts of an answer that no check proves. They are not accepted from a solver outside this project.
 fn leave_out_unproved(solved: &mut PathAnswer, end_is_checked: bool) {
     solved.limit_points.clear();
     solved.limit_point_end = solved.limit_point_end.filter(|_| end_is_checked);
@@ -214,12 +214,12 @@ fn prefer_symmetric(assembly: &Assembly, checker: &PathChecker, solved: &mut Pat
     };
     let loading = &structure.load_steps[solved.load_step].loading;
     if let Some(mean) = symmetric(assembly, &structure, loading, &solved.state.force, rates) {
-        // Its mirror image is another.
+        // Its mirror image is another mechanism.
         (solved.motion, solved.unique) = (Some(mean), Some(false));
     }
 }
 
-/// What the state, the events and the curve of a path are written as.
+/// Returns the record of the state, the events and the curve of a path.
 fn path_record(
     input: &CaseInput,
     problem: &PathProblem,
@@ -266,7 +266,7 @@ fn branch(stages: &[Stage], problem: &PathProblem, branching: &Branching) -> Bra
     }
 }
 
-/// Results of stages with the stability of their last states.
+/// Adds the stability of their last states to the results of stages.
 fn with_stability(mut results: Vec<StageResult>, found: &[StageStability]) -> Vec<StageResult> {
     for (index, result) in results.iter_mut().enumerate() {
         let Some(own) = found.iter().find(|own| own.stage == index) else { continue };
@@ -284,7 +284,7 @@ fn with_stability(mut results: Vec<StageResult>, found: &[StageStability]) -> Ve
     results
 }
 
-/// Residuals of all states and, if forces `rest` along the mechanism, of its flow, against their bounds.
+/// Returns the residuals of all states, with their tolerances. If forces `rest` along the mechanism, its flow is included.
 fn certificate(solved: &PathAnswer, checker: &PathChecker, rest: bool, energy: f64) -> Certificate {
     let mut certificate = Certificate { passed: true, residuals: BTreeMap::new(), failures: Vec::new() };
     for (name, value) in &checker.worst {
@@ -306,7 +306,7 @@ fn certificate(solved: &PathAnswer, checker: &PathChecker, rest: bool, energy: f
     certificate
 }
 
-/// A warning where the mesh is coarse beside the characteristic length of a softening joint.
+/// Returns a warning if the mesh is coarse compared with the characteristic length of a softening joint.
 fn coarse_note(problem: &PathProblem, assembly: &Assembly) -> Option<String> {
     coarse_joints(problem, assembly).first().map(|coarse| {
         format!(
@@ -317,20 +317,20 @@ fn coarse_note(problem: &PathProblem, assembly: &Assembly) -> Option<String> {
     })
 }
 
-/// Forces at the contact points of joints in the form of certificates; those of the fill come after them.
+/// Returns the forces at the contact points of joints in the form of certificates, followed by the forces of the fill.
 fn contact_forces(assembly: &Assembly, problem: &PathProblem, forces: &[[f64; 2]]) -> Vec<ContactForce> {
     let joints = assembly.joints.len();
     let pairs = problem.contacts.iter().zip(forces).filter(|(c, _)| c.joint < joints);
     pairs.map(|(c, force)| ContactForce { joint: c.joint, point: c.position, force: *force }).collect()
 }
 
-/// Those of them at joints that are not bonded.
+/// Returns the forces at joints that are not bonded.
 fn unbonded(problem: &PathProblem, field: &[ContactForce]) -> Vec<ContactForce> {
     let pairs = problem.contacts.iter().zip(field);
     pairs.filter(|(contact, _)| !contact.law.is_bonded()).map(|(_, force)| *force).collect()
 }
 
-/// Rates of the path's bodies; those that refute equilibrium are scaled to a greatest jump of 1.
+/// Returns the rates of the path's bodies; rates that refute equilibrium are scaled to a greatest jump of 1.
 fn scaled_rates(assembly: &Assembly, problem: &PathProblem, solved: &PathAnswer) -> Option<Vec<[f64; 3]>> {
     let mut rates = solved.motion.clone()?;
     if solved.status == Status::NoEquilibrium {
@@ -340,7 +340,7 @@ fn scaled_rates(assembly: &Assembly, problem: &PathProblem, solved: &PathAnswer)
     Some(rates)
 }
 
-/// What each stage came to: those before `last` stood; those after it, where it stands, change nothing.
+/// Returns the results of all stages: stages before `last` stand; stages after it change nothing if it stands.
 fn stage_results(
     stages: &[Stage],
     last: usize,
@@ -373,7 +373,7 @@ fn stage_results(
     results
 }
 
-/// What happened at joints; what the fill does is no event.
+/// Returns the events of joints; changes in the fill are not events.
 fn events(input: &CaseInput, problem: &PathProblem, events: &[PathEvent]) -> Vec<EventEntry> {
     let (stages, joints) = (input.stages, input.assembly.joints.len());
     let entry = |event: &PathEvent| {
@@ -390,7 +390,7 @@ fn events(input: &CaseInput, problem: &PathProblem, events: &[PathEvent]) -> Vec
     events.iter().filter(|event| problem.contacts[event.contact].joint < joints).map(entry).collect()
 }
 
-/// Displacement of every block at its centroid from the rigid motions of the path's bodies.
+/// Returns the displacement of every block at its centroid, from the rigid motions of the path's bodies.
 pub(super) fn displacements(
     assembly: &Assembly,
     problem: &PathProblem,
@@ -399,7 +399,7 @@ pub(super) fn displacements(
 ) -> Vec<[f64; 3]> {
     let of_block = |block: usize| {
         let body = problem.body_of[block];
-        // A path that has not begun has no motion.
+        // A path without states has no motion.
         let own = motion.get(body).copied().unwrap_or_default();
         let u = carried(own, problem.bodies[body].pole, assembly.inertia(block).centroid, finite);
         [u.x, u.y, own[2]]
@@ -407,9 +407,8 @@ pub(super) fn displacements(
     (0..assembly.bodies.len()).map(of_block).collect()
 }
 
-/// Velocity of every block at its centroid from those of the path's bodies about their poles, which
-/// are in the places that `placed` moves them to. What moves by rounding beside the greatest stands
-/// still where the ground holds it.
+/// Returns the velocity of every block at its centroid, from the velocities of the path's bodies about their poles at the
+/// positions of `placed`. Velocities of fixed blocks that are rounding errors of the greatest velocity become zero.
 fn velocities(
     assembly: &Assembly,
     problem: &PathProblem,

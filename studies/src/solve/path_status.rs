@@ -1,4 +1,4 @@
-//! The status that the states of a path prove; the status in the solver's answer is a hint.
+//! The status that the states of a path prove; the status in the solver's answer is only a hint.
 
 use super::associated_load::AssociatedLoad;
 use super::load_history::LoadHistory;
@@ -6,30 +6,30 @@ use voussoir_core::certificate::Certificate;
 use voussoir_core::limit::{Greatest, Status};
 use voussoir_core::path::{LoadStep, LoadStepEnd, PathProblem, PathState};
 
-/// Relative distance from the end of a load step up to which a state counts as being there.
+/// Relative distance from the end of a load step within which a state has reached it.
 const REACHED: f64 = 1e-12;
 
-/// Relative difference of the loads of a path and of limit analysis up to which they agree.
+/// Relative difference up to which the loads of a path and of limit analysis agree.
 const SAME_LOAD: f64 = 1e-6;
 
-/// Relative difference of two bounds of a load factor up to which they meet.
+/// Relative difference up to which two bounds of a load factor meet.
 const SAME_BOUNDS: f64 = 1e-9;
 
-/// States of a path, in the order in which its solver reported them.
+/// States of a path, in the order of the solver's reports.
 #[derive(Debug, Default)]
 pub(super) struct Progress {
     /// The last state.
     last: Option<PathState>,
     /// The state with the greatest factor of the last load step, if it is not the last state.
     greatest: Option<PathState>,
-    /// Number of load steps whose end a state has reached, one after the other.
+    /// Number of load steps whose end a state has reached, in order.
     completed: usize,
     /// Load and displacement of all states.
     pub history: LoadHistory,
 }
 
 impl Progress {
-    /// Takes the next state over.
+    /// Adds the next state.
     pub fn add(&mut self, problem: &PathProblem, state: &PathState) {
         self.history.add(state);
         if let Some(before) = self.last.replace(state.clone()) {
@@ -49,7 +49,7 @@ impl Progress {
         }
     }
 
-    /// Takes over the state of a located peak, which solvers do not report as a step.
+    /// Adds the state of a located peak, which solvers do not report as a step.
     pub fn add_peak(&mut self, state: &PathState) {
         let Some(last) = &self.last else { return };
         let highest = self.greatest_of(last.load_step).is_none_or(|greatest| state.factor > greatest.factor);
@@ -58,12 +58,12 @@ impl Progress {
         }
     }
 
-    /// The load step of the last state.
+    /// Returns the load step of the last state.
     pub fn load_step(&self) -> Option<usize> {
         self.last.as_ref().map(|state| state.load_step)
     }
 
-    /// The state with the greatest factor of a load step.
+    /// Returns the state with the greatest factor of a load step.
     pub fn greatest_of(&self, load_step: usize) -> Option<&PathState> {
         let of_step = self.greatest.iter().chain(&self.last).filter(|state| state.load_step == load_step);
         of_step.max_by(|a, b| a.factor.total_cmp(&b.factor))
@@ -102,9 +102,9 @@ pub(super) struct Evidence<'a> {
     pub certificate: &'a Certificate,
     /// The check of the end; not needed if solver and strategies belong to this project.
     pub end: Result<(), String>,
-    /// Set if a static field at the target is proof enough: small displacements and associated flow, without softening.
+    /// True if a static field at the target is a sufficient proof: small displacements and associated flow, without softening.
     pub field_is_proof: bool,
-    /// The load of limit analysis with associated flow, if no state of the path can lie above it.
+    /// The load of limit analysis with associated flow, if no state of the path can be above it.
     pub associated: Option<&'a AssociatedLoad>,
 }
 
@@ -112,14 +112,14 @@ pub(super) struct Evidence<'a> {
 pub(super) struct PathVerdict {
     pub status: Status,
     pub greatest: Greatest,
-    /// Proved ends of the load factor of an open result.
+    /// Proved bounds of the load factor of an open result.
     pub bounds: [Option<f64>; 2],
-    /// Reasons why the hint is not believed.
+    /// Reasons why the hint is not accepted.
     pub failures: Vec<String>,
 }
 
 impl Evidence<'_> {
-    /// The status that is proved.
+    /// Returns the proved status.
     pub fn decide(&self) -> PathVerdict {
         if !self.certificate.passed {
             return PathVerdict { failures: Vec::new(), ..PathVerdict::nothing() };
@@ -154,7 +154,7 @@ impl Evidence<'_> {
         PathVerdict { status, greatest: Greatest::Open, bounds, failures }
     }
 
-    /// Both bounds of the load factor, if the path collapses at the associated load of its last stage.
+    /// Returns both bounds of the load factor, if the path collapses at the associated load of its last stage.
     fn meets_associated_load(&self) -> Option<[f64; 2]> {
         let (status, load_step, factor) = self.hint;
         let is_last = load_step + 1 == self.problem.load_steps.len();
@@ -162,7 +162,7 @@ impl Evidence<'_> {
         meeting_bounds(factor?, load)
     }
 
-    /// The reason why the end of a path is not proved.
+    /// Returns the reason why the end of a path is not proved.
     fn unproved_end(&self, load_step: usize) -> String {
         let moved = self.progress.history.moved(load_step);
         match self.range.filter(|range| moved >= *range) {
@@ -175,8 +175,8 @@ impl Evidence<'_> {
         }
     }
 
-    /// The reason why limit analysis contradicts the claim: the path ends above the associated load, or below it although
-    /// flow is associated, or it goes past it.
+    /// Returns the reason why limit analysis contradicts the claim: the path ends above the associated load, or below it although
+    /// flow is associated, or it continues past it.
     fn contradiction(&self, step: &LoadStep) -> Option<String> {
         let AssociatedLoad { factor: limit, unit, associated, .. } = *self.associated?;
         let (status, load_step, factor) = self.hint;
@@ -201,8 +201,8 @@ impl Evidence<'_> {
         }
     }
 
-    /// Proved ends of the load factor of the stage at which the path breaks off: its greatest state and, of the last stage,
-    /// the associated load.
+    /// Returns the proved bounds of the load factor of the stage at which the path ends early: its greatest state and, for the
+    /// last stage, the associated load.
     fn proved_ends(&self) -> [Option<f64>; 2] {
         let Some(at) = self.progress.load_step() else { return [None; 2] };
         let step = &self.problem.load_steps[at];
@@ -216,20 +216,20 @@ impl Evidence<'_> {
     }
 }
 
-/// A lower end, proved by the state of a path, and the associated load as the upper end, if they meet.
+/// Returns the lower bound, proved by the state of a path, and the associated load as the upper bound, if they meet.
 pub(crate) fn meeting_bounds(lower: f64, load: &AssociatedLoad) -> Option<[f64; 2]> {
     let meets = (lower - load.factor).abs() <= SAME_BOUNDS * load.factor.abs().max(1e-3 * load.unit);
     meets.then(|| [lower.min(load.factor), lower.max(load.factor)])
 }
 
-/// A lower and an upper end in their order. The state of a path may lie above the associated load by its tolerance; a state
-/// that lies further above proves nothing.
+/// Returns a lower and an upper bound in their order. The state of a path may be above the associated load by its tolerance;
+/// a state further above proves nothing.
 pub(crate) fn ordered(lower: Option<f64>, upper: Option<f64>) -> [Option<f64>; 2] {
     let Some((low, high)) = lower.zip(upper) else { return [lower, upper] };
     [(low <= high + SAME_LOAD * high.abs()).then_some(low.min(high)), upper]
 }
 
-/// The reason why a path from elsewhere proves no more than its states.
+/// The reason why a path of another project's solver proves no more than its states.
 pub(crate) const ELSEWHERE: &str =
     "the end of a path by a solver or strategy from outside this project is not proved, only its states";
 

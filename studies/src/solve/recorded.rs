@@ -5,19 +5,19 @@ use super::path_result::displacements;
 use crate::results::StateEntry;
 use voussoir_core::path::{PathProblem, PathState};
 
-/// Keeps states while a path is followed.
+/// Records states while a path is followed.
 pub(super) struct Recorder<'a> {
     input: CaseInput<'a>,
     all: Vec<StateEntry>,
 }
 
 impl<'a> Recorder<'a> {
-    /// Keeps nothing unless the case asks for it.
+    /// Creates a recorder; it records nothing unless the case requests it.
     pub fn new(input: &CaseInput<'a>) -> Self {
         Recorder { input: *input, all: Vec::new() }
     }
 
-    /// Sees a state.
+    /// Records a state.
     pub fn state(&mut self, problem: &PathProblem, state: &PathState) {
         if self.input.states == 0 {
             return;
@@ -36,7 +36,8 @@ impl<'a> Recorder<'a> {
         });
     }
 
-    /// As many as were asked for, evenly over the path, with the ends of stages and the greatest factor of the last.
+    /// Returns the requested number of states, evenly over the path, with the ends of stages and the greatest factor of the last
+    /// stage.
     pub fn chosen(self) -> Vec<StateEntry> {
         let Some(last) = self.all.len().checked_sub(1) else { return Vec::new() };
         let wanted = self.input.states.max(2);

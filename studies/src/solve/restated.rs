@@ -3,9 +3,9 @@
 use crate::study::{Case, Study, StudySource};
 use serde_json::{Value as Json, json};
 
-/// The case with these dotted keys set; an error says what is wrong with them.
+/// Returns the case with these dotted keys set; the error lists mistakes in them.
 pub(crate) fn restated(case: &Case, sets: impl IntoIterator<Item = (String, Json)>) -> Result<Case, String> {
-    // Whatever its study does with many cases, this is one.
+    // The result is a single case, for any kind of study.
     let run = ("kind".to_string(), json!("run"));
     let sets: Vec<_> = [run].into_iter().chain(sets).collect();
     let study = StudySource::of_value(&case.resolved.to_json(), &sets).and_then(Study::from_source);

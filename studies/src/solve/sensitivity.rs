@@ -1,8 +1,7 @@
-//! `sensitivities = true`: how the load factor of limit analysis changes with every number of the study.
+//! `sensitivities = true`: derivatives of the load factor of limit analysis with respect to every number of the study.
 //!
-//! The problem is assembled again at two values on each side of a number, with the same joints and blocks; from the
-//! differences of the data the derivative follows by the optimal face, which is that of the answer: nothing is solved
-//! again.
+//! The problem is assembled again at two values on each side of a number, with the same joints and blocks. The derivative
+//! follows from the differences of the data and from the optimal face of the result: no problem is solved again.
 
 use super::restated::restated;
 use crate::results::{CaseResult, SensitivityEntry};
@@ -16,13 +15,13 @@ use voussoir_solvers::limit::sensitivity::{DataRate, OptimalFace, same_data};
 
 /// Step of the differences of data, as a share of the number.
 const STEP: f64 = 1e-5;
-/// Derivatives that differ by less than this share are one.
+/// Relative difference up to which two derivatives are equal.
 const KINK: f64 = 1e-6;
 
 /// Derivatives below this, relative to factor over number, are zero.
 const NOTHING: f64 = 1e-9;
 
-/// What a number that is zero is compared with, in the unit of its quantity.
+/// Returns the scale of a number that is zero, in the unit of its quantity.
 fn usual(quantity: Quantity) -> f64 {
     match quantity {
         Quantity::Ratio | Quantity::Length | Quantity::Radians => 1.0,
@@ -35,19 +34,19 @@ fn usual(quantity: Quantity) -> f64 {
     }
 }
 
-/// The problem of the stage that collapses, and its place.
+/// Returns the problem of the stage that collapses.
 fn problem_of(case: &Case) -> Result<LimitProblem, String> {
     let loads = stage_loads(&case.assembly, &case.stages);
     let last = loads.last().ok_or("the study has no stage")?;
     LimitProblem::new(&case.assembly, last)
 }
 
-/// The problem of the case with some numbers changed.
+/// Returns the problem of the case with some numbers changed.
 fn assembled(case: &Case, changed: Option<(&str, f64)>) -> Result<LimitProblem, String> {
     problem_of(&restated(case, changed.map(|(key, value)| (key.to_string(), json!(value))))?)
 }
 
-/// Forces in the joints of the problem, from those of a result.
+/// Returns the forces in the joints of the problem, from the forces of a result.
 fn forces(problem: &LimitProblem, result: &CaseResult) -> Result<Vec<JointForce>, String> {
     let field = result.proof.field.as_deref().unwrap_or_default();
     let mut contacts = field.iter();
@@ -63,7 +62,7 @@ fn forces(problem: &LimitProblem, result: &CaseResult) -> Result<Vec<JointForce>
     problem.joints.iter().map(|joint| joint.fill).map(joint).collect()
 }
 
-/// Velocities of the problem's groups about its pole, from those of a result's blocks.
+/// Returns the velocities of the problem's groups about its pole, from the velocities of a result's blocks.
 fn motion(case: &Case, problem: &LimitProblem, result: &CaseResult) -> Result<Vec<Velocity>, String> {
     let entries = result.proof.motion.as_deref().ok_or("the result holds no mechanism")?;
     let mut motion = vec![[0.0; 3]; problem.groups];
@@ -76,7 +75,8 @@ fn motion(case: &Case, problem: &LimitProblem, result: &CaseResult) -> Result<Ve
     Ok(motion)
 }
 
-/// Derivatives of a collapse load with respect to all numbers that it depends on; an error says why there are none.
+/// Returns the derivatives of a collapse load with respect to all numbers that influence it. The error gives the reason if
+/// this is not possible.
 pub fn sensitivities(case: &Case, result: &CaseResult) -> Result<Vec<SensitivityEntry>, String> {
     let factor = result.load_factor.filter(|_| result.status == Status::Collapse && result.certificate.passed);
     let factor = factor.ok_or("there is no collapse load to differentiate")?;
@@ -99,7 +99,7 @@ pub fn sensitivities(case: &Case, result: &CaseResult) -> Result<Vec<Sensitivity
     Ok(case.output_sensitivities.iter().filter_map(|key| entry(case, &problem, &face, key, factor)).collect())
 }
 
-/// The derivative with respect to one number; `None` where the data do not depend on it.
+/// Returns the derivative with respect to one number; `None` if the data do not depend on it.
 fn entry(
     case: &Case,
     problem: &LimitProblem,
@@ -123,7 +123,7 @@ fn entry(
         return None;
     }
     let why = [&left, &right].into_iter().find_map(|side| side.as_ref().err().cloned());
-    // What is below the resolution of the program is zero.
+    // A derivative below the resolution of the program is zero.
     let tidy = |slope: f64| if slope.abs() <= NOTHING * factor.abs() / scale { 0.0 } else { slope };
     let slope = |side: Result<Option<f64>, String>| side.ok().map(|slope| tidy(slope.unwrap_or(0.0)));
     let (left, right) = (slope(left), slope(right));

@@ -1,7 +1,7 @@
 //! Limit analysis of stages that move supports: rigid blocks without compliance, small displacements.
 //!
-//! Loads decide by themselves whether a stage stands: where supports are does not change them. How the blocks follow,
-//! and with which forces, is asked of the solver; all settlements so far count together.
+//! The loads alone decide if a stage stands: the positions of supports do not change them. The solver computes the motion of
+//! the blocks and the forces; all settlements so far are added.
 
 use super::case_input::CaseInput;
 use super::limit_result::{body_velocities, contact_forces};
@@ -22,12 +22,12 @@ const PROVED: f64 = 1e-8;
 /// Jumps below this share of the displacements are rounding.
 const RIGID: f64 = 1e-10;
 
-/// Whether a support has moved by the end of a stage.
+/// Returns true if a support has moved by the end of a stage.
 pub(super) fn settles(stages: &[Stage], index: usize) -> bool {
     stages[..=index].iter().flat_map(|stage| &stage.settlements).any(|s| s.displacement.norm() + s.rotation.abs() > 0.0)
 }
 
-/// Openings of both ends and slip that the supports alone cause at each joint of the problem.
+/// Returns the openings of both ends and the slip that the supports alone cause at each joint of the problem.
 fn openings(assembly: &Assembly, problem: &LimitProblem, supports: &[Option<CentroidVelocity>]) -> Vec<[f64; 3]> {
     let moved = |body: usize, point: Vec2| {
         supports[body].map_or(Vec2::zeros(), |[x, y, theta]| {
@@ -43,7 +43,7 @@ fn openings(assembly: &Assembly, problem: &LimitProblem, supports: &[Option<Cent
     problem.joints.iter().map(of).collect()
 }
 
-/// The motion of all blocks if all supports move as one body: the blocks go with them, and no joint moves.
+/// Returns the motion of all blocks if all supports move as one body: all blocks have the same motion, and no joint moves.
 fn common_motion(assembly: &Assembly, supports: &[Option<CentroidVelocity>]) -> Option<Vec<CentroidVelocity>> {
     let centroids = assembly.centroids();
     let (first, own) = supports.iter().enumerate().find_map(|(body, own)| own.map(|own| (body, own)))?;
@@ -62,7 +62,7 @@ fn common_motion(assembly: &Assembly, supports: &[Option<CentroidVelocity>]) -> 
     one.then(|| (0..supports.len()).map(|body| supports[body].unwrap_or_else(|| at(body))).collect())
 }
 
-/// What is asked of a solver.
+/// The question to a solver.
 #[derive(Clone, Copy)]
 pub(super) struct Settling<'a> {
     pub solver: &'a dyn LimitSolver,
@@ -72,8 +72,8 @@ pub(super) struct Settling<'a> {
     pub factor: f64,
 }
 
-/// Puts into the result of a stage that stands how its blocks have followed their supports: field, displacements and
-/// residuals. Returns the hinges; where nothing is proved the stage is stalled.
+/// Adds field, displacements and residuals of the blocks due to their settlements to the result of a stage that stands.
+/// Returns the hinges; if nothing is proved, the stage is stalled.
 pub(super) fn follow_supports(input: &CaseInput, index: usize, asked: Settling, result: &mut CaseResult) -> Vec<Hinge> {
     let found = followed(input, index, asked, result);
     found.unwrap_or_else(|why| {
@@ -85,7 +85,7 @@ pub(super) fn follow_supports(input: &CaseInput, index: usize, asked: Settling, 
     })
 }
 
-/// The result of a stage in which no motion of the blocks goes with that of the supports, certified.
+/// Returns the certified result of a stage in which no motion of the blocks is compatible with the motion of the supports.
 fn blocked(
     input: &CaseInput,
     asked: Settling,
@@ -133,7 +133,7 @@ fn followed(input: &CaseInput, index: usize, asked: Settling, result: &mut CaseR
     let supports = support_motions(assembly, input.stages, index)?;
     let (field, motion, unique, flow) = match common_motion(assembly, &supports).zip(result.proof.field.as_deref()) {
         Some((motion, field)) => {
-            // Joints that do not move obey any flow.
+            // Joints that do not move obey any flow rule.
             let flow = if problem.non_associated { FlowRule::NonAssociated } else { FlowRule::Associated };
             (field.iter().map(contact_force).collect::<Vec<_>>(), motion, None, flow)
         }
@@ -206,7 +206,7 @@ fn followed(input: &CaseInput, index: usize, asked: Settling, result: &mut CaseR
     result.path.displacements = Some(motion.iter().enumerate().map(entry).collect());
     result.proof.thrust_line = thrust_line(assembly, &field);
     result.proof.field = Some(field_entries(&field));
-    // Blocks that move as one have no hinges but rounding.
+    // Blocks that move as one body have no hinges except by rounding.
     let greatest = motion.iter().flatten().fold(0.0, |a: f64, v| a.max(v.abs()));
     if largest_jump(&jumps(assembly, &motion)) <= RIGID * greatest {
         return Ok(Vec::new());

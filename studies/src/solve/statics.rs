@@ -1,14 +1,14 @@
-//! Scenes that deform, and whether a static field answers already.
+//! Scenes that deform, and the cases in which a static field already decides.
 //!
-//! With small displacements, associated flow and strengths that do not soften a structure stands under loads for which
-//! an admissible field exists, whatever its stiffness (safe theorem): then no path is followed. Between two stages loads
-//! change in proportion and fields may be mixed, because strengths are convex. Where flow is not associated a field
-//! proves nothing by itself: a path is asked first, and where it is not found the answer says how flow was read.
+//! With small displacements, associated flow and strengths that do not soften, a structure stands under loads that have an
+//! admissible field, for any stiffness (safe theorem): then no path is followed. Between two stages loads change in
+//! proportion and fields may be mixed, because strengths are convex. If flow is not associated, a field alone proves nothing:
+//! a path is tried first. If no path is found, the result states how flow was read.
 //!
-//! With finite displacements a structure without any strength but friction that cannot carry its first gravity in the
-//! undeformed geometry cannot carry any share of it there: what joints admit is a cone. Equilibrium of whole blocks
-//! asks for nothing else, whatever the flow and the stiffness. So its path has no way out of its start: under no load at
-//! all it is a mechanism, and the rates of a path are undetermined.
+//! With finite displacements, consider a structure without any strength except friction that cannot carry its first gravity
+//! in the undeformed geometry. It cannot carry any share of this gravity there, because its admissible forces are a cone.
+//! Equilibrium of whole blocks needs nothing else, for any flow and stiffness. So its path cannot leave its start: without
+//! load the structure is a mechanism, and the rates of a path are undetermined.
 
 use super::case_input::CaseInput;
 use super::limit::solve_by_limit_analysis;
@@ -19,14 +19,14 @@ use crate::study::SelectedSolver;
 use voussoir_core::limit::Status;
 use voussoir_core::model::{Assembly, Bond, Target, stage_loads};
 
-/// Whether `auto` may answer a case by a static field: small displacements, loads to a factor.
+/// Returns true if `auto` may solve a case by a static field: small displacements, loads to a factor.
 fn asks_whether_it_stands(input: &CaseInput) -> bool {
     let to_factors = input.stages.iter().all(|stage| matches!(stage.target, Target::Factor(_)));
     let auto = matches!(input.solver, SelectedSolver::Auto);
     auto && !input.curve && !input.settings.finite && to_factors
 }
 
-/// The answer of limit analysis, where it proves that the case stands and `auto` may take it.
+/// Returns the result of limit analysis, if it proves that the case stands and `auto` may use it.
 pub(super) fn stands_by_statics(input: &CaseInput) -> Option<CaseResult> {
     let settles = input.stages.iter().any(|stage| !stage.settlements.is_empty());
     if settles || !asks_whether_it_stands(input) || !safe_theorem_holds(input.assembly) {
@@ -36,8 +36,9 @@ pub(super) fn stands_by_statics(input: &CaseInput) -> Option<CaseResult> {
     (result.proved_by == Some(Proof::Static)).then_some(result)
 }
 
-/// What limit analysis says of a case whose path `auto` has not found and whose friction is not associated: that it
-/// stands, where it proves that nothing moves below the loads, or, read with associated flow, where a field carries them.
+/// Returns the result of limit analysis for a case whose path `auto` has not found and whose friction is not associated. The
+/// case stands if limit analysis proves that nothing moves below the loads, or, with flow read as associated, if a field
+/// carries them.
 pub(super) fn stands_without_a_path(input: &CaseInput, path: &CaseResult) -> Option<CaseResult> {
     if path.status.is_answer() || !asks_whether_it_stands(input) || !is_without_softening(input.assembly) {
         return None;
@@ -62,8 +63,8 @@ pub(super) fn stands_without_a_path(input: &CaseInput, path: &CaseResult) -> Opt
     Some(result)
 }
 
-/// The answer of limit analysis, where it proves that no share of the first gravity is carried in the undeformed
-/// geometry, and a path with finite displacements is asked for.
+/// Returns the result of limit analysis, if it proves that no share of the first gravity is carried in the undeformed
+/// geometry, and a path with finite displacements is requested.
 pub(super) fn falls_by_statics(input: &CaseInput) -> Option<CaseResult> {
     let first = input.stages.first()?;
     let from_rest = match first.target {
@@ -83,7 +84,7 @@ pub(super) fn falls_by_statics(input: &CaseInput) -> Option<CaseResult> {
     if result.status != Status::NoEquilibrium || !result.certificate.passed {
         return None;
     }
-    // The reading of flow and of blocks is not that of this answer: it holds for all of them.
+    // This result does not depend on the reading of flow and of blocks: it holds for all of them.
     result.flow_read_as = None;
     result.notes = vec![
         "in the undeformed geometry no admissible field is in equilibrium with any share of gravity, whatever the flow of \
@@ -93,7 +94,7 @@ pub(super) fn falls_by_statics(input: &CaseInput) -> Option<CaseResult> {
     Some(result)
 }
 
-/// Whether what the joints admit is a cone: friction and nothing else.
+/// Returns true if the admissible forces of the joints are a cone: joints resist by friction alone.
 pub(super) fn resists_by_friction_alone(assembly: &Assembly) -> bool {
     assembly.joints.iter().all(|joint| match joint.bond {
         Bond::Bonded => true,

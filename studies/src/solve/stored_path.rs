@@ -1,15 +1,15 @@
-//! Paths to and from the form in which they are stored.
+//! Converts paths to and from their stored form.
 
 use crate::results::stored_path::{StoredClaim, StoredNode, StoredPath, StoredState, StoredWitness};
 use voussoir_core::certificate::{PathChain, in_range};
 use voussoir_core::limit::Counters;
 use voussoir_core::path::{ModeTree, NoneContinues, PathAnswer, PathState, RateClaim, Witness};
 
-/// Most decisions one below another in a tree.
+/// Greatest depth of a tree of decisions.
 const MAX_DEPTH: usize = 1_000;
 
-/// The states of a chain with the proof of its end; `None` if the end is not one of the states, if they have more than `most`
-/// numbers, or if laws have a history, which is not stored.
+/// Returns the states of a chain with the proof of its end. `None` if the end is not one of the states, if they have more than
+/// `most` numbers, or if laws have a history, which is not stored.
 pub(super) fn stored(chain: &PathChain, solved: &PathAnswer, most: usize) -> Option<StoredPath> {
     let states: Vec<&PathState> = chain.states().skip(1).collect();
     let numbers = |state: &&PathState| state.force.as_flattened().len() + state.motion.as_flattened().len();
@@ -58,7 +58,7 @@ fn stored_claim(claim: &RateClaim) -> StoredClaim {
     }
 }
 
-/// The nodes of a tree, each before its branches.
+/// Returns the nodes of a tree, each before its branches.
 fn nodes(tree: &ModeTree) -> Vec<StoredNode> {
     let (mut nodes, mut left) = (Vec::new(), vec![tree]);
     while let Some(tree) = left.pop() {
@@ -74,10 +74,10 @@ fn nodes(tree: &ModeTree) -> Vec<StoredNode> {
     nodes
 }
 
-/// The states of a stored path. Gaps are left out: they follow from forces and motions.
+/// Returns the states of a stored path. Gaps are not set: they follow from forces and motions.
 ///
 /// # Errors
-/// If a number is too great to be checked.
+/// A number is too great to be checked.
 pub(super) fn states(path: &StoredPath, points: usize) -> Result<Vec<PathState>, String> {
     let state = |(index, own): (usize, &StoredState)| {
         let mut numbers = own.force.as_flattened().iter().chain(own.motion.as_flattened()).chain(&own.energies);
@@ -101,10 +101,10 @@ pub(super) fn states(path: &StoredPath, points: usize) -> Result<Vec<PathState>,
     path.states.iter().enumerate().map(state).collect()
 }
 
-/// The answer that the states of a stored path prove.
+/// Returns the answer that the states of a stored path prove.
 ///
 /// # Errors
-/// If an index or a tree of decisions has no meaning.
+/// An index or a tree of decisions is not valid.
 pub(super) fn answer(path: &StoredPath, states: &[PathState]) -> Result<PathAnswer, String> {
     let at = |index: usize| states.get(index).cloned().ok_or(format!("there is no state {index}"));
     let witness = |own: &StoredWitness| {
@@ -140,7 +140,7 @@ pub(super) fn answer(path: &StoredPath, states: &[PathState]) -> Result<PathAnsw
     })
 }
 
-/// The tree of a list of nodes, all of which belong to it.
+/// Returns the tree of a list of nodes, all of which belong to it.
 fn whole_tree(nodes: &[StoredNode]) -> Result<ModeTree, String> {
     let mut left = nodes.iter();
     let tree = tree(&mut left, 0)?;

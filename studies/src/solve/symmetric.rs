@@ -1,8 +1,8 @@
-//! The symmetric member of the mechanisms of a symmetric scene.
+//! The symmetric mechanism of a symmetric scene.
 //!
-//! Mechanisms of one load are a convex set where flow is associated: with a motion its mirror image is one, and so is
-//! the mean of both. Where flow is not associated, or the scene is not symmetric after all, the mean may be none: it
-//! is taken only if it flows as the laws say and has the same power.
+//! If flow is associated, the mechanisms of one load are a convex set: the mirror image of a motion is a mechanism, and so is
+//! the mean of both. If flow is not associated, or the scene is not exactly symmetric, the mean may not be a mechanism. It is
+//! used only if its flow obeys the laws and it has the same power.
 
 use crate::results::path_state::small;
 use voussoir_core::certificate::{flow_residual, power_residual};
@@ -10,11 +10,11 @@ use voussoir_core::model::Assembly;
 use voussoir_core::model::geometry::{Vec2, bounding_box, turned};
 use voussoir_core::path::{Loading, PathProblem};
 
-/// Relative distance up to which blocks count as each other's mirror images, and motions as the same.
+/// Relative distance up to which blocks are mirror images of each other, and motions are equal.
 const SAME: f64 = 1e-9;
 
-/// For each block its mirror image about the vertical through the middle of the free blocks; `None` where one has
-/// none. The ground is its own.
+/// Returns the mirror image of each block about the vertical through the middle of the free blocks; `None` if a block has no
+/// image. The ground is its own image.
 fn images(assembly: &Assembly) -> Option<(f64, Vec<usize>)> {
     let free = |block: &usize| !assembly.bodies[*block].fixed;
     let blocks: Vec<usize> = (0..assembly.bodies.len()).filter(free).collect();
@@ -24,7 +24,7 @@ fn images(assembly: &Assembly) -> Option<(f64, Vec<usize>)> {
     let axis = (low.x + high.x) / 2.0;
     let near = SAME * assembly.size();
     let centroids: Vec<Vec2> = blocks.iter().map(|block| assembly.inertia(*block).centroid).collect();
-    // Sorted by height, a block's image is among the few at its own height.
+    // The blocks are sorted by height, so that only a few at the same height are compared.
     let mut order: Vec<usize> = (0..blocks.len()).collect();
     order.sort_by(|a, b| centroids[*a].y.total_cmp(&centroids[*b].y));
     let mut images: Vec<usize> = (0..assembly.bodies.len()).collect();
@@ -42,8 +42,8 @@ fn images(assembly: &Assembly) -> Option<(f64, Vec<usize>)> {
     Some((axis, images))
 }
 
-/// The mean of rates of a path's bodies and their mirror image, where that is a mechanism of the same load on the
-/// same forces; `None` where it is not, or is the same motion.
+/// Returns the mean of the rates of a path's bodies and their mirror image, if the mean is a mechanism of the same load with
+/// the same forces; `None` if it is not, or if both motions are the same.
 pub(super) fn symmetric(
     assembly: &Assembly,
     structure: &PathProblem,

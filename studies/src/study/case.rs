@@ -24,7 +24,7 @@ use voussoir_core::plugin::{PluginKind, card, cards_of, nearest};
 /// The load factor is not differentiated with respect to longer lists of numbers: they are data, not parameters.
 const LONGEST: usize = 12;
 
-/// Returns the checked value of a top-level key if other cases have the same value.
+/// A function that returns the checked value of a top-level key if other cases have the same value.
 pub(super) type KnownKeys<'a> = dyn Fn(&str) -> Option<&'a CheckedKey> + 'a;
 
 /// Returns the checked value of a top-level key that all cases of an expansion share.

@@ -119,8 +119,8 @@ impl Walk {
     }
 }
 
-/// Returns the type of a key that is a plain number. An optional whole number that is not given is no parameter: its absence
-/// has another meaning.
+/// Returns the type of an optional key that is a plain number. Whole numbers are excluded: their absence has another
+/// meaning.
 fn plain_number(shape: &Shape) -> Option<NumberKind> {
     match shape {
         Shape::Number(quantity, range) => Some(NumberKind::Real(*quantity, *range)),

@@ -62,7 +62,7 @@ pub fn import(root: &mut Node, read: ReadFile, mistakes: &mut Vec<LocatedDiagnos
     Import { read, materials, mistakes }.node(root);
 }
 
-/// The keys that a file replaces.
+/// The purpose of a file: points of a profile, or blocks.
 #[derive(Clone, Copy)]
 enum Wanted {
     Profile,
@@ -70,7 +70,7 @@ enum Wanted {
 }
 
 impl Wanted {
-    /// Returns the keys that the `file` of a table replaces.
+    /// Returns the purpose of the `file` of a table.
     fn of(table: &Table) -> Option<Wanted> {
         let word = |key: &str| table.get(key).and_then(Node::text);
         match (word("shape"), word("scene")) {

@@ -1,4 +1,4 @@
-//! A study with so many cases that they are made one at a time and not kept.
+//! A study with many cases, which are made one at a time and not kept.
 
 use super::model::Output;
 use super::outline::Outline;

@@ -1,58 +1,58 @@
-//! Putting the bodies and joints of a bridge together, from left to right.
+//! Builds the bodies and joints of a bridge from left to right.
 
 use super::piers::{Footing, Pier, PierBlocks};
 use super::rings::SpanBlocks;
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::model::{Body, Bond, Chord, Gap, Joint};
 
-/// Where a ring stands among the bodies and joints of a bridge.
+/// Indices of a ring among the bodies and joints of a bridge.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RingPlace {
     /// Index of its first voussoir.
     pub body: usize,
-    /// Index of its first joint among the radial ones.
+    /// Index of its first joint among the radial joints.
     pub joint: usize,
     /// Number of its voussoirs.
     pub count: usize,
 }
 
-/// Joints that damage counts from 0: across a ring, or the bed joints of a pier.
+/// Joints that damage numbers from 0: across a ring, or the bed joints of a pier.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct NumberedJoints {
-    /// Whether they stand among the other joints, not among the radial ones.
+    /// True if they are in the list of other joints, false if in the list of radial joints.
     pub of_pier: bool,
-    /// Index of the first.
+    /// Index of the first joint.
     pub first: usize,
-    /// How many there are.
+    /// Number of joints.
     pub count: usize,
 }
 
-/// Bodies and joints as they are put together.
+/// Bodies and joints built so far.
 #[derive(Default)]
 pub(super) struct Builder {
     /// Blocks and supports.
     pub bodies: Vec<Body>,
-    /// Across rings; they come first.
+    /// Joints across rings; they come first in the assembly.
     pub radial: Vec<Joint>,
-    /// All others.
+    /// All other joints.
     pub other: Vec<Joint>,
     /// Upper faces from left to right.
     pub extrados: Vec<Chord>,
-    /// By span and ring.
+    /// Positions of rings, by span and ring.
     pub rings: Vec<Vec<RingPlace>>,
     /// Bed joints of each pier from its cap downwards; their first ends are on the right.
     pub piers: Vec<NumberedJoints>,
 }
 
 impl Builder {
-    /// Adds a body; its index.
+    /// Adds a body and returns its index.
     pub fn body(&mut self, name: String, vertices: Vec<Vec2>, material: usize, fixed: bool) -> usize {
         self.bodies.push(Body { name, vertices, material, fixed });
         self.bodies.len() - 1
     }
 
-    /// The rings of a span on what stands `before` it; `bonds` of joints across rings, between rings, at springings.
-    /// The joints at its end are left without the body that comes after.
+    /// Adds the rings of a span; its left springing is on the body `before`. `bonds` are the bonds of joints across rings,
+    /// between rings and at springings. The joints at the right end do not have their second body yet.
     pub fn span(
         &mut self,
         index: usize,
@@ -76,7 +76,7 @@ impl Builder {
                 self.radial.push(Joint { minus, plus: body, ends: ring.joints[k], bond, gap: Gap::default() });
             }
             let minus = self.bodies.len() - 1;
-            // The next body is not yet known: `usize::MAX` stands for it.
+            // The next body is not yet known: `usize::MAX` marks it.
             let end = Joint { minus, plus: usize::MAX, ends: ring.joints[count], bond: springing, gap: Gap::default() };
             self.radial.push(end);
         }
@@ -97,12 +97,12 @@ impl Builder {
         }
     }
 
-    /// Joins the rings that end here to a body.
+    /// Connects the rings that end here to a body.
     pub fn join_ends(&mut self, body: usize) {
         self.radial.iter_mut().filter(|joint| joint.plus == usize::MAX).for_each(|joint| joint.plus = body);
     }
 
-    /// A pier, on which the rings before it end; returns the body on which the next span begins.
+    /// Adds a pier, on which the preceding rings end. Returns the body on which the next span begins.
     pub fn pier(&mut self, index: usize, pier: &Pier, blocks: &PierBlocks, bond: Bond, material: usize) -> usize {
         let cap = blocks.cap.as_ref().map(|cap| self.body(format!("p{index}cap"), cap.clone(), material, false));
         let courses: Vec<usize> = (blocks.courses.iter().enumerate())

@@ -1,4 +1,4 @@
-//! Damage of a bridge: joints that have lost mortar, joints that are repointed, voussoirs that are gone.
+//! Damage of a bridge: joints that have lost mortar, repointed joints, lost voussoirs.
 
 use super::builder::{Builder, NumberedJoints, RingPlace};
 use crate::scenes::lookup::{law, take};
@@ -106,7 +106,7 @@ pub enum Damage {
     },
 }
 
-/// Joints of a ring or a pier that are damaged in the same way.
+/// Joints of a ring or a pier with the same damage.
 struct Section<'a> {
     span: Option<usize>,
     ring: Option<usize>,
@@ -117,7 +117,7 @@ struct Section<'a> {
     joint: Option<&'a str>,
 }
 
-/// What is left of joints: places along them from their first end \[m\].
+/// Remaining parts of joints: intervals along them from their first end \[m\].
 #[derive(Default)]
 struct Remains {
     left: BTreeMap<(bool, usize), [f64; 2]>,
@@ -125,7 +125,7 @@ struct Remains {
 }
 
 impl Damage {
-    /// The joints of a piece of damage; `None` where voussoirs are gone.
+    /// Returns the joints of a piece of damage; `None` for lost voussoirs.
     fn section(&self) -> Option<Section<'_>> {
         let (Damage::LostMortar { span, ring, pier, joints, side, depth }
         | Damage::Repointed { span, ring, pier, joints, side, depth, .. }) = self
@@ -139,7 +139,7 @@ impl Damage {
 }
 
 impl Builder {
-    /// Damages what has been put together. Issues have paths from the scene's table.
+    /// Damages the bridge built so far. Diagnostics have paths from the scene's table.
     pub(super) fn damage(&mut self, list: &[Damage], catalogue: &Catalogue) -> Result<(), Vec<Diagnostic>> {
         let (mut diagnostics, mut remains, mut gone) = (Vec::new(), Remains::default(), BTreeMap::new());
         for (i, entry) in list.iter().enumerate() {
@@ -158,7 +158,7 @@ impl Builder {
             let wrong = self.shorten(&section, bond.flatten().map(Bond::Law), &mut remains, &path);
             diagnostics.extend(wrong.err());
         }
-        // Where joints still have their whole height.
+        // Computed while joints still have their whole height.
         let extrados = self.uncovered(&gone).map_err(|wrong| diagnostics.push(wrong));
         let Some(extrados) = extrados.ok().filter(|_| diagnostics.is_empty()) else { return Err(diagnostics) };
         self.extrados = extrados;
@@ -171,14 +171,14 @@ impl Builder {
         Ok(())
     }
 
-    /// A ring by span and ring, or the mistake.
+    /// Returns the position of a ring by span and ring, or the mistake.
     fn ring_place(&self, [span, ring]: [Option<usize>; 2], path: &str) -> Result<RingPlace, Diagnostic> {
         let (span, ring) = (span.unwrap_or(0), ring.unwrap_or(0));
         let rings = self.rings.get(span).ok_or_else(|| missing(path, "span", span, self.rings.len()))?;
         rings.get(ring).copied().ok_or_else(|| missing(path, "ring", ring, rings.len()))
     }
 
-    /// The joints that a section counts, and whether its side is that of their first ends.
+    /// Returns the joints of a section, and true if its side is the side of their first ends.
     fn numbered(&self, section: &Section<'_>, path: &str) -> Result<(NumberedJoints, bool), Diagnostic> {
         let Some(pier) = section.pier else {
             let place = self.ring_place([section.span, section.ring], path)?;
@@ -206,7 +206,7 @@ impl Builder {
         }
     }
 
-    /// Indices of voussoirs that are lost.
+    /// Returns the indices of lost voussoirs.
     fn voussoirs(&self, ring: [Option<usize>; 2], numbers: &[usize], path: &str) -> Result<Vec<usize>, Diagnostic> {
         let place = self.ring_place(ring, path)?;
         if let Some(i) = numbers.iter().position(|&number| number >= place.count) {
@@ -216,8 +216,8 @@ impl Builder {
         Ok(numbers.iter().map(|number| place.body + number).collect())
     }
 
-    /// The upper faces once these voussoirs are gone: under each the faces of the ring below, and beside it the sides of its
-    /// neighbours as far as they look upwards.
+    /// Returns the upper faces without these voussoirs: below each of them the faces of the lower ring, and beside it the sides
+    /// of its neighbours that face upwards.
     fn uncovered(&self, gone: &BTreeMap<usize, String>) -> Result<Vec<Chord>, Diagnostic> {
         let mut extrados = Vec::new();
         for chord in &self.extrados {
@@ -249,7 +249,7 @@ impl Builder {
         Ok(extrados)
     }
 
-    /// Takes a depth off the joints of a section, for good or for a joint of its own.
+    /// Removes a depth from the joints of a section. The removed part is lost, or becomes a separate joint.
     fn shorten(
         &self,
         section: &Section<'_>,
@@ -288,7 +288,7 @@ impl Builder {
                 return Err(Diagnostic::new(format!("{path}.depth"), message));
             }
             remains.left.insert(index, kept);
-            // What an earlier entry has taken from this side is gone.
+            // Skip a part that an earlier entry has already removed from this side.
             if let Some(bond) = bond.filter(|_| taken[1] - taken[0] > 1e-6 * height) {
                 let ends = part(joint.ends, taken[0], taken[1]);
                 remains.repointed.push(Joint { ends, bond, ..joint.clone() });
@@ -297,7 +297,7 @@ impl Builder {
         Ok(())
     }
 
-    /// Takes bodies away, with their joints.
+    /// Removes bodies with their joints.
     fn remove(&mut self, gone: &BTreeMap<usize, String>) {
         if gone.is_empty() {
             return;
@@ -331,7 +331,7 @@ impl Builder {
     }
 }
 
-/// What a number finds nothing for.
+/// Reports a number to which no part belongs.
 fn missing(path: &str, what: &str, number: usize, count: usize) -> Diagnostic {
     let message = match count {
         0 => format!("there is no {what} {number}: there is none"),
@@ -340,10 +340,10 @@ fn missing(path: &str, what: &str, number: usize, count: usize) -> Diagnostic {
     Diagnostic::new(format!("{path}.{what}"), message)
 }
 
-/// The part of a segment between two distances from its first end.
+/// Returns the part of a segment between two distances from its first end.
 fn part([a, b]: [Vec2; 2], from: f64, to: f64) -> [Vec2; 2] {
     let height = (b - a).norm();
-    // An end that stays is kept to the last bit.
+    // An end that does not move keeps its exact coordinates.
     let at = |s: f64| {
         if s <= 0.0 {
             a

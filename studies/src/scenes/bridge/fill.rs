@@ -1,5 +1,4 @@
-//! The fill of a bridge: its weight on the blocks by vertical columns, and its resistance at the chords of the
-//! extrados.
+//! The fill of a bridge: its weight on the blocks by vertical columns, and its resistance at the chords of the extrados.
 
 use crate::loads::dispersion::Dispersion;
 use crate::scenes::lookup::out_of_range;
@@ -9,7 +8,7 @@ use voussoir_core::model::geometry::Vec2;
 use voussoir_core::model::{Assembly, Bridge, Chord, FillMass, FillPart, FillReaction, carried};
 use voussoir_core::plugin::{Diagnostic, Keys, Range};
 
-/// Parts of the fill on a deformable block, each with two points.
+/// Number of parts of the fill on a deformable block; each part has two points.
 const PARTS: usize = 16;
 
 /// How far the fill reaches to both sides.
@@ -91,7 +90,7 @@ pub struct Fill {
     pub layers: Vec<Layer>,
 }
 
-/// Ground of one kind up to a level.
+/// Ground of one material up to a level.
 #[derive(Debug, Clone)]
 struct Stratum {
     top: f64,
@@ -103,7 +102,7 @@ struct Stratum {
 }
 
 impl Fill {
-    /// What is wrong with its numbers, with paths from its table.
+    /// Returns the mistakes in its numbers, with paths from its table.
     pub fn mistakes(&self) -> Vec<Diagnostic> {
         let mut diagnostics = Vec::new();
         match (self.cover, &self.road) {
@@ -131,7 +130,7 @@ impl Fill {
         diagnostics
     }
 
-    /// Its strata from the lowest; `masonry` is the density of the voussoirs \[kg/m³\].
+    /// Returns its strata from bottom to top; `masonry` is the density of the voussoirs \[kg/m³\].
     fn strata(&self, masonry: f64) -> Vec<Stratum> {
         let law = self.resistance.as_ref().and_then(|law| shared(law.as_ref()));
         let angle = self.friction_angle.unwrap_or(0.0);
@@ -158,8 +157,8 @@ impl Fill {
         strata
     }
 
-    /// Adds road, weight and resistance to a bridge whose extrados is known. `crown` is the highest level of the
-    /// extrados, `springings` the x of the outermost intrados springings \[m\]. Issues have paths from the fill's table.
+    /// Adds road, weight and resistance to a bridge with a known extrados. `crown` is the highest level of the extrados,
+    /// `springings` the x of the outermost intrados springings \[m\]. Diagnostics have paths from the fill's table.
     pub fn add_to(
         &self,
         assembly: &Assembly,
@@ -200,7 +199,7 @@ impl Fill {
     }
 }
 
-/// A law as it is shared by many chords.
+/// Returns a law in a form that many chords share.
 fn shared(law: &dyn FillResistance) -> Option<Arc<dyn FillResistance>> {
     let value = serde_json::to_value(law).ok()?;
     serde_json::from_value::<Box<dyn FillResistance>>(value).ok().map(Arc::from)
@@ -235,7 +234,7 @@ impl Ground<'_> {
         self.bridge.road_at(x).unwrap_or(f64::NEG_INFINITY)
     }
 
-    /// Mass above a point, per area \[kg/m²\].
+    /// Returns the mass above a point, per area \[kg/m²\].
     fn overburden(&self, point: Vec2) -> f64 {
         let road = self.road(point.x);
         let mut bottom = f64::NEG_INFINITY;
@@ -247,7 +246,7 @@ impl Ground<'_> {
         sum
     }
 
-    /// The x where a face stands above the road, and by how much.
+    /// Returns the x at which a face is above the road, and its height above the road.
     fn protruding(&self, extrados: &[Chord]) -> Option<(f64, f64)> {
         let corners = self.bridge.road.iter().map(|point| point.x);
         let ends = extrados.iter().flat_map(|chord| chord.ends.map(|end| (end.x, end.y)));
@@ -261,8 +260,8 @@ impl Ground<'_> {
             .max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// Shares of a segment, from 0 to 1, between which the mass above it is linear: where it passes corners of the road
-    /// and levels of strata, and where the road above it does.
+    /// Returns the shares of a segment, from 0 to 1, between which the mass above it is linear. It is cut at corners of the road,
+    /// at levels of strata, and at levels of strata in the road above it.
     fn cuts(&self, a: Vec2, b: Vec2) -> Vec<f64> {
         let mut cuts = vec![0.0, 1.0];
         let mut cross = |from: f64, to: f64, value: f64| {
@@ -276,7 +275,7 @@ impl Ground<'_> {
         let levels: Vec<f64> = self.strata.iter().map(|stratum| stratum.top).filter(|top| top.is_finite()).collect();
         levels.iter().for_each(|level| cross(a.y, b.y, *level));
         cuts.sort_by(f64::total_cmp);
-        // The road is straight between these.
+        // The road is straight between these shares.
         let mut road = Vec::new();
         for pair in cuts.windows(2) {
             let at = |share: f64| self.road(a.x + (b.x - a.x) * share);
@@ -291,8 +290,8 @@ impl Ground<'_> {
         cuts
     }
 
-    /// The fill above a chord between two x: on a rigid block as its resultant, on a deformable one as the points of a
-    /// Gauss rule, which is exact for a linear load.
+    /// Returns the fill above a chord between two x: its resultant on a rigid block, or the points of a Gauss rule on a
+    /// deformable one, which is exact for a linear load.
     fn masses(&self, chord: &Chord, [low, high]: [f64; 2], rigid: bool) -> Vec<FillMass> {
         let (a, b) = (chord.at(low), chord.at(high));
         let at = |share: f64| a + (b - a) * share;
@@ -323,7 +322,7 @@ impl Ground<'_> {
         masses
     }
 
-    /// The horizontal reaction at a chord between two x; `None` where it is level, or no fill resists there.
+    /// Returns the horizontal reaction at a chord between two x; `None` if the chord is level, or if no fill resists there.
     fn reaction(&self, chord: &Chord, [low, high]: [f64; 2]) -> Option<FillReaction> {
         let [a, b] = clipped(chord.ends, [low, high])?;
         if (b.y - a.y).abs() <= self.rounding {
@@ -346,19 +345,19 @@ impl Ground<'_> {
         }
         let parts: Vec<FillPart> = parts.into_iter().filter_map(|part| self.part(part, (b.y - a.y).abs())).collect();
         let centroid = if force > 0.0 { moment / force } else { 0.5 };
-        // The ring lies to the right of the way from left to right along its extrados.
+        // The ring is to the right of the extrados in the direction from left to right.
         let direction = Vec2::new((b.y - a.y).signum(), 0.0);
         (!parts.is_empty()).then(|| FillReaction { body: chord.body, point: at(centroid), direction, parts })
     }
 
-    /// The share `share` of a height in one stratum, with ∫ overburden over that share.
+    /// Returns the share `share` of a height that is in one stratum, with ∫ overburden over that share.
     fn part(&self, (stratum, share, sum): (usize, f64, f64), height: f64) -> Option<FillPart> {
         let Stratum { friction_angle, cohesion, law, .. } = &self.strata[stratum];
         let law = law.clone()?;
         let (friction_angle, cohesion) = (*friction_angle, *cohesion);
         let part =
             FillPart { area: share * height * self.width, overburden: sum / share, friction_angle, cohesion, law };
-        // What resists at no gravity and under its own weight neither, resists never.
+        // If the resistance is zero without gravity and under full weight, it is always zero.
         let reaction = |gravity: f64| {
             let state = FillState { vertical_stress: part.overburden * gravity, friction_angle, cohesion };
             part.law.pressures(&state)[1]
@@ -367,7 +366,7 @@ impl Ground<'_> {
     }
 }
 
-/// The part of a segment between two x.
+/// Returns the part of a segment between two x.
 fn clipped([a, b]: [Vec2; 2], [low, high]: [f64; 2]) -> Option<[Vec2; 2]> {
     let at = |x: f64| a + (b - a) * ((x - a.x) / (b.x - a.x));
     let end = |p: Vec2| {
@@ -380,6 +379,6 @@ fn clipped([a, b]: [Vec2; 2], [low, high]: [f64; 2]) -> Option<[Vec2; 2]> {
         }
     };
     let outside = a.x.max(b.x) <= low || a.x.min(b.x) >= high;
-    // An upright chord has no part: it lies within, at its x.
+    // A vertical chord is inside or outside as a whole, by its x.
     if a.x == b.x { (low <= a.x && a.x <= high).then_some([a, b]) } else { (!outside).then(|| [end(a), end(b)]) }
 }

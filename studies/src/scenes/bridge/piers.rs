@@ -1,4 +1,4 @@
-//! Piers of a bridge: courses of blocks, and between the springings above them a cap.
+//! Piers of a bridge: courses of blocks, and a cap between the springings above them.
 
 use crate::scenes::lookup::out_of_range;
 use voussoir_core::model::crosses_itself;
@@ -41,21 +41,21 @@ pub struct Pier {
     pub material: Option<String>,
 }
 
-/// A pier in place.
+/// A pier at its position.
 #[derive(Debug, Clone)]
 pub struct PierBlocks {
-    /// Between the springing faces; `None` where these lie level on the pier.
+    /// Cap between the springing faces; `None` if these are level on the pier.
     pub cap: Option<Vec<Vec2>>,
     /// Courses from the top down.
     pub courses: Vec<Vec<Vec2>>,
     /// Upper ends (left, right) of each course, then those of the ground.
     pub levels: Vec<[Vec2; 2]>,
-    /// The free top of the cap, or of the pier, from left to right.
+    /// Free top of the cap or of the pier, from left to right.
     pub top: Option<[Vec2; 2]>,
 }
 
 impl Pier {
-    /// What is wrong with its numbers.
+    /// Returns the mistakes in its numbers.
     pub fn mistakes(&self) -> Vec<Diagnostic> {
         let mut diagnostics = Vec::new();
         diagnostics.extend(out_of_range("height", self.height, Range::POSITIVE));
@@ -68,7 +68,7 @@ impl Pier {
         diagnostics
     }
 
-    /// The blocks between the right springing of one span and the left springing of the next (intrados and extrados
+    /// Returns the blocks between the right springing of one span and the left springing of the next (intrados and extrados
     /// ends).
     pub fn blocks(
         &self,

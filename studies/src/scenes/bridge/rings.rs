@@ -1,7 +1,7 @@
 //! A span of a bridge: one or several rings of voussoirs on one intrados.
 //!
-//! Rings share the thickness equally. The faces between them are cut at every joint of the ring below and of the ring
-//! above, so that both touch along whole edges, also where their joints are offset.
+//! Rings have equal shares of the thickness. The faces between them are cut at every joint of the ring below and of the ring
+//! above, so that both rings touch along whole edges, also if their joints are offset.
 
 use crate::scenes::arch::Ends;
 use crate::scenes::lookup::{out_of_range, take};
@@ -15,7 +15,7 @@ use voussoir_core::plugin::{Diagnostic, Keys, Range};
 pub(super) const MAX_VOUSSOIRS: usize = 10_000;
 /// Greatest number of rings.
 pub(super) const MAX_RINGS: usize = 50;
-/// Voussoirs of the polygon whose length stands for that of a ring.
+/// Number of voussoirs of the polygon that approximates the length of a ring.
 const FINE: usize = 2000;
 
 /// Whether radial joints of neighbouring rings meet.
@@ -75,7 +75,7 @@ pub struct Span {
     pub material: Option<String>,
 }
 
-/// A place along a ring: the share `part/of` of its length.
+/// A position along a ring: the share `part/of` of its length.
 #[derive(Debug, Clone, Copy)]
 struct Station {
     part: usize,
@@ -90,7 +90,7 @@ impl Station {
     }
 }
 
-/// The blocks of a ring and where they are.
+/// The blocks of a ring and their joints.
 #[derive(Debug, Clone)]
 pub struct RingBlocks {
     /// Outlines, anticlockwise.
@@ -99,19 +99,19 @@ pub struct RingBlocks {
     pub joints: Vec<[Vec2; 2]>,
 }
 
-/// Rings of a span in place.
+/// Rings of a span at their positions.
 #[derive(Debug, Clone)]
 pub struct SpanBlocks {
-    /// From the innermost outwards.
+    /// Rings from the innermost outwards.
     pub rings: Vec<RingBlocks>,
-    /// Between ring r and r + 1: (voussoir below, voussoir above, ends with the ring above to the left).
+    /// Contacts between ring r and r + 1: (voussoir below, voussoir above, ends with the ring above to the left).
     pub interfaces: Vec<Vec<(usize, usize, [Vec2; 2])>>,
     /// Highest level of the extrados curve \[m\].
     pub crown: f64,
 }
 
 impl SpanBlocks {
-    /// Ends of the springing face on one side (0 left, 1 right): at the intrados and at the extrados.
+    /// Returns the ends of the springing face on one side (0 left, 1 right): at the intrados and at the extrados.
     pub fn springing(&self, side: usize) -> [Vec2; 2] {
         let end = |ring: &RingBlocks| if side == 0 { ring.joints[0] } else { ring.joints[ring.joints.len() - 1] };
         [end(&self.rings[0])[0], end(&self.rings[self.rings.len() - 1])[1]]
@@ -119,7 +119,7 @@ impl SpanBlocks {
 }
 
 impl Span {
-    /// The rings with the left intrados springing at `x` \[m\]; issues have paths from the span's table.
+    /// Returns the rings with the left intrados springing at `x` \[m\]; diagnostics have paths from the span's table.
     pub fn blocks(&self, x: f64) -> Result<SpanBlocks, Vec<Diagnostic>> {
         let mut diagnostics = Vec::new();
         if !(1..=MAX_RINGS).contains(&self.rings) {
@@ -139,7 +139,7 @@ impl Span {
             };
             stations.push(ring_stations(&ring, halves.as_ref()));
         }
-        // The left intrados springing goes to (x, level).
+        // Move the left intrados springing to (x, level).
         let shift = Vec2::new(x, self.level) - stations[0][0].intrados;
         for station in stations.iter_mut().flatten() {
             station.intrados += shift;
@@ -148,13 +148,13 @@ impl Span {
         Ok(SpanBlocks { crown: crown + shift.y, ..assemble(&stations) })
     }
 
-    /// A ring of all thicknesses together.
+    /// Returns a single ring with the thickness of all rings.
     fn ring(&self, count: Option<usize>) -> Result<Ring, Vec<Diagnostic>> {
         let count = if matches!(self.profile, Profile::Points { .. }) { self.given() } else { count };
         self.profile.ring(self.thickness, count, self.springing)
     }
 
-    /// The number that the study gives for all rings.
+    /// Returns the number that the study gives for all rings.
     fn given(&self) -> Option<usize> {
         match self.voussoirs {
             Some(Counts::Each(count)) => Some(count),
@@ -162,7 +162,7 @@ impl Span {
         }
     }
 
-    /// Highest point of the extrados curve, also where no vertex stands there.
+    /// Returns the highest point of the extrados curve, also if no vertex is there.
     fn crown(&self, ring: &Ring) -> f64 {
         let highest = ring.extrados.iter().fold(f64::NEG_INFINITY, |top, point| top.max(point.y));
         match (&self.profile, self.thickness) {
@@ -172,7 +172,7 @@ impl Span {
         }
     }
 
-    /// Number of voussoirs in each ring.
+    /// Returns the number of voussoirs in each ring.
     fn counts(&self) -> Result<Vec<usize>, Diagnostic> {
         if let Profile::Points { intrados, .. } = &self.profile {
             let by_points = match (&self.voussoirs, self.voussoir_length, self.radial_joints) {
@@ -207,12 +207,12 @@ impl Span {
         }
     }
 
-    /// As many voussoirs in each ring as are no shorter than `length` along its lower face.
+    /// Returns the greatest number of voussoirs in each ring that are no shorter than `length` along its lower face.
     fn by_length(&self, length: f64) -> Result<Vec<usize>, Diagnostic> {
         if let Some(wrong) = out_of_range("voussoir_length", length, Range::POSITIVE) {
             return Err(wrong);
         }
-        // What is wrong with the ring itself is said where it is built.
+        // Mistakes in the ring itself are reported when it is built.
         let Ok(ring) = self.profile.ring(self.thickness, Some(FINE), self.springing) else {
             return Ok(vec![1; self.rings]);
         };
@@ -226,8 +226,8 @@ impl Span {
     }
 }
 
-/// Where the joints of a ring stand; `halves` is the ring cut twice as often, of which an offset ring takes every
-/// other joint.
+/// Returns the positions of the joints of a ring; `halves` is the ring with twice as many parts. An offset ring uses every
+/// other joint of it.
 fn ring_stations(ring: &Ring, halves: Option<&Ring>) -> Vec<Station> {
     let station = |ring: &Ring, part: usize| Station {
         part,
@@ -245,7 +245,7 @@ fn ring_stations(ring: &Ring, halves: Option<&Ring>) -> Vec<Station> {
     }
 }
 
-/// Stations of two rings together, each place once.
+/// Returns the positions of two rings together, each once.
 fn union(below: &[Station], above: &[Station]) -> Vec<Station> {
     let mut all: Vec<Station> = below.to_vec();
     all.extend(above.iter().filter(|a| below.iter().all(|b| b.order(a) != Ordering::Equal)));
@@ -253,7 +253,7 @@ fn union(below: &[Station], above: &[Station]) -> Vec<Station> {
     all
 }
 
-/// Blocks from the stations of each ring.
+/// Builds the blocks from the positions of each ring.
 fn assemble(stations: &[Vec<Station>]) -> SpanBlocks {
     let count = stations.len();
     // Faces from the intrados to the extrados, each with its points from left to right.

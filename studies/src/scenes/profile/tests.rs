@@ -1,4 +1,4 @@
-//! What is proved of profiles and their rings.
+//! Tests of profiles and their rings.
 
 use super::*;
 use voussoir_core::model::geometry::cross;
@@ -85,7 +85,7 @@ fn joints_lie_on_the_curve_at_equal_arc_length_of_an_independent_fine_polyline()
         let (n, steps) = (12, 20_000);
         let ring = ring(&profile, n);
         let half = ring.span / 2.0;
-        // x = half sin t crowds points where the curve is upright.
+        // x = half sin t gives many points near the vertical part of the curve.
         let point = |i: usize| {
             let x = half * (std::f64::consts::FRAC_PI_2 * i as f64 / steps as f64).sin();
             Vec2::new(x, height(&profile, x))
@@ -198,7 +198,7 @@ fn impossible_springings_are_refused() {
     assert_eq!(path(flat.clone(), Some(Springing::Both(89.0))), "springing");
     assert_eq!(path(flat.clone(), Some(Springing::Each([20.0, 89.0]))), "springing.1");
     assert_eq!(path(flat, Some(Springing::Both(120.0))), "springing");
-    // A plane that falls steeper than the legs of the arch would leave the voussoir below it hollow.
+    // A plane that is steeper than the legs of the arch would make the voussoir below it concave.
     assert_eq!(path(Profile::Parabolic { span: 4.0, rise: 1.0 }, Some(Springing::Both(-89.0))), "springing");
 }
 
