@@ -1,10 +1,10 @@
-//! Associated flow as the first answer where laws flow otherwise: an upper bound.
+//! Associated flow as the first answer for laws with non-associated flow: an upper bound.
 
 use super::chain::LimitChain;
 use super::conic::LimitConic;
 use voussoir_core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, NonAssociated, Status};
 
-/// The answer with associated flow, by the cheapest engine.
+/// Returns the answer with associated flow, from the cheapest engine.
 pub fn associated(problem: &LimitProblem, question: LimitQuestion) -> LimitAnswer {
     let chain = LimitChain {};
     let answered = (chain.refuses(problem).is_none()).then(|| chain.solve(problem, question));
@@ -14,15 +14,14 @@ pub fn associated(problem: &LimitProblem, question: LimitQuestion) -> LimitAnswe
     }
 }
 
-/// Whether the question is answered by associated flow already: nothing to collapse, nothing that
-/// flows otherwise.
+/// Returns true if associated flow already answers the question: no collapse load exists, or all flow is associated.
 pub fn settled_by_association(problem: &LimitProblem, question: LimitQuestion, answer: &LimitAnswer) -> bool {
     let searched = matches!(question, LimitQuestion::Collapse { .. })
         && matches!(answer.status, Status::Collapse | Status::Stands | Status::Unbounded);
     !searched || !problem.non_associated || problem.magnitude(&problem.varying) == 0.0
 }
 
-/// What an associated answer says of flow by the laws themselves.
+/// Returns the part of an associated answer that holds for the flow of the laws themselves.
 pub fn associated_bound(answer: &LimitAnswer) -> NonAssociated {
     let collapse = answer.status == Status::Collapse;
     NonAssociated {

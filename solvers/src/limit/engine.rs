@@ -1,14 +1,14 @@
-//! What engines of limit analysis answer: the three single optimisations behind every question.
+//! The interface of engines of limit analysis: the three single optimisations that answer every question.
 
 use voussoir_core::limit::{Counters, JointForce, Velocity};
 use voussoir_core::model::Wrenches;
 
-/// Whether a fixed load can be carried.
+/// The result for a fixed load.
 #[derive(Debug, Clone)]
 pub enum Equilibrium {
-    /// Yes: an admissible field.
+    /// The load can be carried: an admissible field.
     Field(Vec<JointForce>),
-    /// No: a motion on which the load does more work than is dissipated, in any scale.
+    /// The load cannot be carried: a motion, in any scale, on which the load does more work than is dissipated.
     Motion(Vec<Velocity>),
     /// Not decided.
     Failed(String),
@@ -17,18 +17,18 @@ pub enum Equilibrium {
 /// The greatest factor of a varying load.
 #[derive(Debug, Clone)]
 pub enum Greatest {
-    /// Finite: both bounds meet.
+    /// A finite factor; both bounds are equal.
     Collapse {
         /// The factor.
         factor: f64,
         /// Admissible field at that factor.
         field: Vec<JointForce>,
-        /// Mechanism with varying·q̇ = 1, in the relative interior of the optimal ones.
+        /// Mechanism with varying·q̇ = 1, in the relative interior of all optimal mechanisms.
         motion: Vec<Velocity>,
-        /// Whether it is the only one.
+        /// True if the mechanism is the only one.
         unique: bool,
     },
-    /// The cap was reached first: a field there.
+    /// The cap was reached first: a field at the cap.
     Capped(Vec<JointForce>),
     /// No bound: a field in the recession cone that balances the varying load alone.
     Unbounded(Vec<JointForce>),
@@ -41,19 +41,19 @@ pub enum Greatest {
 pub enum Extreme {
     /// The form has a greatest value, and this force has it.
     Finite(JointForce),
-    /// The form grows without bound along this force, in any scale; of all such forces with the same normal force it has the
-    /// greatest form, or a greater one follows at the next form.
+    /// The form grows without bound along this force, in any scale. Among such forces with the same normal force it has
+    /// the greatest form, or the next form finds a greater one.
     Ray(JointForce),
     /// Not decided.
     Failed,
 }
 
-/// Something that answers single optimisations over one problem's joints.
+/// An engine that solves single optimisations over the joints of one problem.
 pub trait Engine {
     /// Can these loads be carried?
     fn admissible(&mut self, loads: &Wrenches) -> Equilibrium;
 
-    /// The same where any field will do.
+    /// Can these loads be carried by any field? The field need not be far from its bounds.
     fn carried(&mut self, loads: &Wrenches) -> Equilibrium {
         self.admissible(loads)
     }
@@ -65,12 +65,14 @@ pub trait Engine {
     /// some λ can.
     fn greatest(&mut self, fixed: &Wrenches, varying: &Wrenches, cap: f64) -> Greatest;
 
-    /// The same for fixed loads that may not be carried: the answer if they are, with a field that carries them.
+    /// Returns the greatest factor and a field of the fixed loads if they are carried. `None` if they are not, or if
+    /// the engine does not support this.
     fn greatest_if_carried(&mut self, _: &Wrenches, _: &Wrenches, _: f64) -> Option<(Vec<JointForce>, Greatest)> {
         None
     }
 
-    /// The greatest value of `form` over (N_0, N_1, T) of a joint, over all fields that carry these loads, which some field does.
+    /// Returns the greatest value of `form` over (N_0, N_1, T) of a joint, over all fields that carry these loads. At
+    /// least one such field must exist.
     fn extreme(&mut self, loads: &Wrenches, joint: usize, form: [f64; 3]) -> Extreme;
 
     /// Work done so far.

@@ -1,4 +1,4 @@
-//! Equilibrium of groups over the joints' force variables, scaled: forces in units of F, moments in F × length.
+//! Equilibrium of groups in scaled force variables of the joints: forces in units of F, moments in F × length.
 
 use voussoir_core::law::StressBlock;
 use voussoir_core::limit::{JointForce, LimitProblem};
@@ -7,18 +7,17 @@ use voussoir_core::model::Wrenches;
 /// Entries of a row: (variable, coefficient).
 pub type Row = Vec<(usize, f64)>;
 
-/// The force variables of all joints: N_0 and N_1 of each, T where it is not zero; of the fill at a
-/// chord N_0 alone.
+/// The force variables of all joints: N_0, N_1, and T if it is not zero; only N_0 for the fill at a chord.
 #[derive(Debug, Clone)]
 pub struct ForceVariables {
-    /// First variable of each joint and their number.
+    /// First variable of each joint, and its number of variables.
     pub joints: Vec<(usize, usize)>,
-    /// Their number.
+    /// Number of variables.
     pub count: usize,
 }
 
 impl ForceVariables {
-    /// Of a problem.
+    /// Creates the force variables of a problem.
     pub fn new(problem: &LimitProblem) -> Self {
         let mut count = 0;
         let joints = problem.joints.iter().map(|joint| {
@@ -29,7 +28,8 @@ impl ForceVariables {
         ForceVariables { joints: joints.collect(), count }
     }
 
-    /// Rows of equilibrium, three for each group, moments about the pole divided by the problem's length.
+    /// Returns the rows of equilibrium, three for each group; moments about the pole are divided by the problem's
+    /// length.
     pub fn equilibrium(&self, problem: &LimitProblem) -> Vec<Row> {
         let mut rows = vec![Row::new(); 3 * problem.groups];
         for (joint, &(first, own)) in problem.joints.iter().zip(&self.joints) {
@@ -48,7 +48,7 @@ impl ForceVariables {
         rows
     }
 
-    /// Joint forces \[N\] of variables in units of `force`.
+    /// Returns the joint forces \[N\] of variables in units of `force`.
     pub fn joint_forces(&self, x: &[f64], force: f64) -> Vec<JointForce> {
         let of = |&(first, own): &(usize, usize)| {
             let component = |k: usize| if k < own { x[first + k] * force } else { 0.0 };
@@ -58,12 +58,13 @@ impl ForceVariables {
     }
 }
 
-/// What joint forces leave of loads on any group, and by how much they exceed a row or a stress block, as a share of the loads.
+/// Returns the greatest error of a field relative to the loads: unbalanced force of a group, or violation of a row or
+/// stress block.
 pub fn field_error(problem: &LimitProblem, loads: &Wrenches, forces: &[JointForce]) -> f64 {
     field_violation(problem, loads, forces) / problem.magnitude(loads).max(f64::MIN_POSITIVE)
 }
 
-/// The same in newtons.
+/// Returns the greatest error of a field \[N\].
 pub fn field_violation(problem: &LimitProblem, loads: &Wrenches, forces: &[JointForce]) -> f64 {
     let (mut left, mut worst) = (loads.clone(), 0.0f64);
     for (joint, force) in problem.joints.iter().zip(forces) {
@@ -86,7 +87,7 @@ pub fn field_violation(problem: &LimitProblem, loads: &Wrenches, forces: &[Joint
     unbalanced.fold(worst, f64::max)
 }
 
-/// By how much a joint's forces exceed its stress block \[N\], at the end that is pressed less.
+/// Returns the violation of the stress block of a joint \[N\], at the end with less compression.
 pub fn excess(block: StressBlock, force: &JointForce) -> f64 {
     let pressed = force.normal[0] + force.normal[1] + block.tension;
     pressed / block.total * pressed - (2.0 * force.normal[0].min(force.normal[1]) + block.tension)

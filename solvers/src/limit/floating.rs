@@ -1,13 +1,13 @@
-//! Groups of blocks that no chain of joints holds to the ground: a rigid motion of theirs costs nothing, so that loads with
-//! a resultant on them are not carried.
+//! Groups of blocks without a chain of joints to the ground. Their rigid motion needs no work, so that they cannot
+//! carry loads with a resultant.
 
 use crate::limit::settings::SETTINGS;
 use crate::linear::inner;
 use voussoir_core::limit::{LimitProblem, Velocity};
 use voussoir_core::model::{Wrenches, root};
 
-/// A rigid motion of a floating group on which the fixed loads do work and the varying ones, whatever their factor,
-/// none. The two sums are those of every group that floats; moments count over the scene's length.
+/// Returns a rigid motion of a floating group on which the fixed loads do work and the varying loads do none. `None` if
+/// there is no such group. Loads of all connected floating groups are added; moments are divided by the scene's length.
 pub fn loose_motion(problem: &LimitProblem, fixed: &Wrenches, varying: &Wrenches) -> Option<Vec<Velocity>> {
     let ground = problem.groups;
     let mut parent: Vec<usize> = (0..=ground).collect();

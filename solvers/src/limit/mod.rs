@@ -1,8 +1,8 @@
 //! Limit analysis: the greatest factor at which rigid blocks can be in admissible equilibrium.
 //!
-//! `question` is the sequence of questions behind every status; an engine answers the three kinds of single optimisation
-//! in it. Two engines: [`chain`] and [`conic`]. [`sequential`] and [`nonassociated`] read joints with their laws' own flow
-//! instead of the associated one.
+//! `question` asks the sequence of questions that leads to every status; an engine solves the three kinds of single
+//! optimisation in it. The engines are [`chain`] and [`conic`]. [`sequential`] and [`nonassociated`] use the flow of
+//! the laws instead of associated flow.
 
 mod associated;
 mod block_program;

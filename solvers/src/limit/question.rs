@@ -1,4 +1,4 @@
-//! The sequence of questions behind every status of limit analysis with associated flow.
+//! The sequence of questions that leads to every status of limit analysis with associated flow.
 
 use super::engine::{Engine, Equilibrium, Greatest};
 use super::floating::loose_motion;
@@ -9,7 +9,7 @@ use voussoir_core::model::Wrenches;
 
 const IMPOSSIBLE: &str = "no factor of the last stage's loads makes equilibrium possible";
 
-/// Answers a question by an engine: every status with its proof.
+/// Answers a question with an engine. Every status has a proof.
 pub fn answer_by(problem: &LimitProblem, question: LimitQuestion, engine: &mut dyn Engine) -> LimitAnswer {
     let (start, max) = match question {
         LimitQuestion::Admissible(factor) => (factor, factor),
@@ -45,7 +45,7 @@ pub fn answer_by(problem: &LimitProblem, question: LimitQuestion, engine: &mut d
         answer.counters = engine.counters();
         return answer;
     }
-    // Nothing is carried by no forces: a solver would scale them by nothing.
+    // // Without loads zero forces are a field; a solver would divide by a zero scale.
     let idle = problem.magnitude(&base) == 0.0;
     let nothing = || Equilibrium::Field(vec![JointForce::default(); problem.joints.len()]);
     let carries = |engine: &mut dyn Engine| if grows { engine.carried(&base) } else { engine.admissible(&base) };
@@ -57,7 +57,7 @@ pub fn answer_by(problem: &LimitProblem, question: LimitQuestion, engine: &mut d
             if matches!(question, LimitQuestion::Collapse { .. }) {
                 collapse(problem, engine, &base, start, max, &mut answer);
             }
-            // A field at the start is shown: the one that is furthest from all bounds.
+            // // The field shown at the start is the field furthest from all bounds.
             if grows
                 && !idle
                 && answer.field_factor == start
@@ -78,7 +78,7 @@ pub fn answer_by(problem: &LimitProblem, question: LimitQuestion, engine: &mut d
     answer
 }
 
-/// The base load is carried: how much more?
+/// The base load is carried: finds the greatest factor.
 fn collapse(
     problem: &LimitProblem,
     engine: &mut dyn Engine,
@@ -97,7 +97,7 @@ fn collapse(
     carried(problem, greatest, base, (start, max), answer);
 }
 
-/// What the greatest factor from a base load that is carried comes to.
+/// Returns the answer for the greatest factor from a base load that is carried.
 fn carried(
     problem: &LimitProblem,
     greatest: Greatest,
@@ -107,7 +107,7 @@ fn carried(
 ) {
     match greatest {
         Greatest::Collapse { factor, field, motion, unique } => {
-            // Rounding of a zero factor is not a factor.
+            // // A factor within rounding of zero is zero.
             let dead = problem.magnitude(base);
             let unit = if dead > 0.0 { dead / problem.magnitude(&problem.varying) } else { 1.0 };
             let factor = if factor.abs() < SETTINGS.zero * unit { 0.0 } else { factor };
@@ -133,7 +133,7 @@ fn carried(
     }
 }
 
-/// The base load is not carried: is there a factor at which it would be?
+/// The base load is not carried: finds out if another factor would be.
 fn refuted(problem: &LimitProblem, engine: &mut dyn Engine, base: &Wrenches, start: f64, answer: &mut LimitAnswer) {
     if problem.magnitude(&problem.varying) == 0.0 {
         return;
@@ -164,8 +164,7 @@ fn refuted(problem: &LimitProblem, engine: &mut dyn Engine, base: &Wrenches, sta
         "equilibrium is impossible at the factor {start} at which the stage begins; it is possible only for factors from {:.9} to {:.9}: do not read either end as safe",
         interval[0], interval[1]
     ));
-    // The motion at the near end of the interval refutes the base load as well, and is the one
-    // that a reader looks for.
+    // // The motion at the near end of the interval also refutes the base load, and is the most useful one to show.
     let near = if interval[0] > start { lower } else { upper };
     if let Greatest::Collapse { motion, unique, .. } = near {
         answer.motion = Some(motion);

@@ -7,7 +7,7 @@ use voussoir_core::model::geometry::{Vec2, turned};
 /// The strengths of the joints of a scene.
 #[derive(Debug, Clone, Copy)]
 pub struct Dry {
-    /// Friction; stuck joints without it.
+    /// Friction coefficient; without it joints do not slide.
     pub friction: Option<f64>,
     /// True if sliding opens joints: associated flow.
     pub associated: bool,
@@ -37,7 +37,7 @@ impl Dry {
         JointStrength { rows, block: self.crushing.map(|total| StressBlock { tension: 0.0, total }) }
     }
 
-    /// A joint whose tangent leads from end to end.
+    /// Creates a joint whose tangent points from the first end to the second.
     fn joint(self, index: usize, (minus, plus): (Option<usize>, Option<usize>), ends: [[f64; 2]; 2]) -> LimitJoint {
         let ends = ends.map(|[x, y]| Vec2::new(x, y));
         let tangent = (ends[1] - ends[0]).normalize();
@@ -54,8 +54,7 @@ impl Dry {
     }
 }
 
-/// A block of a width and a height on the ground, of weight 1 N, pushed by λ N at half its height: λ = b/h (1 − W/F)
-/// if it rocks, μ if it slides.
+/// A block of 1 N on the ground, pushed by λ N at half its height: λ = b/h (1 − W/F) if it rocks, μ if it slides.
 pub fn block(width: f64, height: f64, dry: Dry) -> LimitProblem {
     LimitProblem {
         group_of: vec![Some(0)],
@@ -69,8 +68,8 @@ pub fn block(width: f64, height: f64, dry: Dry) -> LimitProblem {
     }
 }
 
-/// Two half lintels without weight, with a vertical load of λ N between them: the thrust is free and each of the three joints
-/// carries F h/8 at most, so that λ = F h/L.
+/// Two half lintels without weight and a vertical load of λ N between them. The thrust is free and each of the three
+/// joints carries at most F h/8, so that λ = F h/L.
 pub fn lintel(span: f64, height: f64, crushing: f64) -> LimitProblem {
     let dry = Dry { crushing: Some(crushing), ..STUCK };
     let at = |x: f64| [[x, 0.0], [x, height]];
@@ -91,7 +90,7 @@ pub fn lintel(span: f64, height: f64, crushing: f64) -> LimitProblem {
     }
 }
 
-/// A ring of voussoirs between two radii over a half circle, of weight 1 N in all, with a live load of λ N on the voussoir
+/// A semicircular ring of voussoirs between two radii with a total weight of 1 N and a live load of λ N on the voussoir
 /// at a quarter of the span.
 pub fn ring(voussoirs: usize, inner: f64, outer: f64, dry: Dry) -> LimitProblem {
     let angle = |place: f64| std::f64::consts::PI * (1.0 - place / voussoirs as f64);

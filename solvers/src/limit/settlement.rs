@@ -1,16 +1,16 @@
-//! Rigid blocks on supports that move: the motion of least potential energy, and the field that is its dual.
+//! Rigid blocks on supports that move: the motion of least potential energy, and its dual field.
 //!
 //! ```text
 //! motions   min −w·q + Σ b_i γ_i     Eᵀ q + g_s + Dᵀ γ = 0,  γ ≥ 0
 //! fields    max −r·g_s               E r + w = 0,  A r ≤ b
 //! ```
 //!
-//! g_s: openings and slip that the supports alone cause, D = A: flow is associated. With the laws' own flow D the field is
-//! that of D r ≤ b + (D − A) r̄, whose r̄ are its own forces: a fixed point, sought as `limit_sequential` seeks its load. By complementary slackness the best
-//! motions are those with γ_i = 0 wherever the best field has slack; one is taken in their relative interior, the mean
-//! of those with the greatest γ_i each, which is as symmetric as the scene. Source: Iannuzzo et al. 2018, Meccanica 53
-//! (rigid blocks under settlements by least energy). Where the fields have no bound no motion exists: the ray that shows it
-//! is the answer.
+//! g_s are the openings and slips that the supports alone cause. With associated flow D = A. With the laws' own flow D
+//! the field solves the program with D r ≤ b + (D − A) r̄, where r̄ are its own forces: a fixed point, found as in
+//! `limit_sequential`. By complementary slackness the best motions have γ_i = 0 wherever the best field has slack. The
+//! result is the mean of the motions with the greatest γ_i each: it is in the relative interior and as symmetric as the
+//! scene. If the fields have no bound, no motion exists; the answer is the ray that proves it. Source: Iannuzzo et al.
+//! 2018, Meccanica 53 (rigid blocks under settlements by least energy).
 
 use super::systems::{LARGEST, PIVOTS, Pair, Systems};
 use crate::limit::settings::SETTINGS;
@@ -20,12 +20,13 @@ use voussoir_core::law::FlowRule;
 use voussoir_core::limit::{LimitProblem, SettlementAnswer, Velocity};
 use voussoir_core::model::Wrenches;
 
-/// Linear programs of a sequence.
+/// Greatest number of linear programs of a sequence.
 const PROGRAMS: usize = 60;
-/// The first, each of which begins from the forces of the one before; from there on half of the way.
+/// Number of first programs that start from the forces of the previous one; later programs move half of the way.
 const FULL: usize = 24;
 
-/// Answers for any limit solver: with this flow, or the laws' own where no motion goes with associated flow.
+/// Solves the settlement for any limit solver with this flow; with the laws' own flow if no motion exists with
+/// associated flow.
 pub fn settle(problem: &LimitProblem, loads: &Wrenches, openings: &[[f64; 3]], flow: FlowRule) -> SettlementAnswer {
     settled(problem, loads, openings, flow).unwrap_or_else(SettlementAnswer::Refused)
 }
@@ -47,7 +48,7 @@ fn settled(
     if systems.entries() > LARGEST {
         return Err(format!("the scene is too large for settlements of rigid blocks ({} entries)", systems.entries()));
     }
-    // Openings over the force variables, in the length of the greatest.
+    // // Openings over the force variables, scaled by the greatest opening.
     let unit = openings.iter().flatten().fold(0.0, |a: f64, g| a.max(g.abs()));
     let mut driven = vec![0.0; systems.forces];
     for (opening, &(first, count)) in openings.iter().zip(&systems.variables.joints) {
@@ -70,7 +71,7 @@ fn settled(
     let state = own_flow(&systems, &driven)
         .and_then(|force| follows(&fictitious(&systems, &force), &driven, unit, &force, FlowRule::NonAssociated));
     match state {
-        // Where no state of their own flow is found blocks are read with associated flow, as the answer says.
+        // // If no state with the laws' own flow is found, flow is associated; the answer reports it.
         Err(why) if flow == FlowRule::NonAssociated => {
             let force = field(&systems, &driven)?.ok_or(why)?;
             follows(&systems, &driven, unit, &force, FlowRule::Associated)
@@ -79,7 +80,7 @@ fn settled(
     }
 }
 
-/// The answer with this field, on whose yield surface `systems` are read with associated flow.
+/// Returns the answer with this field; at its yield points `systems` have associated flow.
 fn follows(
     systems: &Systems,
     driven: &[f64],
@@ -95,14 +96,14 @@ fn follows(
     Ok(SettlementAnswer::Follows {
         field: systems.variables.joint_forces(force, systems.force),
         motion: motion.chunks_exact(3).map(of).collect(),
-        // Of the motions that go with this field; other fields may have others.
+        // // Unique among the motions of this field; other fields may have others.
         unique: unique.filter(|unique| flow == FlowRule::Associated || !unique),
         flow,
     })
 }
 
-/// The pairs that flow otherwise as associated ones through the yield point at the forces of `reference`:
-/// d·r ≤ b + (d − a)·r̄.
+/// Replaces non-associated pairs by associated ones through the yield point at the forces of `reference`: d·r ≤ b + (d
+/// − a)·r̄.
 fn fictitious(systems: &Systems, reference: &[f64]) -> Systems {
     let mut replaced = systems.clone();
     for pair in replaced.pairs.iter_mut().filter(|pair| pair.non_associated()) {
@@ -112,13 +113,14 @@ fn fictitious(systems: &Systems, reference: &[f64]) -> Systems {
     replaced
 }
 
-/// (d − a)·r.
+/// Returns (d − a)·r.
 fn relief(pair: &Pair, force: &[f64]) -> f64 {
     let along = |row: &[(usize, f64)]| -> f64 { row.iter().map(|&(j, v)| v * force[j]).sum() };
     along(&pair.flow) - along(&pair.normal)
 }
 
-/// A field that is that of its own fictitious cohesion: admissible, and on the yield surface where blocks slide.
+/// Returns a field that solves the program with its own fictitious cohesion: it is admissible, and on the yield surface
+/// where blocks slide.
 fn own_flow(systems: &Systems, driven: &[f64]) -> Result<Vec<f64>, String> {
     let start = field(systems, &vec![0.0; systems.forces])?.ok_or("no field carries the loads")?;
     let mut reference = start.clone();
@@ -126,7 +128,7 @@ fn own_flow(systems: &Systems, driven: &[f64]) -> Result<Vec<f64>, String> {
     for step in 0..PROGRAMS {
         let program = fictitious(systems, &reference);
         let Ok(Some(force)) = field(&program, driven) else {
-            // The forces of a program may violate the strengths so much that nothing carries the loads in the next.
+            // // The forces may violate the strengths so much that no field carries the loads in the next program.
             reference.iter_mut().zip(&start).for_each(|(old, own)| *old += 0.5 * (own - *old));
             continue;
         };
@@ -151,7 +153,7 @@ fn own_flow(systems: &Systems, driven: &[f64]) -> Result<Vec<f64>, String> {
     ))
 }
 
-/// A field near its fixed point moved there: the tight pairs of its program onto the yield surface itself.
+/// Corrects a field near its fixed point: the tight pairs of its program move onto the yield surface itself.
 fn onto_yield(systems: &Systems, program: &Systems, force: &[f64]) -> Option<Vec<f64>> {
     let tight = tight(program, force);
     let mut matrix = DMatrix::zeros(systems.equilibrium.len() + tight.len(), systems.forces);
@@ -169,7 +171,8 @@ fn onto_yield(systems: &Systems, program: &Systems, force: &[f64]) -> Option<Vec
     systems.pairs.iter().all(|pair| excess(pair) <= SETTINGS.balanced * size).then_some(moved)
 }
 
-/// The field on which the supports do most work against the blocks, in units of force; `None` where that has no bound.
+/// Returns the field on which the supports do most work against the blocks, in units of force; `None` if this work has
+/// no bound.
 fn field(systems: &Systems, driven: &[f64]) -> Result<Option<Vec<f64>>, String> {
     let (free, pairs) = (systems.forces, systems.pairs.len());
     // s_i of all pairs, then the two parts of r·g_s.
@@ -200,7 +203,7 @@ fn field(systems: &Systems, driven: &[f64]) -> Result<Option<Vec<f64>>, String> 
     if !finished {
         return Err("the program of the field took too many pivots".into());
     }
-    // The forces of these slacks, with that work.
+    // // The forces for these slacks and this work.
     let height = systems.equilibrium.len() + pairs + 1;
     let mut matrix = DMatrix::zeros(height, free);
     let mut values = DVector::zeros(height);
@@ -214,9 +217,9 @@ fn field(systems: &Systems, driven: &[f64]) -> Result<Option<Vec<f64>>, String> 
     least_squares(matrix, &values, "forces").map(Some)
 }
 
-/// Forces in balance without loads that do no positive work against any flow d of the joints, and negative work on the
-/// gaps of the supports, the greatest force one: E r = 0, D r ≤ 0, r·g_s < 0. By Farkas' lemma no motion goes with the
-/// supports then. The flow is the laws' own: friction that is not associated leaves blocks more motions.
+/// Returns balanced forces without loads, the greatest force one, that prove that no motion fits the supports (Farkas'
+/// lemma): E r = 0, D r ≤ 0, r·g_s < 0. They do no positive work on any flow d of the joints and negative work on the
+/// gaps of the supports. The flow is the laws' own: with non-associated friction blocks have more motions.
 fn ray(systems: &Systems, driven: &[f64]) -> Result<Option<Vec<f64>>, String> {
     let (free, pairs) = (systems.forces, systems.pairs.len());
     let row = |entries: &[(usize, f64)], slack: Option<usize>| {
@@ -235,7 +238,7 @@ fn ray(systems: &Systems, driven: &[f64]) -> Result<Option<Vec<f64>>, String> {
     if program.feasible() != Feasibility::Point {
         return Ok(None);
     }
-    // The least slacks: one vertex, with few forces.
+    // // The least sum of slacks selects one vertex with few forces.
     let slacks: Vec<(usize, f64)> = (0..pairs).map(|i| (i, 1.0)).collect();
     program.minimise(&slacks, PIVOTS);
     let mut matrix = DMatrix::zeros(systems.equilibrium.len() + pairs + 1, free);
@@ -252,13 +255,13 @@ fn ray(systems: &Systems, driven: &[f64]) -> Result<Option<Vec<f64>>, String> {
     Ok(Some(ray))
 }
 
-/// The least x of all that solve the equations.
+/// Returns the least x among all solutions of the equations.
 fn least_squares(matrix: DMatrix<f64>, right: &DVector<f64>, what: &str) -> Result<Vec<f64>, String> {
     let (rows, columns) = matrix.shape();
     if columns == 0 {
         return Ok(Vec::new());
     }
-    // Rows of zeros make it high enough for all right vectors.
+    // // Rows of zeros give at least as many rows as columns.
     let high = matrix.clone().resize_vertically(rows.max(columns), 0.0);
     let tall = right.clone().resize_vertically(rows.max(columns), 0.0);
     let svd = high
@@ -276,7 +279,7 @@ fn least_squares(matrix: DMatrix<f64>, right: &DVector<f64>, what: &str) -> Resu
     Ok(x.iter().copied().collect())
 }
 
-/// Pairs without slack.
+/// Returns the pairs without slack.
 fn tight(systems: &Systems, force: &[f64]) -> Vec<usize> {
     let size = force.iter().fold(0.0, |a: f64, r| a.max(r.abs()));
     let slack = |i: usize| {
@@ -286,7 +289,7 @@ fn tight(systems: &Systems, force: &[f64]) -> Vec<usize> {
     (0..systems.pairs.len()).filter(|i| slack(*i) <= SETTINGS.active * size).collect()
 }
 
-/// γ of the tight pairs, in the relative interior of all that fit, and whether they are the only ones.
+/// Returns γ of the tight pairs, in the relative interior of all solutions, and true if the solution is unique.
 fn multipliers(systems: &Systems, driven: &[f64], tight: &[usize]) -> Result<(Vec<f64>, Option<bool>), String> {
     let (free, variables) = (systems.equilibrium.len(), tight.len());
     let mut rows = vec![vec![0.0; free + variables]; systems.forces];
@@ -322,7 +325,7 @@ fn multipliers(systems: &Systems, driven: &[f64], tight: &[usize]) -> Result<(Ve
     Ok((mean, Some(bounded && found.len() == 1)))
 }
 
-/// q with Eᵀ q = −g_s − Dᵀ γ.
+/// Returns q with Eᵀ q = −g_s − Dᵀ γ.
 fn motion(systems: &Systems, driven: &[f64], tight: &[usize], multipliers: &[f64]) -> Result<Vec<f64>, String> {
     let mut matrix = DMatrix::zeros(systems.forces, systems.equilibrium.len());
     for (i, entries) in systems.equilibrium.iter().enumerate() {

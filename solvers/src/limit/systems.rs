@@ -1,8 +1,7 @@
-//! The two systems of a non-associated limit state over its complementarity pairs.
+//! The statics and kinematics of a non-associated limit state over its complementarity pairs.
 //!
-//! In units of the force scale F, the length L and the factor unit Λ (θ = λ/Λ): *statics* is
-//! E r + p θ = −w and s = b − A r ≥ 0, 0 ≤ θ ≤ t; *kinematics* is Eᵀ q̇ + Dᵀ γ = 0, p·q̇ = 1,
-//! γ ≥ 0. A pair i is a row of a joint: s_i γ_i = 0.
+//! In units of the force scale F, the length L and the factor unit Λ (θ = λ/Λ): *statics* is E r + p θ = −w and s = b −
+//! A r ≥ 0, 0 ≤ θ ≤ t; *kinematics* is Eᵀ q̇ + Dᵀ γ = 0, p·q̇ = 1, γ ≥ 0. A pair i is a row of a joint: s_i γ_i = 0.
 
 use super::equilibrium::ForceVariables;
 use super::scale::{force_scale, force_unit};
@@ -12,17 +11,17 @@ use voussoir_core::law::FacetMode;
 use voussoir_core::limit::LimitProblem;
 use voussoir_core::model::Wrenches;
 
-/// Entries of the equations beyond which dense dictionaries are not built.
+/// Greatest number of entries of the equations for dense dictionaries.
 pub const LARGEST: usize = 1_500_000;
-/// Pivots of a dense linear program, at most.
+/// Greatest number of pivots of a dense linear program.
 pub const PIVOTS: u64 = 20_000;
 
 /// One row of one joint.
 #[derive(Debug, Clone)]
 pub struct Pair {
-    /// The joint among those of the problem.
+    /// Index of the joint in the problem.
     pub joint: usize,
-    /// What happens when it yields.
+    /// The mode of the joint when the pair yields.
     pub mode: FacetMode,
     /// Entries of a over the force variables.
     pub normal: Vec<(usize, f64)>,
@@ -30,19 +29,19 @@ pub struct Pair {
     pub flow: Vec<(usize, f64)>,
     /// b in units of F.
     pub bound: f64,
-    /// d − a where it is (relief, relief, 0), which is so for sliding.
+    /// The relief if d − a = (relief, relief, 0), as in sliding.
     pub relief: f64,
     /// For sliding, the pairs that open the same joint.
     pub openings: Vec<usize>,
 }
 
 impl Pair {
-    /// Whether it bounds sliding.
+    /// Returns true if the pair limits sliding.
     pub fn slides(&self) -> bool {
         self.mode == FacetMode::Sliding
     }
 
-    /// Whether d is not a.
+    /// Returns true if d differs from a.
     pub fn non_associated(&self) -> bool {
         self.flow != self.normal
     }
@@ -57,7 +56,7 @@ pub struct Systems {
     pub variables: ForceVariables,
     /// Number of force variables.
     pub forces: usize,
-    /// E row by row: three per group.
+    /// Rows of E, three per group.
     pub equilibrium: Vec<Vec<(usize, f64)>>,
     /// w of each row of E.
     pub fixed: Vec<f64>,
@@ -123,22 +122,22 @@ impl Systems {
         }
     }
 
-    /// Entries of the equations of statics.
+    /// Returns the number of entries of the equations of statics.
     pub fn entries(&self) -> usize {
         (self.equilibrium.len() + self.pairs.len()) * (self.forces + self.pairs.len())
     }
 
-    /// Index of θ among the variables of statics: pairs come first.
+    /// Returns the index of θ among the variables of statics: pairs come first.
     pub fn theta(&self) -> usize {
         self.pairs.len()
     }
 
-    /// Index of t − θ, of statics, and of t − (power), of kinematics.
+    /// Returns the index of t − θ in statics and of t − (power) in kinematics.
     pub fn upper_slack(&self) -> usize {
         self.pairs.len() + 1
     }
 
-    /// Statics with variables s_i, θ and t − θ ≥ 0.
+    /// Returns statics with variables s_i, θ and t − θ ≥ 0.
     pub fn statics(&self, most: Option<f64>) -> Option<Dictionary> {
         let (free, pairs) = (self.forces, self.pairs.len());
         let variables = pairs + 1 + usize::from(most.is_some());
@@ -167,14 +166,14 @@ impl Systems {
         Equations { free, variables, rows, right }.dictionary()
     }
 
-    /// Index of (power) − a, of kinematics, where a ≤ θ.
+    /// Returns the index of (power) − a in kinematics, if a ≤ θ is set.
     pub fn lower_slack(&self) -> usize {
         self.pairs.len() + 2
     }
 
-    /// Kinematics with variables γ_i of the pairs that are not `excluded`, and the power that the
-    /// dissipation d_i·r on each pair, between `least` and `greatest`, allows θ = −w·q̇ + Σ γ_i d_i·r:
-    /// −w·q̇ + Σ least_i γ_i ≤ t and −w·q̇ + Σ greatest_i γ_i ≥ a for a ≤ θ ≤ t.
+    /// Returns kinematics with the variables γ_i of the pairs that are not `excluded`. The dissipation d_i·r on each
+    /// pair lies between `least` and `greatest`, which bounds the power θ = −w·q̇ + Σ γ_i d_i·r. For a ≤ θ ≤ t this
+    /// gives −w·q̇ + Σ least_i γ_i ≤ t and −w·q̇ + Σ greatest_i γ_i ≥ a.
     pub fn kinematics(&self, range: [f64; 2], dissipation: &[[f64; 2]], excluded: &[bool]) -> Option<Dictionary> {
         let (free, pairs) = (self.equilibrium.len(), self.pairs.len());
         let variables = pairs + 3;
@@ -205,7 +204,7 @@ impl Systems {
     }
 }
 
-/// The pairs whose multiplier is more than rounding.
+/// Returns the pairs with multipliers above rounding.
 pub fn greatest_shares(gamma: &[f64]) -> Vec<usize> {
     let greatest = gamma.iter().fold(0.0f64, |m, g| m.max(*g));
     (0..gamma.len()).filter(|&i| gamma[i] > SETTINGS.moves * greatest).collect()

@@ -38,7 +38,7 @@ fn solvers() -> [Box<dyn LimitSolver>; 4] {
     ]
 }
 
-/// A block rocks at b/h and slides at μ, whichever is less, by every solver.
+/// A block rocks at b/h or slides at μ, the lesser of both, with every solver.
 #[test]
 fn a_block_rocks_or_slides() {
     for (width, height, mu) in [(1.0, 2.0, 0.7), (1.0, 2.0, 0.3), (0.4, 0.175, 0.65), (3.0, 1.0, 4.0)] {
@@ -48,7 +48,7 @@ fn a_block_rocks_or_slides() {
     }
 }
 
-/// Sliding without dilatancy needs the same push of a single block, whose normal force its weight gives.
+/// Dilatancy does not change the push on a single block, because its weight alone determines the normal force.
 #[test]
 fn dilatancy_does_not_matter_to_a_single_block() {
     for (mu, known) in [(0.3, 0.3), (0.9, 0.5)] {
@@ -58,7 +58,7 @@ fn dilatancy_does_not_matter_to_a_single_block() {
     }
 }
 
-/// The least load of a block that slides is proved from below.
+/// The least load of a sliding block has a proved lower bound.
 #[test]
 fn the_least_load_of_a_block_is_proved() {
     let problem = block(1.0, 2.0, Dry { associated: false, ..sliding(0.3) });
@@ -67,7 +67,7 @@ fn the_least_load_of_a_block_is_proved() {
     assert!((lower - 0.3).abs() <= 1e-6 && lower <= 0.3 + 1e-12, "{lower}");
 }
 
-/// A toe that crushes takes W/F off the lever: λ = b/h (1 − W/F).
+/// A crushing toe reduces the lever arm by W/F: λ = b/h (1 − W/F).
 #[test]
 fn a_toe_that_crushes_shortens_the_lever() {
     for strength in [1.5, 2.0, 10.0, 1e3, 1e8] {
@@ -77,7 +77,7 @@ fn a_toe_that_crushes_shortens_the_lever() {
     }
 }
 
-/// The thrust of a lintel is free: its joints crush amid their stress blocks, at N = F/2, and λ = F h/L.
+/// The thrust of a lintel is free: its joints crush in the middle of their stress blocks, at N = F/2, and λ = F h/L.
 #[test]
 fn a_lintel_crushes_amid_its_stress_blocks() {
     for (span, height, strength) in [(4.0, 0.5, 8.0), (10.0, 1.0, 1.0), (2.0, 1.0, 300.0)] {
@@ -91,7 +91,7 @@ fn a_lintel_crushes_amid_its_stress_blocks() {
     }
 }
 
-/// Between both engines, which share no program, nothing differs: factor, and power of the loads on the motion.
+/// Two engines without common programs agree in the factor and in the power of the loads on the motion.
 #[test]
 fn two_engines_agree() {
     for crushing in [None, Some(3.0), Some(50.0)] {
@@ -124,7 +124,7 @@ fn a_cap_below_the_collapse_load_is_reached() {
     }
 }
 
-/// A block pressed down by a varying load carries any of it; one that crushes carries no more than F.
+/// A block carries any varying load that presses it down; if it crushes, it carries at most F.
 #[test]
 fn a_load_that_presses_has_no_bound_but_the_strength() {
     let pressed: Wrenches = vec![[0.0, -1.0, 0.0]];
@@ -152,7 +152,8 @@ fn shear_of_a_stuck_joint_that_crushes_is_a_ray() {
     close(ray[0].shear.abs(), 1.0);
 }
 
-/// A block that is pulled up is refuted by a motion on which its load does work; pulled sideways as well, no factor helps.
+/// A block that is pulled up is refuted by a motion on which its load does work. If it is also pulled sideways, no
+/// factor is admissible.
 #[test]
 fn loads_that_nothing_carries_are_refuted() {
     let problem = block(1.0, 2.0, sliding(0.5));
@@ -165,7 +166,7 @@ fn loads_that_nothing_carries_are_refuted() {
     assert!(motion[0][1] > 0.0 && power.abs() <= 1e-9 * motion[0][1], "{motion:?}");
 }
 
-/// A lean that is too great is carried with a push back: the factors that carry are an interval around it.
+/// A block that leans too much is carried with a push back: the admissible factors are an interval.
 #[test]
 fn factors_that_make_equilibrium_possible_are_found() {
     let problem = block(1.0, 2.0, STUCK);
@@ -192,7 +193,7 @@ fn admissible_loads_end_at_the_collapse_load() {
     }
 }
 
-/// dλ/db of a block that rocks at b/h is 1/h from both sides, and nothing changes with the same data.
+/// dλ/db of a block that rocks at b/h is 1/h from both sides; with unchanged data the derivative is zero.
 #[test]
 fn the_load_of_a_block_changes_with_its_width() {
     let of = |width: f64| block(width, 2.0, sliding(0.9));
@@ -208,14 +209,14 @@ fn the_load_of_a_block_changes_with_its_width() {
     assert!(same_data(&problem, &of(1.0)) && !same_data(&problem, &of(1.0 + 1e-9)));
 }
 
-/// Another number of rows is another topology: no rate, and the error gives the reason.
+/// With another number of rows the topology differs: there is no rate, and the error gives the reason.
 #[test]
 fn another_topology_has_no_rate() {
     let (one, other) = (block(1.0, 2.0, sliding(0.5)), block(1.0, 2.0, STUCK));
     assert!(DataRate::one_sided(&one, [&other, &other], 1e-3).is_err() && !same_data(&one, &other));
 }
 
-/// dλ/dF of a toe that crushes is b W/(h F²): the stress block is read by its tangents.
+/// dλ/dF of a crushing toe is b W/(h F²): the stress block is represented by its tangents.
 #[test]
 fn the_load_of_a_toe_changes_with_its_strength() {
     let of = |strength: f64| block(1.0, 2.0, Dry { crushing: Some(strength), ..sliding(0.9) });
@@ -227,7 +228,7 @@ fn the_load_of_a_toe_changes_with_its_strength() {
     assert!((face.derivative(&rate).expect("a rate") - 0.5 / 16.0).abs() < 1e-7);
 }
 
-/// Errors of fields agree with errors by hand: zero in balance, the excess over a row, and forces out of equilibrium.
+/// Errors of fields agree with hand calculation: zero in balance, violation of a row, and unbalanced forces.
 #[test]
 fn errors_of_fields_are_shares_of_the_loads() {
     let problem = block(1.0, 2.0, sliding(0.5));
@@ -239,7 +240,7 @@ fn errors_of_fields_are_shares_of_the_loads() {
     assert!((field_error(&problem, &leaning, &force([1.3, -0.3], 0.8)) - 0.3 / size).abs() < 1e-15);
 }
 
-/// A stress block is exceeded by its parabola: N²/F − 2 N_i at the end that is pressed less.
+/// The violation of a stress block follows its parabola: N²/F − 2 N_i at the end with less compression.
 #[test]
 fn a_stress_block_is_exceeded_by_its_parabola() {
     let block = StressBlock { tension: 0.0, total: 4.0 };
@@ -249,7 +250,7 @@ fn a_stress_block_is_exceeded_by_its_parabola() {
     assert_eq!(excess(block, &force([1.5, 0.25])), 0.265_625);
 }
 
-/// Variables give joint forces back in their unit, and equilibrium over them equals equilibrium of the wrenches.
+/// Variables convert to joint forces in their unit; equilibrium in variables equals equilibrium of the wrenches.
 #[test]
 fn force_variables_are_joint_forces() {
     let problem = block(1.0, 2.0, sliding(0.5));
@@ -264,7 +265,7 @@ fn force_variables_are_joint_forces() {
     assert!((sums[2] + 0.5 / problem.length).abs() < 1e-15, "{sums:?}");
 }
 
-/// Scales: an unloaded problem has the unit 1 N, motions have unit power, and fixed loads set the scale if there are any.
+/// Scales: an unloaded problem has the unit 1 N, motions have unit power, and fixed loads set the scale if they exist.
 #[test]
 fn scales_are_those_of_the_loads() {
     let problem = block(1.0, 2.0, STUCK);
@@ -277,7 +278,8 @@ fn scales_are_those_of_the_loads() {
     close(motion[0][0] - motion[0][2], 1.0);
 }
 
-/// A group without joints floats: its weight is refuted by a motion along it, and a push along the push by none.
+/// A group without joints floats: a motion along its weight refutes the weight. A fixed push is not refuted if the
+/// varying load is the same push.
 #[test]
 fn groups_without_joints_float() {
     let mut problem = block(1.0, 2.0, STUCK);
@@ -288,7 +290,7 @@ fn groups_without_joints_float() {
     assert!(loose_motion(&problem, &problem.varying, &problem.varying).is_none());
 }
 
-/// Multipliers of a motion with the laws' own flow: slip alone slides, and a turn about an end opens the other.
+/// Multipliers of a motion with the laws' own flow: slip only slides, and a rotation about one end opens the other.
 #[test]
 fn multipliers_of_a_motion_are_its_jumps() {
     let problem = block(1.0, 2.0, Dry { associated: false, ..sliding(0.5) });
@@ -301,7 +303,7 @@ fn multipliers_of_a_motion_are_its_jumps() {
     assert!((turn[1] - 1.0).abs() < 1e-12, "{turn:?}");
 }
 
-/// The nearest field on the yield surface is the one at the limit load, from anywhere.
+/// From any field, the nearest field on the yield surface is the field at the limit load.
 #[test]
 fn the_field_of_a_rocking_block_is_recovered() {
     let problem = block(1.0, 2.0, sliding(0.9));

@@ -27,7 +27,7 @@ pub fn thrust_zone(problem: &LimitProblem, loads: &Wrenches) -> Vec<Option<[f64;
     zone_by(problem, loads, engines)
 }
 
-/// The zone by these engines, each of which is asked for the ends that those before it do not find.
+/// Computes the zone with several engines; each engine gets the ends that the previous ones did not find.
 pub(super) fn zone_by<'a>(
     problem: &'a LimitProblem,
     loads: &Wrenches,
@@ -52,9 +52,9 @@ pub(super) fn zone_by<'a>(
 
 /// The greatest s M / (N h) of a joint over all admissible fields.
 fn greatest_ratio(engine: &mut dyn Engine, loads: &Wrenches, joint: usize, sense: f64) -> Option<f64> {
-    // N_0 or N_1, of which the greatest is positive if anything presses.
+    // // N_0 or N_1; its greatest value is positive if the joint can be in compression.
     let (mut ratio, mut reached) = (-0.5, false);
-    // Five ratios are usual.
+    // // Five iterations are usual.
     for _ in 0..50 {
         let form = [-sense / 2.0 - ratio, sense / 2.0 - ratio, 0.0];
         let force = match engine.extreme(loads, joint, form) {
@@ -62,7 +62,7 @@ fn greatest_ratio(engine: &mut dyn Engine, loads: &Wrenches, joint: usize, sense
             Extreme::Failed => return None,
         };
         let next = ratio_of(force, sense)?;
-        // A ray has its ratio in the limit alone: at that ratio all fields may lie below it.
+        // // A ray reaches its ratio only in the limit: all fields may have lower ratios.
         if reached && next <= ratio + SETTINGS.balanced {
             return Some(next.max(ratio));
         }
@@ -71,7 +71,7 @@ fn greatest_ratio(engine: &mut dyn Engine, loads: &Wrenches, joint: usize, sense
     None
 }
 
-/// s M / (N h) of a force; `None` if nothing presses.
+/// Returns s M / (N h) of a force; `None` without compression.
 fn ratio_of(force: JointForce, sense: f64) -> Option<f64> {
     let [n_0, n_1] = force.normal;
     let normal = n_0 + n_1;

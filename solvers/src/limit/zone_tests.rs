@@ -13,7 +13,7 @@ use voussoir_core::model::Wrenches;
 
 const RUBBED: Dry = Dry { friction: Some(0.6), ..STUCK };
 
-/// A ring under its weight and a share of the live load that makes it collapse; and that load.
+/// A ring under its weight and a share of the live load at collapse; returns it with that load.
 fn loaded(dry: Dry, voussoirs: usize, share: f64) -> (LimitProblem, Wrenches) {
     let problem = ring(voussoirs, 0.8, 1.2, dry);
     let answer = LimitChain {}.solve(&problem, LimitQuestion::Collapse { start: 0.0, max: f64::INFINITY });
@@ -22,8 +22,8 @@ fn loaded(dry: Dry, voussoirs: usize, share: f64) -> (LimitProblem, Wrenches) {
     (problem, loads)
 }
 
-/// The least or greatest M/N of a joint by one linear program over forces per normal force of that joint (Charnes and Cooper
-/// 1962), over all forces of all joints. The redundants have no part in it.
+/// Returns the least or greatest M/N of a joint by one linear program over forces divided by the normal force of that
+/// joint (Charnes and Cooper 1962), over all joint forces. It does not use redundants.
 fn end_by_one_program(problem: &LimitProblem, loads: &Wrenches, joint: usize, sense: f64) -> f64 {
     let variables = ForceVariables::new(problem);
     let (unit, last) = (problem.magnitude(loads), variables.count);
@@ -82,7 +82,7 @@ fn a_block_has_one_eccentricity() {
     assert_near(least, greatest, 1e-12, "one field");
 }
 
-/// Ratios over the redundants, ratios over all forces, and one program over all forces per normal force agree.
+/// Three methods agree: ratios over the redundants, ratios over all forces, and one program over normalised forces.
 #[test]
 fn three_ways_find_the_same_zone() {
     for dry in [STUCK, RUBBED] {
@@ -100,7 +100,7 @@ fn three_ways_find_the_same_zone() {
     }
 }
 
-/// Blocks that crush have their stress blocks in both engines; the zone of a weak ring lies within that of a strong one.
+/// Both engines use stress blocks of crushing joints; the zone of a weak ring lies within the zone of a strong one.
 #[test]
 fn crushing_narrows_the_zone() {
     let (_, loads) = loaded(Dry { crushing: Some(20.0), ..RUBBED }, 7, 0.5);
@@ -120,7 +120,7 @@ fn crushing_narrows_the_zone() {
     }
 }
 
-/// Near the collapse load the zone closes at the edge of four joints, which are the hinges of the mechanism.
+/// Near the collapse load the zone closes at the edges of four joints, the hinges of the mechanism.
 #[test]
 fn the_zone_closes_at_hinges() {
     let (problem, loads) = loaded(STUCK, 24, 1.0 - 1e-9);
@@ -146,7 +146,7 @@ fn a_mirror_image_has_the_mirrored_zone() {
     }
 }
 
-/// The thrust of a flat arch without crushing grows without bound: the zone is what very great thrusts make of it.
+/// The thrust of a flat arch without crushing grows without bound: the zone is the limit of very large thrusts.
 #[test]
 fn a_thrust_without_bound_has_a_zone() {
     let mut problem = lintel(4.0, 0.5, 1.0);

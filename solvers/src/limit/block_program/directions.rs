@@ -1,7 +1,7 @@
-//! Directions of the interior point method at a state: one factorisation, several right-hand sides.
+//! Search directions of the interior point method at a state: one factorisation, several right-hand sides.
 //!
-//! Of n joints, steps, residuals and what is wanted of the products are kept and written anew: nothing is allocated in an
-//! iteration. What is divided by slacks and multipliers is multiplied by their inverses, of which there is one division a state.
+//! Steps, residuals and the wanted changes of the products are allocated once and overwritten in each iteration.
+//! Divisions by slacks and multipliers use inverses, which are computed once a state.
 
 use super::cone::{ROWS, combination, dot};
 use super::program::Program;
@@ -14,16 +14,16 @@ use crate::linear::inner;
 use voussoir_core::linear::vectors::Simd;
 use voussoir_core::with_vectors;
 
-/// What a joint answers to motions with at a state.
+/// The linear response of a joint to motions at a state.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Response {
-    /// R of its flexibility R Rᵀ.
+    /// R of the flexibility R Rᵀ.
     root: Root,
     /// A R, by columns.
     rows: [[f64; ROWS]; 3],
-    /// One over its slacks.
+    /// Inverse slacks.
     slacks: [f64; ROWS],
-    /// One over its multipliers, 0 of rows that it does not have.
+    /// Inverse multipliers; 0 for rows that the joint does not have.
     multipliers: [f64; ROWS],
 }
 
@@ -33,18 +33,18 @@ pub struct Directions<'a> {
     /// The matrices of the program.
     pub stiffness: Stiffness,
     pub(super) responses: Vec<Response>,
-    /// The motion that the varying load causes; empty until it is asked for.
+    /// The motion caused by the varying load; empty until it is needed.
     pub(super) v: Vec<f64>,
 }
 
 impl<'a> Directions<'a> {
-    /// Of a program. `None` where memory is short.
+    /// Creates directions for a program. `None` if the pattern cannot be analysed.
     pub fn new(program: &'a Program) -> Option<Self> {
         let responses = vec![Response::default(); program.members.len()];
         Some(Directions { program, stiffness: Stiffness::new(program)?, responses, v: Vec::new() })
     }
 
-    /// The flexibilities of a state, factorised.
+    /// Factorises the stiffness at a state.
     pub fn factorise(&mut self, state: &State) -> Option<()> {
         self.v.clear();
         let (program, responses) = (self.program, self.responses.as_mut_slice());
@@ -53,7 +53,7 @@ impl<'a> Directions<'a> {
         self.stiffness.factorise(self.program, roots, 0.0, SETTINGS.pivot).then_some(())
     }
 
-    /// The direction in which all residuals and `wanted` vanish, with θ where it moves.
+    /// Computes the direction that makes all residuals and `wanted` vanish; θ changes if `moves`.
     pub fn towards(&mut self, state: &State, residuals: &Residuals, wanted: &Wanted, moves: bool, step: &mut Step) {
         let program = self.program;
         self.loads(state, residuals, wanted, step);
@@ -79,20 +79,20 @@ impl<'a> Directions<'a> {
         self.complete(state, residuals, wanted, step);
     }
 
-    /// The forces that joints would have without a motion, as `along`, and what equilibrium then misses, as `q`.
+    /// Stores the forces of joints without a motion as `along`, and the remaining error of equilibrium as `q`.
     fn loads(&self, state: &State, residuals: &Residuals, wanted: &Wanted, step: &mut Step) {
         let all = (self, state, residuals, wanted);
         type All<'a> = (&'a Directions<'a>, &'a State, &'a Residuals, &'a Wanted);
         with_vectors!('a, load(all: All<'a>, step: &'a mut Step) -> ());
     }
 
-    /// Takes off the forces what a change of velocities relieves.
+    /// Subtracts from the forces the part that a change of velocities relieves.
     pub(super) fn follow(&self, motion: &[f64], step: &mut Step) {
         let (program, responses) = (self.program, self.responses.as_slice());
         with_vectors!('a, relieve(program: &'a Program, responses: &'a [Response], motion: &'a [f64], step: &'a mut Step) -> ());
     }
 
-    /// The changes of slacks and multipliers that go with those of forces and θ, and how long a step they allow.
+    /// Computes the changes of slacks and multipliers from the changes of forces and θ, and the greatest step length.
     pub(super) fn complete(&self, state: &State, residuals: &Residuals, wanted: &Wanted, step: &mut Step) {
         let all = (self, state, residuals, wanted);
         type All<'a> = (&'a Directions<'a>, &'a State, &'a Residuals, &'a Wanted);
@@ -105,7 +105,7 @@ impl<'a> Directions<'a> {
         step.longest = worst.map(|worst| if worst > 1.0 { 1.0 / worst } else { 1.0 });
     }
 
-    /// Twice the energy of a change of velocities in the joints.
+    /// Returns twice the energy of a change of velocities in the joints.
     pub(super) fn resisted(&self, motion: &[f64]) -> f64 {
         let energy = |(member, response): (_, &Response)| {
             let y = along(&response.root, &self.program.jump(member, motion));
@@ -155,7 +155,7 @@ fn relieve<S: Simd>(_: S, program: &Program, responses: &[Response], motion: &[f
     }
 }
 
-/// The greatest shares of slacks and multipliers that a whole step would take off.
+/// Returns the greatest relative decrease of slacks and of multipliers in a full step.
 #[inline(always)]
 fn follow_rows<S: Simd>(
     _: S,
@@ -178,7 +178,7 @@ fn follow_rows<S: Simd>(
     worst.map(|worst| worst.into_iter().fold(0.0, f64::max))
 }
 
-/// What the cap adds to the stiffness that θ feels.
+/// Returns the contribution of the cap to the stiffness of θ.
 pub(super) fn cap_stiffness(program: &Program, state: &State) -> f64 {
     if program.cap.is_some() { state.cap[1] / state.cap[0] } else { 0.0 }
 }

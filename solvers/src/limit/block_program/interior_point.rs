@@ -1,7 +1,7 @@
-//! A primal–dual interior point method with Mehrotra's predictor and corrector on the bodies' stiffness matrix.
+//! A primal–dual interior point method with Mehrotra's predictor and corrector on the stiffness matrix of the bodies.
 //!
-//! Can the fixed load be carried? The steps hold θ at zero until one of full length makes equilibrium exact: that
-//! point, inside all bounds, is the answer, and the search for the greatest θ goes on from it.
+//! To find if the fixed load can be carried, θ stays zero until a full step makes equilibrium exact. That point is
+//! inside all bounds; it is the answer, and the search for the greatest θ continues from it.
 
 use super::directions::Directions;
 use super::polish::{polish, unpolished};
@@ -13,28 +13,28 @@ use super::wanted::Wanted;
 use crate::limit::settings::SETTINGS;
 use voussoir_core::limit::JointForce;
 
-/// Iterations at the most.
+/// Greatest number of iterations.
 const MOST: u64 = 250;
-/// Iterations until a fixed load should be carried.
+/// Greatest number of iterations until the fixed load is carried.
 const MOST_HELD: u64 = 25;
-/// Share of the way to the nearest bound.
+/// Step length relative to the distance to the nearest bound.
 const SHORT: f64 = 0.995;
-/// Correctors of one direction at the most, the step that needs none, and the least gain of one.
+/// Greatest number of correctors of one direction, the step length that needs no corrector, and the least gain of one.
 const CORRECTORS: usize = 4;
 const LONG: f64 = 0.9;
 const GAIN: f64 = 0.005;
-/// What a corrector aims at: so many times the present step, and so much more.
+/// Target of a corrector: factor on the present step length, and addition to it.
 const BEYOND: [f64; 2] = [1.5, 0.1];
-/// Share of the gap of a polish at which the next is tried.
+/// Ratio of the gap to the gap of the last polish, below which the next polish is tried.
 const SOONEST: f64 = 1e-2;
-/// Iterations in which neither the gap nor what equilibrium misses was halved, after which nothing is hoped for.
+/// Number of iterations after which the method stops if neither the gap nor the error of equilibrium was halved.
 const IDLE: u32 = 12;
 
-/// What a program came to, with the work done.
+/// The result of a program, with the work done.
 pub struct Solved {
-    /// Forces inside all bounds in equilibrium with the fixed load, where they were asked for and found.
+    /// Forces inside all bounds in equilibrium with the fixed load, if requested and found.
     pub stands: Option<Vec<JointForce>>,
-    /// The optimum, where it was found.
+    /// The optimum, if found.
     pub solution: Option<Solution>,
     /// Iterations.
     pub iterations: u64,
@@ -44,12 +44,12 @@ pub struct Solved {
     pub corrections: u64,
 }
 
-/// Forces in equilibrium with the fixed load, inside all bounds, if the method finds them.
+/// Searches for forces inside all bounds in equilibrium with the fixed load.
 pub fn stands(program: &Program) -> Solved {
     run(program, true, false)
 }
 
-/// The greatest θ. With `held`, only if the fixed load is carried.
+/// Finds the greatest θ. With `held`, only if the fixed load is carried.
 pub fn solve(program: &Program, held: bool) -> Solved {
     run(program, held, true)
 }
@@ -85,7 +85,7 @@ struct Method<'a> {
     directions: Directions<'a>,
     state: State,
     residuals: Residuals,
-    /// The step that is best so far and one that is tried, and what they are to reach.
+    /// The best step so far, a trial step, and their targets.
     steps: [Step; 2],
     wanted: [Wanted; 2],
     iterations: u64,
@@ -93,7 +93,7 @@ struct Method<'a> {
 }
 
 impl Method<'_> {
-    /// Steps at θ = 0 until equilibrium is exact.
+    /// Iterates at θ = 0 until equilibrium is exact.
     fn carry_fixed(&mut self) -> Option<()> {
         let mean = self.state.gap() / self.products();
         for _ in 0..MOST_HELD {
@@ -116,7 +116,7 @@ impl Method<'_> {
         (self.program.rows + usize::from(self.program.cap.is_some())) as f64
     }
 
-    /// Whether the forces themselves lie inside all bounds.
+    /// Returns true if the forces themselves are inside all bounds.
     fn inside(&self) -> bool {
         (0..self.state.x.len()).all(|index| self.state.true_slacks(self.program, index).iter().all(|s| *s > 0.0))
     }
@@ -139,7 +139,7 @@ impl Method<'_> {
             (0..2).filter(|i| halved[*i]).for_each(|i| least[i] = missing[i]);
             idle = if halved.contains(&true) { 0 } else { idle + 1 };
             let error = self.error(statics);
-            // Below the gap that is asked for, rounding of the motion is all that is left.
+            // // Below the required gap, only rounding errors of the motion remain.
             let last = nearest.as_ref().map_or(f64::INFINITY, |nearest| nearest.0);
             let done = error < SETTINGS.settled
                 || (gap < SETTINGS.exhausted_gap && error < SETTINGS.admissible && error > 0.5 * last);
@@ -166,7 +166,7 @@ impl Method<'_> {
         best.filter(|best| best.0 < SETTINGS.admissible).map(|best| best.1)
     }
 
-    /// Polishes the present state, for what is better than the best so far.
+    /// Polishes the present state and keeps the result if it is better than the best so far.
     fn polished(&mut self, best: &mut Option<(f64, Solution)>) {
         let stiffness = &mut self.directions.stiffness;
         if let Some((error, solution)) = polish(self.program, &self.state, stiffness, &mut self.corrections)
@@ -176,12 +176,13 @@ impl Method<'_> {
         }
     }
 
-    /// How far the state itself is from an optimum: the gap in units of θ, what equilibrium misses and what joints resist.
+    /// Returns the error of the state itself: the gap in units of θ, the error of equilibrium and the resistance of
+    /// joints.
     fn error(&self, statics: f64) -> f64 {
         let moved = greatest(self.residuals.flow.as_flattened());
         let largest = greatest(self.state.multipliers.as_flattened()).max(f64::MIN_POSITIVE);
         let gap = self.state.gap() / self.state.theta.abs().max(SETTINGS.least_factor);
-        // Without a motion on which the load does work nothing is proved.
+        // // A motion without work of the load proves nothing.
         if self.residuals.power.abs() > SETTINGS.unpolished {
             return f64::INFINITY;
         }
@@ -189,13 +190,13 @@ impl Method<'_> {
         [statics, moved / largest].into_iter().fold(gap, |m, v| if v <= m { m } else { v })
     }
 
-    /// Whether it is clear of every row if it carries.
+    /// Returns true if every row is clearly active or clearly inactive.
     fn clear(&self) -> bool {
         let rows = self.state.slacks.iter().flatten().zip(self.state.multipliers.iter().flatten());
         rows.filter(|(_, z)| **z > 0.0).all(|(s, z)| *z > SETTINGS.clear * s || *s > SETTINGS.clear * z)
     }
 
-    /// One predictor, with correctors.
+    /// Computes one predictor with its correctors.
     fn improve(&mut self) -> Option<()> {
         let products = self.products();
         let Method { directions, state, residuals, steps: [step, other], wanted: [wanted, centred], .. } = self;
@@ -227,7 +228,7 @@ impl Method<'_> {
         Some(())
     }
 
-    /// Goes along the step, short of the nearest bounds.
+    /// Moves along the step, up to a fixed share of the distance to the nearest bounds.
     fn go(&mut self) {
         let [step, _] = &self.steps;
         self.state.go(step, step.longest.map(|l| if l < 1.0 { SHORT * l } else { 1.0 }));

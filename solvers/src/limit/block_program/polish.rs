@@ -1,9 +1,9 @@
-//! From an interior point to rounding: the rows that carry are taken as equations.
+//! Improves an interior point to rounding: the carrying rows become equations.
 //!
 //! Forces move along the null space Z of the carrying rows of each joint, so that E Z Zᵀ Eᵀ, with a shift of δ, is the
-//! stiffness of the structure that is left; at collapse it is singular in the mechanism alone, along which θ carries
-//! what is out of equilibrium. The forces nearest to the interior point's follow from it, and the velocities nearest
-//! to its own that no joint resists. Rows whose multiplier turns out negative leave, those that are violated enter.
+//! stiffness of the remaining structure. At collapse it is singular only in the mechanism; θ balances the equilibrium
+//! error along it. The solution gives the forces nearest to the interior point, and the nearest velocities that no
+//! joint resists. Rows with a negative multiplier leave the set; violated rows enter it.
 
 use super::cone::{Cone, ROWS, dot, span};
 use super::program::Program;
@@ -14,18 +14,18 @@ use super::stiffness::{Root, Stiffness};
 use crate::limit::settings::SETTINGS;
 use crate::linear::inner;
 
-/// Sets of carrying rows tried.
+/// Greatest number of sets of carrying rows.
 const SETS: usize = 6;
-/// Of these, those after which all wrong rows change at once; after the others the worst alone does.
+/// Number of sets after which all wrong rows change at once; after later sets only the worst row changes.
 const TOGETHER: usize = 3;
-/// Corrections of one set.
+/// Greatest number of corrections of one set.
 const CORRECTIONS: usize = 12;
 
-/// What the carrying rows of one joint leave free, and how their values and multipliers follow.
+/// The free directions of the forces of one joint, with its carrying rows and their multipliers.
 struct Frame {
-    /// Orthonormal vectors of the space of their normals.
+    /// Orthonormal basis of the space of their normals.
     normals: Vec<[f64; 3]>,
-    /// Z Zᵀ as its own root.
+    /// Z Zᵀ, which is its own square root.
     free: Root,
 }
 
@@ -46,7 +46,7 @@ impl Frame {
     }
 }
 
-/// L of the carrying rows, A = L Qᵀ with Q the frame's normals, and the solution of (Lᵀ L) c = right.
+/// Returns L of the carrying rows, with A = L Qᵀ and Q the frame's normals, and the solution of (Lᵀ L) c = right.
 fn least_squares(
     rows: &[[f64; 3]],
     frame: &Frame,
@@ -68,7 +68,7 @@ fn least_squares(
     (std::array::from_fn(|c| if c < rank { solved[c] } else { 0.0 }), l)
 }
 
-/// A state that is polished with one set of carrying rows.
+/// A state during the polish with one set of carrying rows.
 struct Polish<'a> {
     program: &'a Program,
     state: State,
@@ -77,7 +77,7 @@ struct Polish<'a> {
     frames: Vec<Frame>,
 }
 
-/// Polishes a state: the optimum and its greatest error. `None` where the stiffness has no factorisation.
+/// Polishes a state. Returns the optimum and its greatest error; `None` if the stiffness has no factorisation.
 pub fn polish(
     program: &Program,
     start: &State,
@@ -109,7 +109,7 @@ pub fn polish(
     Some((error, polish.solution(stiffness)?))
 }
 
-/// A state as it is: the optimum where no set of carrying rows is clear.
+/// Returns a state without polish, for optima without a clear set of carrying rows.
 pub fn unpolished(program: &Program, state: &State, stiffness: &mut Stiffness) -> Option<Solution> {
     let capped = program.cap.is_some() && state.cap[1] > state.cap[0];
     let polish = Polish { program, state: state.clone(), carrying: Vec::new(), capped, frames: Vec::new() };
@@ -117,14 +117,14 @@ pub fn unpolished(program: &Program, state: &State, stiffness: &mut Stiffness) -
 }
 
 impl Polish<'_> {
-    /// The optimum of the present state.
+    /// Returns the optimum of the present state.
     fn solution(&self, stiffness: &mut Stiffness) -> Option<Solution> {
         let unique = self.capped || self.unique(stiffness)?;
         let (forces, motion) = (self.program.joint_forces(&self.state.x), self.program.motion(&self.state.q));
         Some(Solution { factor: self.state.theta * self.program.unit, capped: self.capped, forces, motion, unique })
     }
 
-    /// Factorises the stiffness of what the carrying rows leave, and the motion that the varying load causes.
+    /// Factorises the stiffness that the carrying rows leave, and returns the motion caused by the varying load.
     fn factorise(&mut self, stiffness: &mut Stiffness) -> Option<Vec<f64>> {
         let joints = self.program.members.iter().zip(&self.carrying);
         self.frames = joints.map(|(member, carrying)| Frame::new(&self.program.cones[member.cone], carrying)).collect();
@@ -134,14 +134,15 @@ impl Polish<'_> {
         Some(v)
     }
 
-    /// The carrying rows of a joint, with their places.
+    /// Returns the carrying rows of a joint, with their indices.
     fn rows(&self, index: usize) -> Vec<(usize, [f64; 3])> {
         let cone = &self.program.cones[self.program.members[index].cone];
         let rows = cone.normals.iter().enumerate().filter(|(row, _)| self.carrying[index][*row]);
         rows.map(|(row, normal)| (row, *normal)).collect()
     }
 
-    /// Forces on the carrying rows in equilibrium, nearest to the present ones. Corrections made.
+    /// Finds the forces on the carrying rows in equilibrium that are nearest to the present ones. Returns the number of
+    /// corrections.
     fn statics(&mut self, stiffness: &mut Stiffness, v: &[f64]) -> u64 {
         if let Some(cap) = self.program.cap.filter(|_| self.capped) {
             self.state.theta = cap;
@@ -175,7 +176,7 @@ impl Polish<'_> {
         count
     }
 
-    /// Moves the forces of a joint the least way onto its carrying rows.
+    /// Moves the forces of a joint the shortest way onto its carrying rows.
     fn onto_rows(&mut self, index: usize) {
         let rows = self.rows(index);
         if rows.is_empty() {
@@ -201,7 +202,8 @@ impl Polish<'_> {
         }
     }
 
-    /// Velocities that the joints do not resist, nearest to the present ones, and their multipliers. Corrections made.
+    /// Finds the velocities without resistance that are nearest to the present ones, and their multipliers. Returns the
+    /// number of corrections.
     fn kinematics(&mut self, stiffness: &mut Stiffness, v: &[f64]) -> u64 {
         let program = self.program;
         let normalise = |q: &mut Vec<f64>, capped: bool| {
@@ -241,7 +243,7 @@ impl Polish<'_> {
         count
     }
 
-    /// Multipliers of the carrying rows of a joint, nearest to the present ones, that give its jump.
+    /// Finds the multipliers of the carrying rows of a joint that give its jump and are nearest to the present ones.
     fn flow(&mut self, index: usize) {
         let rows = self.rows(index);
         let old = std::mem::replace(&mut self.state.multipliers[index], [0.0; ROWS]);
@@ -262,8 +264,8 @@ impl Polish<'_> {
         }
     }
 
-    /// The greatest error, after which rows that should not carry leave and those that are violated enter, or the worst of
-    /// them alone; whether any did.
+    /// Returns the greatest error, and true if the set changed. Rows with negative multipliers leave and violated rows
+    /// enter: all of them, or with `single` only the worst.
     fn judge(&mut self, single: bool) -> (f64, bool) {
         let mut worst = (SETTINGS.rounding, 0, 0);
         let program = self.program;
@@ -316,8 +318,8 @@ impl Polish<'_> {
         self.state.multipliers.iter().flatten().fold(f64::MIN_POSITIVE, |m, z| m.max(z.abs())).max(1.0)
     }
 
-    /// Whether no other motion is possible where the same rows yield: inverse iteration for a second motion that no
-    /// joint resists.
+    /// Returns true if no other motion is possible with the same yielding rows. Inverse iteration looks for a second
+    /// motion that no joint resists.
     fn unique(&self, stiffness: &mut Stiffness) -> Option<bool> {
         let scale = self.greatest_multiplier();
         let joints = self.program.members.iter().zip(&self.state.multipliers);
@@ -346,7 +348,7 @@ impl Polish<'_> {
             stiffness.solve(&mut w);
             softest = 1.0 / without(&mut w);
         }
-        // With a second motion the least stiffness is the shift alone.
+        // // If a second motion exists, the least stiffness is the shift alone.
         Some(softest > SETTINGS.shift * (1.0 + 1e-3))
     }
 }

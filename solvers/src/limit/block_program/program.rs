@@ -1,7 +1,8 @@
-//! The data of a program, scaled: bodies in their order of elimination, joints with their cones.
+//! The scaled data of a program: bodies in their order of elimination, joints with their cones.
 //!
-//! Forces are in units of the load divided by the root of the number of bodies, which is what a column of them carries; moments are about a
-//! pole of each body, amid its joints, over the mean length of a joint: velocities of all bodies are then of one size.
+//! The unit of force is the load divided by the square root of the number of bodies, the typical force of a column.
+//! Each body has a pole at the centre of its joints; moments are divided by the mean length of a joint. The velocities
+//! of all bodies are then of similar size.
 
 use super::cone::{Cone, ROWS, dot};
 use crate::limit::scale::force_unit;
@@ -21,46 +22,46 @@ pub struct Member {
     pub cone: usize,
     /// Number of rows.
     pub rows: usize,
-    /// b of its rows, 1 of those that it does not have.
+    /// b of its rows; 1 for rows that it does not have.
     pub bounds: [f64; ROWS],
 }
 
-/// What a program is made for.
+/// The loads of a program.
 #[derive(Clone, Copy)]
 pub struct Loads<'a> {
-    /// At factor one throughout.
+    /// Loads with factor one.
     pub fixed: Option<&'a Wrenches>,
-    /// Multiplied by the factor.
+    /// Loads multiplied by the factor.
     pub varying: &'a Wrenches,
     /// Greatest factor.
     pub cap: f64,
-    /// With strengths, or in the recession cone.
+    /// True with strengths; false for the recession cone.
     pub strengths: bool,
 }
 
-/// A linear program over blocks.
+/// A linear program with block structure.
 pub struct Program {
     /// Its joints.
     pub members: Vec<Member>,
     /// Cones of joints.
     pub cones: Vec<Cone>,
-    /// w, three for each body.
+    /// w, three entries for each body.
     pub fixed: Vec<f64>,
     /// p.
     pub varying: Vec<f64>,
-    /// t, where there is one.
+    /// t, if the factor has a cap.
     pub cap: Option<f64>,
     /// Number of rows of all joints.
     pub rows: usize,
-    /// Factor that one unit of θ stands for.
+    /// Load factor for θ = 1.
     pub unit: f64,
     force: f64,
     length: f64,
-    /// For each group its first unknown and its pole relative to the problem's.
+    /// For each group its first unknown, and its pole relative to the problem's pole.
     bodies: Vec<(usize, Vec2)>,
 }
 
-/// Poles of all groups, relative to the problem's: amid the joints of each.
+/// Returns the poles of all groups relative to the problem's pole: the mean of the joints of each group.
 fn poles(problem: &LimitProblem) -> Vec<Vec2> {
     let mut sums = vec![(Vec2::zeros(), 0.0); problem.groups];
     for joint in &problem.joints {
@@ -75,8 +76,8 @@ fn poles(problem: &LimitProblem) -> Vec<Vec2> {
 }
 
 impl Program {
-    /// Of a problem. `None` where a joint has more rows than three forces need and one, or crushes: such programs are not
-    /// linear.
+    /// Creates the program of a problem. `None` if a joint has more than four rows or crushes: such programs are not
+    /// supported.
     pub fn new(problem: &LimitProblem, loads: Loads) -> Option<Self> {
         if problem.groups == 0 || problem.joints.iter().any(|joint| joint.strength.block.is_some()) {
             return None;
@@ -158,13 +159,13 @@ impl Program {
         Some(Member { bodies: [plus.0, minus.0], wrenches: [plus.1, minus.1], cone, rows, bounds })
     }
 
-    /// Joint forces \[N\] of forces x.
+    /// Returns the joint forces \[N\] of forces x.
     pub fn joint_forces(&self, x: &[[f64; 3]]) -> Vec<JointForce> {
         let of = |x: &[f64; 3]| JointForce { normal: [x[0] * self.force, x[1] * self.force], shear: x[2] * self.force };
         x.iter().map(of).collect()
     }
 
-    /// Velocities of all groups about the problem's pole, up to a common factor.
+    /// Returns the velocities of all groups about the problem's pole, up to a common factor.
     pub fn motion(&self, q: &[f64]) -> Vec<Velocity> {
         let velocity = |&(at, pole): &(usize, Vec2)| {
             let omega = q[at + 2] / self.length;
@@ -174,7 +175,7 @@ impl Program {
         self.bodies.iter().map(velocity).collect()
     }
 
-    /// The jump of a motion at a joint, dual to its forces.
+    /// Returns the jump of a motion at a joint, which is dual to its forces.
     #[inline(always)]
     pub fn jump(&self, member: &Member, q: &[f64]) -> [f64; 3] {
         let mut jump = [0.0; 3];
@@ -186,7 +187,7 @@ impl Program {
         jump
     }
 
-    /// Adds the wrenches of a joint's forces.
+    /// Adds the wrenches of the forces of a joint to `sum`.
     #[inline(always)]
     pub fn press(&self, member: &Member, x: &[f64; 3], sum: &mut [f64]) {
         for (at, wrenches) in member.bodies.iter().zip(&member.wrenches) {

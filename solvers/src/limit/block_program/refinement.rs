@@ -1,13 +1,13 @@
-//! Directions whose forces are in equilibrium, whatever the factorisation has lost.
+//! Directions with forces in equilibrium in spite of rounding errors of the factorisation.
 //!
-//! Near the optimum flexibilities differ by 1e26. Parts of a wall that move as one hang together by stiff joints and on the rest by soft ones, and
-//! rounding of the stiff entries drowns the soft: what the factors make of some motions is off by more than all of it, and
-//! solving again for what is left gains nothing. So corrections are conjugate: the factorisation is the
-//! preconditioner, and products with the matrix itself go by joints, as exact as their forces. A few motions that
-//! are badly off then cost a few corrections.
+//! Near the optimum flexibilities differ by 1e26. Parts of a wall that move together are connected by stiff joints, and
+//! rest on soft ones; rounding errors of the stiff entries exceed the soft entries. For some motions the factors are
+//! then completely wrong, and ordinary iterative refinement fails. Corrections are therefore conjugate gradients with
+//! the factorisation as preconditioner. Products with the matrix are computed joint by joint, as exactly as the forces.
+//! A few wrong motions then need a few corrections.
 //!
-//! θ carries what the motions under its load would: corrections (c, τ) keep p·c + k τ = 0 with k the stiffness of the cap, and
-//! on these the preconditioner is a projection. Source: Gould, Hribar and Nocedal (2001), *SIAM J. Sci. Comput.* 23, 1376–1395.
+//! Corrections (c, τ) satisfy p·c + k τ = 0 with k the stiffness of the cap; on this space the preconditioner is a
+//! projection. Source: Gould, Hribar and Nocedal (2001), *SIAM J. Sci. Comput.* 23, 1376–1395.
 
 use super::directions::{Directions, cap_stiffness};
 use super::residuals::{Residuals, greatest};
@@ -16,12 +16,12 @@ use super::wanted::Wanted;
 use crate::limit::settings::SETTINGS;
 use crate::linear::inner;
 
-/// Corrections of a direction at the most, and the share of the gap that its equilibrium may miss.
+/// Greatest number of corrections of a direction, and its accepted error of equilibrium relative to the gap.
 const MOST: usize = 12;
-/// Corrections in a row that do not halve what is missed, after which no other is tried.
+/// Number of successive corrections that do not halve the error, after which the refinement stops.
 const IDLE: usize = 2;
 
-/// A change of velocities and of θ, with r·c of the residual it was made for.
+/// A change of velocities and of θ, with r·c of its residual r.
 struct Correction {
     motion: Vec<f64>,
     theta: f64,
@@ -29,10 +29,10 @@ struct Correction {
 }
 
 impl Directions<'_> {
-    /// A direction whose forces are in equilibrium.
+    /// Computes a direction with forces in equilibrium.
     ///
-    /// Changes of forces follow those of velocities by flexibilities of up to 1e16: corrections add to them, so
-    /// that only the last one's rounding is magnified.
+    /// Changes of forces follow from changes of velocities by flexibilities of up to 1e16. Corrections are added to the
+    /// forces, so that only the rounding error of the last correction is magnified.
     pub fn refined(&mut self, state: &State, residuals: &Residuals, wanted: &Wanted, moves: bool, step: &mut Step) {
         let program = self.program;
         let aim = (SETTINGS.missed * state.gap()).max(SETTINGS.exhausted);
@@ -62,7 +62,7 @@ impl Directions<'_> {
         }
     }
 
-    /// The correction for what is `left` out of equilibrium, conjugate to the one before.
+    /// Returns the correction for the equilibrium error `left`, conjugate to the previous correction.
     fn conjugate(&mut self, left: &[f64], stiff: f64, moves: bool, before: Option<&Correction>) -> Correction {
         let varying = &self.program.varying;
         let (mut motion, mut theta, mut product) = (left.to_vec(), 0.0, 0.0);
@@ -70,7 +70,7 @@ impl Directions<'_> {
         if moves {
             theta = -inner(varying, &motion) / (inner(varying, &self.v) + stiff);
             motion.iter_mut().zip(&self.v).for_each(|(c, v)| *c += theta * v);
-            // Of what is left the share along p is none of the motion's: without it the product loses fewer digits.
+            // // The part of `left` along p does no work on the motion; without it the product loses fewer digits.
             product = theta * (inner(varying, &motion) + stiff * theta);
         }
         product += inner(left, &motion);
@@ -82,7 +82,7 @@ impl Directions<'_> {
         Correction { motion, theta, product }
     }
 
-    /// How far a correction goes. `None` where rounding leaves it no stiffness.
+    /// Returns the length of a correction. `None` if its stiffness is lost in rounding.
     fn length(&self, correction: &Correction, stiff: f64) -> Option<f64> {
         let resisted = self.resisted(&correction.motion);
         let length = correction.product / (resisted + stiff * correction.theta * correction.theta);

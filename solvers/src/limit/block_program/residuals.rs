@@ -1,4 +1,4 @@
-//! What is left of the conditions of an optimum.
+//! Residuals of the optimality conditions.
 
 use super::cone::ROWS;
 use super::program::Program;
@@ -21,14 +21,14 @@ pub struct Residuals {
     pub cap: f64,
 }
 
-/// E x + θ p + w.
+/// Returns E x + θ p + w.
 pub fn imbalance(program: &Program, x: &[[f64; 3]], theta: f64) -> Vec<f64> {
     let mut sum: Vec<f64> = program.fixed.iter().zip(&program.varying).map(|(w, p)| w + theta * p).collect();
     program.members.iter().zip(x).for_each(|(member, x)| program.press(member, x, &mut sum));
     sum
 }
 
-/// The greatest size; of numbers that are none NaN.
+/// Returns the greatest absolute value; NaN if a value is NaN.
 pub fn greatest(values: &[f64]) -> f64 {
     let worse = |m: f64, v: f64| if m >= v || m.is_nan() { m } else { v };
     let (lanes, rest) = values.as_chunks::<8>();
@@ -40,7 +40,7 @@ pub fn greatest(values: &[f64]) -> f64 {
 }
 
 impl Residuals {
-    /// Of no state yet.
+    /// Creates zero residuals.
     pub fn none(program: &Program) -> Self {
         let count = program.members.len();
         Residuals {
@@ -52,7 +52,7 @@ impl Residuals {
         }
     }
 
-    /// Those of a state.
+    /// Computes the residuals of a state.
     pub fn update(&mut self, program: &Program, state: &State) {
         let own = &mut *self;
         with_vectors!('a, of_joints(own: &'a mut Residuals, program: &'a Program, state: &'a State) -> ());
@@ -60,7 +60,7 @@ impl Residuals {
         self.cap = program.cap.map_or(0.0, |cap| state.theta + state.cap[0] - cap);
     }
 
-    /// Greatest residual of statics and of kinematics.
+    /// Returns the greatest residuals of statics and of kinematics.
     pub fn greatest(&self) -> [f64; 2] {
         let statics = [greatest(&self.equilibrium), greatest(self.slacks.as_flattened()), self.cap];
         [greatest(&statics), greatest(&[greatest(self.flow.as_flattened()), self.power])]

@@ -7,12 +7,12 @@ use voussoir_core::limit::{JointForce, Velocity};
 pub struct Solution {
     /// Greatest factor.
     pub factor: f64,
-    /// Whether it is the cap.
+    /// True if the greatest factor is the cap.
     pub capped: bool,
-    /// Forces at it.
+    /// Forces at the greatest factor.
     pub forces: Vec<JointForce>,
-    /// Motion that proves it, up to a factor; nothing moves where the cap is reached first.
+    /// Motion that proves the factor, up to a scale; zero if the cap is reached first.
     pub motion: Vec<Velocity>,
-    /// Whether it is the only one.
+    /// True if the motion is the only one.
     pub unique: bool,
 }

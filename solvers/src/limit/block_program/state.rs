@@ -3,16 +3,16 @@
 use super::cone::ROWS;
 use super::program::Program;
 
-/// A point in forces and motions.
+/// A point of the method: forces and motions.
 #[derive(Debug, Clone)]
 pub struct State {
     /// Forces of each joint.
     pub x: Vec<[f64; 3]>,
     /// θ.
     pub theta: f64,
-    /// b − A x of the rows of each joint, > 0; of rows that a joint does not have 1.
+    /// b − A x of the rows of each joint, > 0; 1 for rows that a joint does not have.
     pub slacks: Vec<[f64; ROWS]>,
-    /// Multipliers of rows, > 0; of rows that a joint does not have 0.
+    /// Multipliers of rows, > 0; 0 for rows that a joint does not have.
     pub multipliers: Vec<[f64; ROWS]>,
     /// t − θ and its multiplier; 1 and 0 without a cap.
     pub cap: [f64; 2],
@@ -23,26 +23,27 @@ pub struct State {
 /// A change of a state.
 #[derive(Debug, Clone)]
 pub struct Step {
-    /// Of x.
+    /// Change of x.
     pub x: Vec<[f64; 3]>,
-    /// Of θ.
+    /// Change of θ.
     pub theta: f64,
-    /// Of the slacks.
+    /// Changes of the slacks.
     pub slacks: Vec<[f64; ROWS]>,
-    /// Of the multipliers.
+    /// Changes of the multipliers.
     pub multipliers: Vec<[f64; ROWS]>,
-    /// Of the cap's slack and multiplier.
+    /// Changes of the cap's slack and multiplier.
     pub cap: [f64; 2],
-    /// Of q.
+    /// Change of q.
     pub q: Vec<f64>,
-    /// The longest steps ≤ 1 in slacks and in multipliers that keep both positive.
+    /// The longest steps ≤ 1 that keep slacks and multipliers positive.
     pub longest: [f64; 2],
-    /// Of x as R of each joint's flexibility R Rᵀ times these: of size one however far flexibilities differ.
+    /// Change of x in the coordinates of the roots: R times this, with R Rᵀ the flexibility of the joint. Its entries
+    /// are of similar size even if flexibilities differ greatly.
     pub along: Vec<[f64; 3]>,
 }
 
 impl Step {
-    /// No change of a program.
+    /// Creates a zero step for a program.
     pub fn none(program: &Program) -> Self {
         let count = program.members.len();
         Step {
@@ -59,7 +60,7 @@ impl Step {
 }
 
 impl State {
-    /// No forces, no motion; slacks and multipliers at `size` or, where bounds are greater, theirs.
+    /// Creates a state without forces and motion. Slacks and multipliers are `size`, or the bounds if they are greater.
     pub fn start(program: &Program, size: f64) -> Self {
         let count = program.members.len();
         let (mut slacks, mut multipliers) = (vec![[1.0; ROWS]; count], vec![[0.0; ROWS]; count]);
@@ -73,7 +74,7 @@ impl State {
         State { x: vec![[0.0; 3]; count], theta: 0.0, slacks, multipliers, cap, q: vec![0.0; program.fixed.len()] }
     }
 
-    /// Σ s z.
+    /// Returns Σ s z.
     pub fn gap(&self) -> f64 {
         let mut sums = [0.0; ROWS];
         for (s, z) in self.slacks.iter().zip(&self.multipliers) {
@@ -82,7 +83,7 @@ impl State {
         sums.iter().sum::<f64>() + self.cap[0] * self.cap[1]
     }
 
-    /// Σ s z after the longest step that keeps all positive.
+    /// Returns Σ s z after the longest step that keeps all values positive.
     pub fn gap_after(&self, step: &Step) -> f64 {
         let [primal, dual] = step.longest;
         let ahead = |s: f64, ds: f64, z: f64, dz: f64| (s + primal * ds) * (z + dual * dz);
@@ -94,7 +95,7 @@ impl State {
         sums.iter().sum::<f64>() + ahead(self.cap[0], step.cap[0], self.cap[1], step.cap[1])
     }
 
-    /// Goes along a step, by one share in forces and by another in motions.
+    /// Moves along a step, with one length for forces and one for motions.
     pub fn go(&mut self, step: &Step, [primal, dual]: [f64; 2]) {
         let add = |own: &mut [f64], change: &[f64], share: f64| {
             own.iter_mut().zip(change).for_each(|(own, change)| *own += share * change);
@@ -108,7 +109,7 @@ impl State {
         self.cap[1] += dual * step.cap[1];
     }
 
-    /// b − A x of the rows of a joint; 1 of those that it does not have.
+    /// Returns b − A x of the rows of a joint; 1 for rows that it does not have.
     #[inline(always)]
     pub fn true_slacks(&self, program: &Program, index: usize) -> [f64; ROWS] {
         let member = &program.members[index];

@@ -1,18 +1,19 @@
-//! The stiffness of bodies on springs: E R Rᵀ Eᵀ, R the roots of the joints' flexibilities.
+//! The stiffness of bodies on springs: E R Rᵀ Eᵀ with the roots R of the joints' flexibilities.
 
 use super::cone::dot;
 use super::program::Program;
 use voussoir_core::linear::BlockCholesky;
 
-/// The root of a joint's flexibility, by forces.
+/// The square root of a joint's flexibility, by forces.
 pub type Root = [[f64; 3]; 3];
 
 /// Stiffness matrices of one program.
 pub struct Stiffness {
     cholesky: BlockCholesky,
-    /// For each body where its block on the diagonal begins, and how far apart its columns are.
+    /// Start of the diagonal block of each body, and the distance between its columns.
     diagonals: Vec<(usize, usize)>,
-    /// For each joint between two bodies: which side comes first, and the same of the other's rows in its columns.
+    /// For each joint between two bodies: the side that comes first, and start and column distance of the coupling
+    /// block.
     couplings: Vec<Option<(usize, (usize, usize))>>,
     /// Factorisations done.
     pub factorisations: u64,
@@ -40,7 +41,8 @@ impl Stiffness {
         Some(Stiffness { cholesky, diagonals, couplings, factorisations: 0 })
     }
 
-    /// Factorises the matrix of these roots, with `shift` on its diagonal and of each entry there the share `relative`.
+    /// Factorises the matrix of these roots. `shift` and the share `relative` of each diagonal entry are added to the
+    /// diagonal.
     pub fn factorise<'a>(
         &mut self,
         program: &Program,

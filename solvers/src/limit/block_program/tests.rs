@@ -7,7 +7,7 @@ fn loads(problem: &LimitProblem) -> Loads<'_> {
     Loads { fixed: Some(&problem.fixed), varying: &problem.varying, cap: f64::INFINITY, strengths: true }
 }
 
-/// Two equal blocks beside each other, each under the loads of one.
+/// Two equal blocks beside each other, each with its own loads.
 fn twins(friction: f64) -> LimitProblem {
     let mut problem = block(1.0, 2.0, Dry { friction: Some(friction), ..STUCK });
     let mut other = problem.joints[0].clone();
@@ -47,7 +47,7 @@ fn equal_blocks_have_more_than_one_mechanism() {
     }
 }
 
-/// The mechanism of equal blocks is in the middle of all: both move alike.
+/// The motion of equal blocks is in the middle of all mechanisms: both move equally.
 #[test]
 fn equal_blocks_move_alike() {
     let problem = twins(0.9);
@@ -72,7 +72,7 @@ fn a_mirrored_load_has_the_same_factor() {
     assert!((own.motion[0][2] + other.motion[0][2]).abs() < 1e-12 * own.motion[0][2].abs(), "{own:?} {other:?}");
 }
 
-/// The field that carries the dead load alone is inside all bounds: of a block, half its weight at each end.
+/// The field that carries the dead load alone is inside all bounds: half the weight of the block at each end.
 #[test]
 fn the_dead_load_stands_amid_the_bounds() {
     let problem = block(1.0, 2.0, Dry { friction: Some(0.5), ..STUCK });
@@ -82,7 +82,7 @@ fn the_dead_load_stands_amid_the_bounds() {
     assert!(field[0].shear.abs() < 1e-9);
 }
 
-/// A joint with more rows than three forces need and one has no program.
+/// A joint with five rows has no program.
 #[test]
 fn five_rows_are_refused() {
     let mut problem = block(1.0, 2.0, Dry { friction: Some(0.5), ..STUCK });
@@ -91,7 +91,7 @@ fn five_rows_are_refused() {
     assert!(Program::new(&problem, loads(&problem)).is_none());
 }
 
-/// The greatest size of numbers is NaN if one of them is, wherever it is.
+/// The greatest of several numbers is NaN if one of them is NaN, whatever its place.
 #[test]
 fn no_number_is_lost_among_the_greatest() {
     let mut values = vec![1.0; 21];

@@ -1,13 +1,13 @@
-//! What a direction takes off the products of slacks and multipliers.
+//! The required decrease of the products of slacks and multipliers in a direction.
 
 use super::cone::ROWS;
 use super::state::{State, Step};
 
-/// Products s z after a step, in units of their mean, beyond which a corrector moves them; and how much it moves one
-/// at the most.
+/// Range of the products s z after a step, relative to their mean, outside which a corrector moves them. The upper
+/// value also limits the change of one product.
 const CENTRED: [f64; 2] = [0.1, 10.0];
 
-/// What a direction takes off the products s z; of rows that a joint does not have nothing.
+/// Required decrease of the products s z; 0 for rows that a joint does not have.
 #[derive(Debug, Clone)]
 pub struct Wanted {
     pub(super) rows: Vec<[f64; ROWS]>,
@@ -15,12 +15,12 @@ pub struct Wanted {
 }
 
 impl Wanted {
-    /// Nothing of a state of so many joints.
+    /// Creates zeros for `count` joints.
     pub fn none(count: usize) -> Self {
         Wanted { rows: vec![[0.0; ROWS]; count], cap: 0.0 }
     }
 
-    /// All of s z, for a predictor.
+    /// Requires all of s z, for a predictor.
     pub fn all(&mut self, state: &State) {
         for (rows, (s, z)) in self.rows.iter_mut().zip(state.slacks.iter().zip(&state.multipliers)) {
             *rows = std::array::from_fn(|row| s[row] * z[row]);
@@ -28,7 +28,7 @@ impl Wanted {
         self.cap = state.cap[0] * state.cap[1];
     }
 
-    /// Of what is wanted so far less by `mean`.
+    /// Reduces the required decrease by `mean`.
     pub fn but(&mut self, state: &State, mean: f64) {
         for (rows, z) in self.rows.iter_mut().zip(&state.multipliers) {
             (0..ROWS).for_each(|row| rows[row] -= if z[row] > 0.0 { mean } else { 0.0 });
@@ -36,7 +36,7 @@ impl Wanted {
         self.cap -= mean;
     }
 
-    /// And the products of the changes of a predictor.
+    /// Adds the products of the changes in a predictor.
     pub fn and_second_order(&mut self, predictor: &Step) {
         for (rows, (ds, dz)) in self.rows.iter_mut().zip(predictor.slacks.iter().zip(&predictor.multipliers)) {
             (0..ROWS).for_each(|row| rows[row] += ds[row] * dz[row]);
@@ -44,11 +44,11 @@ impl Wanted {
         self.cap += predictor.cap[0] * predictor.cap[1];
     }
 
-    /// The same as of another where products that would be far from `mean` after steps of these lengths are moved towards it.
+    /// Copies another object, and moves products towards `mean` that would be far from it after steps of these lengths.
     pub fn centre(&mut self, other: &Wanted, state: &State, step: &Step, lengths: [f64; 2], mean: f64) {
         let off = |s: f64, ds: f64, z: f64, dz: f64| {
             let product = (s + lengths[0] * ds) * (z + lengths[1] * dz);
-            // No clamp: without any row the mean is no number, and clamp panics.
+            // // No clamp: without rows the mean is NaN, and clamp panics.
             let near = product.max(CENTRED[0] * mean).min(CENTRED[1] * mean);
             let moved = (near - product).max(-CENTRED[1] * mean);
             if z > 0.0 { moved } else { 0.0 }

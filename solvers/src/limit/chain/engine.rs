@@ -1,4 +1,4 @@
-//! The engine of `limit_chain`, to which `limit_conic` turns where its programs do not settle.
+//! The engine of `limit_chain`. `limit_conic` also uses it if its own programs do not converge.
 
 use super::layout::{Aim, Forms, Redundants, Trees, trees};
 use super::optimum::centre;
@@ -9,7 +9,7 @@ use crate::limit::settings::SETTINGS;
 use voussoir_core::limit::{Counters, JointForce, LimitProblem};
 use voussoir_core::model::Wrenches;
 
-/// The three optimisations over redundants.
+/// The three optimisations in terms of redundants.
 pub struct ChainEngine<'a> {
     problem: &'a LimitProblem,
     trees: Trees,
@@ -20,14 +20,15 @@ pub struct ChainEngine<'a> {
 }
 
 impl<'a> ChainEngine<'a> {
-    /// Of a problem, if few joints close its bodies to rings.
+    /// Creates the engine if few joints close the bodies to rings.
     pub fn new(problem: &'a LimitProblem) -> Option<Self> {
         let trees = trees(problem)?;
         let redundants = Redundants::new(problem, &trees);
         Some(ChainEngine { problem, trees, redundants, pivots: 0, newton_iterations: 0, programs: 0 })
     }
 
-    /// Greatest margin s by which every row can be satisfied, with λ free where `varying` is given; or `any` field.
+    /// Returns the greatest margin s by which every row can be satisfied, with λ free if `varying` is given. With
+    /// `any`, every field is accepted.
     fn margin(&mut self, fixed: &Wrenches, varying: Option<&Wrenches>, any: bool) -> Equilibrium {
         let force = force_unit(self.problem, fixed);
         let columns: Vec<_> = varying.iter().map(|v| (*v, force / force_unit(self.problem, v))).collect();
@@ -42,14 +43,14 @@ impl<'a> ChainEngine<'a> {
                 let (columns, _) = centre(&program, &solved.point, solved.columns);
                 Equilibrium::Motion(program.motion(self.problem, &self.trees, &columns))
             }
-            // Rows that pin T to zero have no margin: they alone may refute equilibrium.
+            // // Rows that set T to zero have no margin: they alone may refute equilibrium.
             Outcome::Infeasible(columns) => Equilibrium::Motion(program.motion(self.problem, &self.trees, &columns)),
             Outcome::Unbounded(_) => Equilibrium::Failed("the margin program has no optimum".into()),
             Outcome::Failed(why) => Equilibrium::Failed(why),
         }
     }
 
-    /// Joint forces by the redundants and by loads, the first of which stand still.
+    /// Returns the joint forces as functions of the redundants and of the loads; the first load is constant.
     fn forms(&self, loads: (&Wrenches, &[(&Wrenches, f64)]), force: f64) -> Forms {
         Forms::new(self.problem, &self.trees, &self.redundants, loads, force)
     }

@@ -1,12 +1,11 @@
-//! `limit_chain`: limit analysis in the redundants of chains of bodies, and of whatever few joints close to rings.
+//! `limit_chain`: limit analysis in the redundants of chains of bodies, and of scenes in which few joints close rings.
 //!
-//! A chain of bodies between two supports has three redundants (the force transmitted at its
-//! middle), one with a free end none, a viaduct three for each span. Every joint force is affine in the redundants and
-//! λ, so an arch is a problem in four variables with a few rows per joint. It is solved by the simplex
-//! method on the dual: columns are elementary mechanisms, as many of them in the basis as there are variables, and the
-//! joint that is violated most by the present field enters. Crushing joints give columns without end
-//! (the tangents of their stress block); the last digits come from Newton's method on the active
-//! stress blocks.
+//! A chain of bodies between two supports has three redundants (the force transmitted at its middle), a chain with a
+//! free end has no redundant, a viaduct has three for each span. Every joint force is affine in the redundants and λ,
+//! so an arch is a problem in four variables with a few rows per joint. It is solved by the simplex method on the dual:
+//! columns are elementary mechanisms, and the basis has as many columns as there are variables. The most violated joint
+//! of the present field enters. Crushing joints give infinitely many columns (the tangents of their stress block); the
+//! last digits come from Newton's method on the active stress blocks.
 
 mod engine;
 mod layout;

@@ -1,9 +1,10 @@
-//! L U of small dense matrices, with partial pivoting: one factorisation for A x = b and for Aᵀ x = b, without allocation.
+//! L U factors of small dense matrices with partial pivoting: one factorisation solves A x = b and Aᵀ x = b without
+//! allocation.
 
 use crate::linear::inner;
 
-/// Calls a function with a size and what else it takes; with the sizes of an arch, whose variables are three redundants and a factor, a margin
-/// or both, as constants, without loops.
+/// Calls a function with a size and its other arguments. The sizes of an arch (three redundants with a factor, a margin
+/// or both) are constants, so that the compiler unrolls the loops.
 macro_rules! of_size {
     ($size:expr, $function:ident($($argument:ident),+)) => {
         match $size {
@@ -14,25 +15,25 @@ macro_rules! of_size {
     };
 }
 
-/// Factors of one matrix at a time, all of the same size.
+/// Factors of one matrix; all matrices have the same size.
 #[derive(Debug, Clone)]
 pub struct SmallLu {
     size: usize,
-    /// By rows: U, and L below the diagonal.
+    /// U, and L below the diagonal, stored by rows.
     values: Vec<f64>,
     /// Rows of the matrix in the order of pivots.
     order: Vec<usize>,
-    /// A copy of a right-hand side.
+    /// Work copy of a right-hand side.
     copy: Vec<f64>,
 }
 
 impl SmallLu {
-    /// For matrices of this size.
+    /// Creates factors for matrices of this size.
     pub fn new(size: usize) -> Self {
         SmallLu { size, values: vec![0.0; size * size], order: (0..size).collect(), copy: vec![0.0; size] }
     }
 
-    /// Factorises a matrix given by columns. Whether it has an inverse.
+    /// Factorises a matrix given by columns. Returns true if it has an inverse.
     pub fn factorise(&mut self, columns: &[f64]) -> bool {
         self.order.iter_mut().enumerate().for_each(|(i, row)| *row = i);
         let (values, order) = (self.values.as_mut_slice(), self.order.as_mut_slice());
@@ -118,7 +119,7 @@ fn solve_transposed(n: usize, values: &[f64], order: &[usize], y: &mut [f64], b:
 mod tests {
     use super::*;
 
-    /// Both products give the right-hand sides back; a matrix without inverse is seen.
+    /// The products with both solutions give the right-hand sides; a singular matrix is detected.
     #[test]
     fn both_systems_are_solved() {
         for n in [3, 4, 5, 6] {
@@ -134,7 +135,7 @@ mod tests {
     }
 
     fn is_solved(n: usize) {
-        // Of k²: sines of k alone are of rank two.
+        // // Sines of k² are used because sines of k give rank two.
         let columns: Vec<f64> = (0..n * n).map(|k| ((k * k) as f64 * 0.7 + 0.3).sin()).collect();
         let mut lu = SmallLu::new(n);
         assert!(lu.factorise(&columns));

@@ -1,4 +1,4 @@
-//! The first, approximate solution: Clarabel.
+//! The first, approximate solution with Clarabel.
 
 use super::system::System;
 use crate::limit::settings::SETTINGS;
@@ -18,17 +18,18 @@ pub struct Pair {
     pub blocks: Vec<f64>,
 }
 
-/// What the solver says; its word is not passed on as proof.
+/// The result that the conic solver reports. It is not used as a proof.
 pub enum Word {
-    /// It thinks this pair is optimal, or close to it.
+    /// An optimal or nearly optimal pair.
     Pair(Pair, u64),
-    /// It thinks that θ has no bound.
+    /// θ has no bound.
     Unbounded(u64),
     /// Anything else.
     Other(String, u64),
 }
 
-/// Solves a system; blocks far beyond the loads by their planes first, by their cones where planes leave θ free.
+/// Solves a system. If blocks are far from the loads, they are first represented by planes; by cones if θ has no bound
+/// then.
 pub fn solve(system: &System) -> Word {
     match solve_with(system, SETTINGS.flat) {
         Word::Pair(pair, iterations) => Word::Pair(pair, iterations),
@@ -42,15 +43,15 @@ struct Conic {
     a: CscMatrix<f64>,
     b: Vec<f64>,
     sets: Vec<SupportedConeT<f64>>,
-    /// Blocks by their planes, in the rows after the linear ones.
+    /// Blocks represented by planes, in the rows after the linear ones.
     planes: Vec<usize>,
-    /// Blocks by their cones, three rows each.
+    /// Blocks represented by cones, three rows each.
     cones: Vec<usize>,
     /// First row of the cones.
     first_cone: usize,
 }
 
-/// κ of u² ≤ F w as |(2u, F/κ − κ w)| ≤ F/κ + κ w, which balances the entries.
+/// Returns κ of u² ≤ F w written as |(2u, F/κ − κ w)| ≤ F/κ + κ w; it balances the entries.
 fn balance(total: f64) -> f64 {
     total.max(1e-12).sqrt()
 }
@@ -93,7 +94,7 @@ impl Conic {
         Conic { a, b, sets, planes, cones, first_cone }
     }
 
-    /// The pair of a solution.
+    /// Returns the pair of a solution.
     fn pair(&self, system: &System, x: &[f64], z: &[f64]) -> Pair {
         let (e, rows) = (system.equations.len(), system.rows.len());
         let mut blocks = vec![0.0; system.blocks.len()];
@@ -135,7 +136,7 @@ fn solve_with(system: &System, flat: f64) -> Word {
         SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
             Word::Other("the conic solver found no admissible field".into(), iterations)
         }
-        // Whatever it calls its end, the polish and the certificate decide what the pair is worth.
+        // // The status of the solver does not matter: the polish and the certificate check the pair.
         _ if finite => Word::Pair(conic.pair(system, &solution.x, &solution.z), iterations),
         status => Word::Other(format!("the conic solver ended with {status:?}"), iterations),
     }

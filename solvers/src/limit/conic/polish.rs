@@ -1,12 +1,12 @@
-//! From 1e-8 to rounding: Newton's method on the optimality system of the active rows.
+//! Improves a solution from 1e-8 to rounding: Newton's method on the optimality system of the active rows.
 //!
-//! Stationarity −e_θ + Eᵀ q + Σ y_i ∇c_i(x) = 0, equilibrium E x = b, c_i(x) = 0 for active i.
-//! Degenerate optima make the system singular but consistent, so it is regularised by ±δ and
-//! iterated, which converges to the solution nearest to where it starts.
+//! Stationarity −e_θ + Eᵀ q + Σ y_i ∇c_i(x) = 0, equilibrium E x = b, c_i(x) = 0 for active i. Degenerate optima make
+//! the system singular but consistent. It is therefore regularised by ±δ and iterated, which converges to the solution
+//! nearest to the start.
 //!
-//! Rows enter and leave all at once first, by the signs of slacks and multipliers. Where that does not settle, as on rings
-//! of so many joints that the neighbours of a hinge are closed but for 1e-9, single rows are exchanged as in the
-//! dual simplex method: the most violated row enters, and the one leaves whose multiplier vanishes first.
+//! First, all rows enter and leave at once, by the signs of slacks and multipliers. This may not converge, for example
+//! on rings with many joints, whose slacks near a hinge are about 1e-9. Then single rows are exchanged as in the dual
+//! simplex method: the most violated row enters, and the row whose multiplier first becomes zero leaves.
 
 use super::interior_point::Pair;
 use super::system::System;
@@ -15,14 +15,14 @@ use crate::limit::settings::SETTINGS;
 use crate::linear::inner;
 use voussoir_core::linear::{Entries, SparseLdlt};
 
-/// Factor in its unit below which a gap is not compared with it.
+/// Least factor, in its unit, to which a gap is related.
 const LEAST: f64 = 1e-3;
-/// Shares that residuals keep from step to step from which, and up to which, steps are summed up.
+/// If residuals decrease by a ratio in this range from step to step, the geometric series of the steps is summed.
 const SLOW: f64 = 0.5;
 const STILL: f64 = 1.0 - 1e-6;
-/// Steps without gain after which nothing is hoped for: one of three may be such a sum that went too far.
+/// Number of steps without gain after which the iteration stops; one of three may be a sum that went too far.
 const IDLE: usize = 4;
-/// Rows exchanged one by one, at the most.
+/// Greatest number of single exchanges of rows.
 const EXCHANGES: usize = 40;
 
 /// A polished pair.
@@ -31,7 +31,7 @@ pub struct Polished {
     pub pair: Pair,
     /// Greatest residual of the optimality system, violation and negative multiplier.
     pub error: f64,
-    /// Whether the mechanism is the only one.
+    /// True if the mechanism is the only one.
     pub unique: bool,
     /// Factorisations done.
     pub factorisations: u64,
@@ -63,14 +63,14 @@ fn multiplier(pair: &Pair, item: Item) -> f64 {
     }
 }
 
-/// Polishes a pair. `None` where every factorisation fails.
+/// Polishes a pair. `None` if every factorisation fails.
 pub fn polish(system: &System, approximate: &Pair) -> Option<Polished> {
-    // A greater shift is tried if the lesser one leaves no pivot.
+    // // The greater shift is tried if the smaller one leaves no pivot.
     [SETTINGS.shift, SETTINGS.great_shift].iter().find_map(|&delta| polish_with(system, approximate, delta))
 }
 
-/// The interior point itself, moved the least way onto equilibrium: what is left where the polish
-/// does not settle. Its slacks are its own, its motion is the solver's; the certificate decides.
+/// Returns the interior point moved the shortest way to equilibrium, for use if the polish does not converge. Its
+/// slacks are its own and its motion is that of the conic solver; the certificate checks it.
 pub fn balanced(system: &System, approximate: &Pair) -> Option<Pair> {
     let (n, delta) = (system.variables, SETTINGS.shift);
     let factorised = SparseLdlt::new(n + system.equations.len(), n, &saddle(system, &[], delta))?;
@@ -135,7 +135,7 @@ fn polish_with(system: &System, approximate: &Pair, delta: f64) -> Option<Polish
     Some(Polished { factorisations, iterations, error, ..best })
 }
 
-/// What violations of equilibrium and of the rows that carry may change of θ: each times its multiplier.
+/// Returns the possible change of θ from violations of equilibrium and of the carrying rows: each times its multiplier.
 fn gap(system: &System, pair: &Pair) -> f64 {
     let equations = system.equations.iter().zip(&system.right).zip(&pair.equations);
     let left = equations.map(|((row, right), q)| (q * (dot(row, &pair.x) - right)).abs());
@@ -148,8 +148,8 @@ fn greatest_multiplier(pair: &Pair) -> f64 {
     pair.rows.iter().chain(&pair.blocks).fold(1.0f64, |m, y| m.max(y.abs()))
 }
 
-/// Exchanges single rows, from those of the active ones that carry, until no row is violated. `None` where that does not
-/// come to an end.
+/// Exchanges single rows, starting from the active rows with positive multipliers, until no row is violated. `None` if
+/// this does not end.
 fn exchanged(system: &System, start: &Pair, (items, active): (&[Item], &[Item]), delta: f64) -> Option<Polished> {
     let scale = greatest_multiplier(start);
     let mut chosen: Vec<Item> =
@@ -185,8 +185,8 @@ fn exchanged(system: &System, start: &Pair, (items, active): (&[Item], &[Item]),
     None
 }
 
-/// The active row whose multiplier vanishes first where that of the entering row grows: what enters is a sum of
-/// equations and active rows, and as it is pressed they are relieved.
+/// Returns the active row whose multiplier first becomes zero when the multiplier of the entering row grows. The
+/// gradient of the entering row is a sum of equations and active rows, so their multipliers decrease.
 fn leaving(system: &System, pair: &Pair, chosen: &[Item], entering: Item, delta: f64) -> Option<Item> {
     let rows = gradients(system, chosen, &pair.x);
     let (n, e) = (system.variables, system.equations.len());
@@ -199,7 +199,7 @@ fn leaving(system: &System, pair: &Pair, chosen: &[Item], entering: Item, delta:
     steps.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(item, _)| item)
 }
 
-/// The pair with the multipliers of inactive rows set to zero.
+/// Returns the pair with zero multipliers of inactive rows.
 fn clipped(pair: &Pair, items: &[Item], active: &[bool]) -> Pair {
     let mut pair = pair.clone();
     for (item, active) in items.iter().zip(active) {
@@ -224,7 +224,7 @@ impl Newton<'_> {
         gradients(self.system, self.active, &self.pair.x)
     }
 
-    /// Residual of the optimality system: stationarity, then equations, then active rows.
+    /// Returns the residual of the optimality system: stationarity, then equations, then active rows.
     fn residual(&self, gradients: &[Row]) -> Vec<f64> {
         let system = self.system;
         let (n, e) = (system.variables, system.equations.len());
@@ -242,7 +242,7 @@ impl Newton<'_> {
         residual
     }
 
-    /// Factorisations, iterations and the last residual.
+    /// Iterates. Returns the numbers of factorisations and iterations, and the last residual.
     fn run(&mut self) -> Option<(u64, u64, f64)> {
         let system = self.system;
         let (n, e) = (system.variables, system.equations.len());
@@ -274,8 +274,8 @@ impl Newton<'_> {
             }
             let mut step = factorised.as_ref()?.solve(&residual)?;
             iterations += 1;
-            // Along a direction as soft as the regularisation residuals fall by the same share in every step: the sum of all
-            // such steps is known from two.
+            // // Along a direction as soft as the regularisation, residuals decrease by the same ratio in every step:
+            // two steps give the sum of the series.
             let share = size / last;
             further = !further && (SLOW..STILL).contains(&share);
             if further {
@@ -318,7 +318,7 @@ fn gradients(system: &System, active: &[Item], x: &[f64]) -> Vec<Row> {
     active.iter().map(gradient).collect()
 }
 
-/// \[δ I, Jᵀ; J, −δ I\] with J the equations and the gradients.
+/// Returns \[δ I, Jᵀ; J, −δ I\] with J the equations and the gradients.
 fn saddle(system: &System, gradients: &[Row], delta: f64) -> Entries {
     let n = system.variables;
     let mut entries: Entries = (0..n).map(|j| (j, j, delta)).collect();
@@ -332,9 +332,8 @@ fn saddle(system: &System, gradients: &[Row], delta: f64) -> Entries {
     entries
 }
 
-/// Whether other multipliers (q, y) than these satisfy Eᵀ q + Σ y_i ∇c_i = e_θ with the same
-/// support: inverse iteration for the least singular value of J, whose columns are the rows with
-/// positive multipliers.
+/// Returns true if other multipliers (q, y) satisfy Eᵀ q + Σ y_i ∇c_i = e_θ with the same support. Inverse iteration
+/// finds the least singular value of J, whose columns are the rows with positive multipliers.
 fn has_kernel(system: &System, active: &[Item], pair: &Pair, scale: f64, delta: f64) -> Option<bool> {
     let support: Vec<Item> = active.iter().copied().filter(|item| multiplier(pair, *item) > 1e-10 * scale).collect();
     let rows = gradients(system, &support, &pair.x);
@@ -353,6 +352,6 @@ fn has_kernel(system: &System, active: &[Item], pair: &Pair, scale: f64, delta: 
         let gain = v.iter().map(|a| a * a).sum::<f64>().sqrt();
         least = delta / gain;
     }
-    // least = δ² + σ², so a kernel shows as δ².
+    // // least = δ² + σ²: it is δ² if a kernel exists.
     Some(least < 1e3 * delta * delta)
 }

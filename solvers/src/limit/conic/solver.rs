@@ -19,7 +19,7 @@ use voussoir_core::limit::{
 use voussoir_core::model::Wrenches;
 use voussoir_core::plugin::{Capability, Card, Keys, PluginKind};
 
-/// Units of force that are tried besides, where the polish does not settle, on scenes of so many bodies at the most.
+/// Greatest number of bodies of scenes on which other units of force are tried if the polish does not converge.
 const MOST_IN_UNITS: usize = 500;
 
 /// Limit analysis of any scene.
@@ -56,7 +56,7 @@ voussoir_core::inventory::submit! {
     }
 }
 
-/// The conic programs of a problem.
+/// Creates the engine for a problem.
 pub fn engine(problem: &LimitProblem) -> impl Engine + '_ {
     ConicEngine { problem, work: Counters::new(), carried: None, unsolved: None }
 }
@@ -64,9 +64,9 @@ pub fn engine(problem: &LimitProblem) -> impl Engine + '_ {
 struct ConicEngine<'a> {
     problem: &'a LimitProblem,
     work: Counters,
-    /// Loads that were found to be carried on the way to something else, with a field.
+    /// Loads that a previous program has shown to be carried, with a field.
     carried: Option<(Wrenches, Vec<JointForce>)>,
-    /// Fixed and varying loads of which the greatest factor was not found by blocks.
+    /// Fixed and varying loads whose greatest factor the block program has not found.
     unsolved: Option<(Wrenches, Wrenches)>,
 }
 
@@ -74,34 +74,34 @@ enum Optimum {
     Found {
         pair: Pair,
         unique: bool,
-        /// Of the polished optimality system.
+        /// Error of the polished optimality system.
         error: f64,
     },
-    /// An interior point in equilibrium whose polish did not settle.
+    /// An interior point in equilibrium whose polish did not converge.
     Unsettled(Pair),
     Unbounded,
     Failed(String),
 }
 
-/// What the program of a greatest factor has come to in the units of force that were tried.
+/// The results of the program of a greatest factor with the units of force tried so far.
 #[derive(Default)]
 struct Tried {
-    /// The polished answer of least error.
+    /// The polished answer with the least error.
     best: Option<(f64, Greatest)>,
-    /// The first that the polish did not settle.
+    /// The first answer without a converged polish.
     unsettled: Option<Greatest>,
-    /// Why there was none.
+    /// The reason if there is no answer.
     failed: String,
 }
 
 impl Tried {
-    /// Whether another unit may give more.
+    /// Returns true if another unit may improve the result.
     fn may_gain(&self) -> bool {
         self.best.as_ref().map_or(self.unsettled.is_some(), |best| best.0 > SETTINGS.admissible)
     }
 }
 
-/// The least strength of a joint that has one \[N\]; infinite where none has.
+/// Returns the least strength of a joint \[N\]; infinite if no joint has a finite strength.
 fn weakest(problem: &LimitProblem) -> f64 {
     let of = |joint: &LimitJoint| {
         let rows = joint.strength.rows.iter().map(|row| row.bound).filter(|bound| *bound > 0.0);
@@ -145,7 +145,7 @@ impl ConicEngine<'_> {
         }
     }
 
-    /// A program by its blocks, with the work counted. `None` where it is not linear.
+    /// Solves a program by its blocks and counts the work. `None` if it is not linear.
     fn by_blocks(&mut self, loads: block_program::Loads, solve: impl Fn(&Program) -> Solved) -> Option<Solved> {
         let program = Program::new(self.problem, loads)?;
         let solved = solve(&program);
@@ -160,18 +160,19 @@ impl ConicEngine<'_> {
         self.count("newton_iterations", solved.corrections);
     }
 
-    /// Whether the field of a program by blocks is one of the scene: in its own units errors may look smaller than they are.
+    /// Returns true if the field of a block program is admissible in the scene: in the program's units errors may
+    /// appear too small.
     fn holds(&self, fixed: &Wrenches, varying: &Wrenches, solution: &Solution) -> bool {
         let loads = combined(fixed, varying, solution.factor);
         field_error(self.problem, &loads, &solution.forces) <= SETTINGS.admissible
     }
 
-    /// Whether a field carries loads, but for rounding.
+    /// Returns true if a field carries the loads within rounding.
     fn carries(&self, loads: &Wrenches, field: &[JointForce]) -> bool {
         field_error(self.problem, loads, field) <= SETTINGS.carried
     }
 
-    /// The greatest share θ ≤ 1 of `loads` by the blocks of the program; `None` where its field does not carry them.
+    /// Returns the greatest share θ ≤ 1 of `loads` by the block program; `None` if its field does not carry them.
     fn share_by_blocks(&mut self, loads: &Wrenches, strengths: bool) -> Option<Equilibrium> {
         if strengths {
             let held = block_program::Loads { fixed: Some(loads), varying: loads, cap: f64::INFINITY, strengths };
@@ -192,7 +193,7 @@ impl ConicEngine<'_> {
         Some(Equilibrium::Motion(motion))
     }
 
-    /// The program of the greatest factor with a force scale \[N\], and the factor that one unit of θ stands for.
+    /// Returns the program of the greatest factor with a force scale \[N\], and the load factor for θ = 1.
     fn program(&self, fixed: &Wrenches, varying: &Wrenches, cap: f64, force: f64) -> (System, f64) {
         let unit = force / force_unit(self.problem, varying);
         let loads = Loads {
@@ -226,7 +227,7 @@ impl ConicEngine<'_> {
         }
     }
 
-    /// A finite optimum, capped or a collapse.
+    /// Returns a finite optimum: capped or a collapse.
     fn finite(&self, system: &System, pair: &Pair, unique: bool, varying: &Wrenches, unit: f64) -> Greatest {
         if system.cap.is_some_and(|row| pair.rows[row] > 1e-9) {
             return Greatest::Capped(system.forces(&pair.x));
@@ -236,8 +237,9 @@ impl ConicEngine<'_> {
         Greatest::Collapse { factor, field: system.forces(&pair.x), motion, unique }
     }
 
-    /// The greatest factor by exchanges of single rows over the redundants, where few joints close the bodies to rings:
-    /// next to a hinge of N voussoirs slacks are 1/N² of the load, and no interior point tells from afar which of them carry.
+    /// Finds the greatest factor by exchanges of single rows in terms of the redundants, if few joints close the bodies
+    /// to rings. Next to a hinge of N voussoirs slacks are 1/N² of the load, so an interior point does not show which
+    /// of them carry.
     fn by_redundants(&mut self, (fixed, varying, cap): (&Wrenches, &Wrenches, f64)) -> Option<Greatest> {
         let mut engine = ChainEngine::new(self.problem)?;
         let greatest = engine.greatest(fixed, varying, cap);
@@ -252,7 +254,7 @@ impl ConicEngine<'_> {
         right.then_some(greatest)
     }
 
-    /// The greatest factor with tangents for stress blocks, from what was found without them.
+    /// Finds the greatest factor with tangents of the stress blocks, starting from the earlier result without them.
     fn by_tangents(&mut self, question: (&Wrenches, &Wrenches, f64), tried: &Tried) -> Option<Greatest> {
         let start = tried.best.as_ref().map(|best| &best.1).or(tried.unsettled.as_ref());
         let (Greatest::Collapse { field, .. } | Greatest::Capped(field)) = start? else { return None };
@@ -261,7 +263,7 @@ impl ConicEngine<'_> {
         Some(greatest_of(solved.into_iter().last()?.solution?, question.1))
     }
 
-    /// The greatest share θ ≤ 1 of `loads` that can be carried: 1, or a refutation.
+    /// Finds the greatest share θ ≤ 1 of `loads` that can be carried: 1, or a refutation.
     fn share(&mut self, loads: &Wrenches, free: Option<&Wrenches>, strengths: bool) -> Equilibrium {
         if free.is_none()
             && let Some(answer) = self.share_by_blocks(loads, strengths)
@@ -325,13 +327,13 @@ impl Engine for ConicEngine<'_> {
             return greatest;
         }
         self.attempt(question, force, &mut tried);
-        // Where strengths alone hold the load, as in flat arches of strong stone, it is as great as they are: in the unit of
-        // the loads that stand it would be too great for the interior point.
+        // // If only strengths limit the load, as in flat arches of strong stone, the load is of their size. In the
+        // unit of the fixed loads its number would be too great for the interior point method.
         let weakest = weakest(self.problem);
         if tried.best.is_none() && weakest.is_finite() && weakest > force * SETTINGS.strong {
             self.attempt(question, weakest, &mut tried);
         }
-        // Another unit leads the interior point another way: to a point from which the polish may settle.
+        // // Another unit changes the path of the interior point; the polish may converge from its end.
         for scale in [0.1, 10.0].into_iter().filter(|_| self.problem.groups <= MOST_IN_UNITS) {
             if tried.may_gain() {
                 self.attempt(question, force * scale, &mut tried);
@@ -346,7 +348,8 @@ impl Engine for ConicEngine<'_> {
         if let Some((_, greatest)) = tried.best {
             return greatest;
         }
-        // Not bounded, or not solved: a ray settles it. A pair without a polish is believed only where none says otherwise.
+        // // Unbounded or not solved: a ray decides. A pair without polish is used only if no other result contradicts
+        // it.
         match self.share(varying, None, false) {
             Equilibrium::Field(ray) => Greatest::Unbounded(ray),
             _ => tried.unsettled.unwrap_or(Greatest::Failed(tried.failed)),
@@ -407,7 +410,7 @@ impl Engine for ConicEngine<'_> {
     }
 }
 
-/// The greatest factor of a program that was solved by its blocks.
+/// Returns the greatest factor of a program that was solved by its blocks.
 fn greatest_of(solution: Solution, varying: &Wrenches) -> Greatest {
     let Solution { factor, capped, forces, motion, unique } = solution;
     if capped {

@@ -1,9 +1,9 @@
-//! Stress blocks by their tangents: linear programs that end where the conic one does.
+//! Stress blocks by tangents: a sequence of linear programs that converges to the solution of the conic program.
 //!
-//! A stress block (N + F_t)² ≤ F (2 N_i + F_t) lies within its tangent at any N̄. With a tangent for each end of each joint
-//! that crushes the program is linear and is solved to rounding by its blocks; its forces say where the next tangents
-//! touch. What one program violates is the square of what N̄ was off (Kelley 1960, *J. SIAM* 8: cutting planes, here
-//! one for each block).
+//! A stress block (N + F_t)² ≤ F (2 N_i + F_t) lies within its tangent at any N̄. With a tangent for each end of each
+//! crushing joint the program is linear and is solved to rounding by its blocks. Its forces define the next tangents.
+//! The violation after one program is the square of the error of N̄ (Kelley 1960, *J. SIAM* 8: cutting planes, here one
+//! for each block).
 
 use crate::limit::block_program::{Loads, Program, Solved, solve};
 use crate::limit::equilibrium::{excess, field_error};
@@ -13,10 +13,11 @@ use voussoir_core::law::{FacetMode, ForceRow, StressBlock};
 use voussoir_core::limit::{JointForce, LimitProblem};
 use voussoir_core::model::Wrenches;
 
-/// Programs at the most.
+/// Greatest number of programs.
 const MOST: usize = 12;
 
-/// The tangent of a stress block at one end where N̄ is pressed: 2 ū (N + F_t) − ū² ≤ F (2 N_i + F_t), ū = N̄ + F_t, over F.
+/// Returns the tangent of a stress block at one end for the normal force N̄ = `pressed`: 2 ū (N + F_t) − ū² ≤ F (2 N_i
+/// + F_t), ū = N̄ + F_t, over F.
 fn tangent(block: StressBlock, end: usize, pressed: f64) -> ForceRow {
     let share = ((pressed + block.tension) / block.total).clamp(0.0, 1.0);
     let mut normal = [2.0 * share, 2.0 * share, 0.0];
@@ -25,7 +26,7 @@ fn tangent(block: StressBlock, end: usize, pressed: f64) -> ForceRow {
     ForceRow::associated(FacetMode::Opening, normal, bound)
 }
 
-/// The problem with tangents at these N̄ in the place of its stress blocks.
+/// Returns the problem with tangents at these N̄ instead of its stress blocks.
 fn flattened(problem: &LimitProblem, touched: &[f64]) -> LimitProblem {
     let mut flat = problem.clone();
     for (joint, pressed) in flat.joints.iter_mut().zip(touched) {
@@ -36,13 +37,13 @@ fn flattened(problem: &LimitProblem, touched: &[f64]) -> LimitProblem {
     flat
 }
 
-/// N of a joint.
+/// Returns the normal force N of a joint.
 fn pressed(force: &JointForce) -> f64 {
     force.normal[0] + force.normal[1]
 }
 
-/// Programs that were solved, the last one's solution taken off where its forces exceed the strengths by more than `most` of
-/// the loads or where there is none.
+/// Solves the sequence of programs and returns all of them. The solution of the last one is removed if its forces
+/// exceed the strengths by more than `most` of the loads.
 pub fn by_tangents(
     problem: &LimitProblem,
     (fixed, varying, cap): (&Wrenches, &Wrenches, f64),
@@ -61,7 +62,7 @@ pub fn by_tangents(
             break;
         };
         let error = field_error(problem, &combined(fixed, varying, solution.factor), &solution.forces);
-        // Tangents that hold their block stay, so that forces that are free between bounds do not loosen them.
+        // // A tangent stays if its block is satisfied, so that undetermined forces do not loosen it.
         for ((joint, force), touched) in problem.joints.iter().zip(&solution.forces).zip(&mut touched) {
             if joint.strength.block.is_some_and(|block| excess(block, force) > 0.0) {
                 *touched = pressed(force);
@@ -82,7 +83,7 @@ pub fn by_tangents(
 mod tests {
     use super::*;
 
-    /// A tangent touches its block where it is drawn and holds it elsewhere, at either end.
+    /// A tangent touches its block at N̄ and lies outside it elsewhere, at either end.
     #[test]
     fn tangents_hold_their_block() {
         for tension in [0.0, 0.3] {
@@ -90,7 +91,7 @@ mod tests {
             for (drawn, end) in [(0.0, 0), (2.5, 1), (7.0, 0), (10.0, 1)] {
                 let row = tangent(block, end, drawn);
                 for pressed in [-tension, 0.0, 1.0, 2.5, 6.0, 7.0, 10.0] {
-                    // The least force of this end that the block allows.
+                    // // The least force of this end that satisfies the block.
                     let least = ((pressed + tension) * (pressed + tension) / block.total - tension) / 2.0;
                     let mut forces = [pressed - least; 2];
                     forces[end] = least;

@@ -1,8 +1,8 @@
-//! Proof that no limit state has θ in a range, range by range from below.
+//! Proof that no limit state has θ in a range, in consecutive ranges from below.
 //!
-//! In a range a ≤ θ ≤ t each normal force has bounds by linear programs. They exclude pairs that
-//! cannot yield, and bound the dissipation on the others, by which kinematics refuses mechanisms
-//! that are too cheap or too dear for the range. What is left is searched.
+//! In a range a ≤ θ ≤ t linear programs give bounds of each normal force. The bounds exclude pairs that cannot yield,
+//! and limit the dissipation on the others. With these limits kinematics refutes mechanisms whose dissipation does not
+//! fit the range. The remaining pairs are searched.
 
 use super::conflict_search::{Ending, Search};
 use super::curve::Curve;
@@ -11,23 +11,23 @@ use crate::limit::systems::Systems;
 use crate::optimise::dense_simplex::{Dictionary, Feasibility};
 use voussoir_core::limit::BracketWork;
 
-/// Ends of the ranges as shares of what is open; they close at about equal cost.
+/// Ends of the ranges as shares of the open interval; the ranges need about equal work.
 const SHARES: [f64; 8] = [0.3, 0.6, 0.77, 0.85, 0.92, 0.96, 0.985, 1.0];
 
-/// Where not even this share of what is open closes with that share of the work, nothing will.
+/// If this share of the open interval is not closed with that share of the work, the proof is given up.
 const PROBE: [f64; 2] = [0.01, 0.1];
 
-/// What the search found in a range.
+/// The result of the search in a range.
 pub enum Range {
-    /// No state: proved.
+    /// No state exists: proved.
     Closed,
     /// A state in which these pairs move.
     State(Vec<usize>),
-    /// Neither, with the work allowed.
+    /// Undecided within the allowed work.
     Open,
 }
 
-/// Work done, in counts, and what it led to.
+/// Counts of the work done, and the bracket it gave.
 #[derive(Debug, Clone, Default)]
 pub struct Work {
     /// Pivots.
@@ -42,25 +42,25 @@ pub struct Work {
     pub iterations: u64,
     /// Multiplications of the program of all products.
     pub multiplications: u64,
-    /// The bracket over the work.
+    /// The bracket as a function of the work.
     pub curve: Curve,
-    /// Whether the search was given up before its limit.
+    /// True if the search was given up before its limit.
     pub given_up: bool,
 }
 
 impl Work {
-    /// None below this was proved by the search.
+    /// Records that the search has proved no state below this θ.
     fn searched(&mut self, theta: f64) {
         self.curve.proved(BracketWork::Search, self.swept(), theta);
     }
 
-    /// 10⁹ entries swept by the search.
+    /// Returns the entries swept by the search, in 10⁹.
     pub fn swept(&self) -> f64 {
         self.entries as f64 / 1e9
     }
 }
 
-/// The bounds of the dissipation d_i·r on each pair where it yields, and the pairs that cannot.
+/// Returns the bounds of the dissipation d_i·r on each yielding pair, and marks the pairs that cannot yield.
 pub fn dissipations(systems: &Systems, statics: &mut Dictionary) -> (Vec<[f64; 2]>, Vec<bool>) {
     let mut excluded = vec![false; systems.pairs.len()];
     let mut bounds: Vec<[f64; 2]> = systems.pairs.iter().map(|pair| [pair.bound; 2]).collect();
@@ -93,7 +93,7 @@ pub fn dissipations(systems: &Systems, statics: &mut Dictionary) -> (Vec<[f64; 2
     (bounds, excluded)
 }
 
-/// Searches a ≤ θ ≤ t with at most so much work.
+/// Searches a ≤ θ ≤ t with at most this work.
 fn search(systems: &Systems, range: [f64; 2], most: u64, work: &mut Work) -> Range {
     let [a, t] = range;
     let Some(mut statics) = systems.statics(Some(t)) else { return Range::Closed };
@@ -116,7 +116,7 @@ fn search(systems: &Systems, range: [f64; 2], most: u64, work: &mut Work) -> Ran
             search.not_both(i, k);
         }
     }
-    // Finding the bounds is not counted: it is a small, fixed share.
+    // // The work for the bounds is not counted: it is small and fixed.
     let before = search.work();
     let ending = search.run(before + most);
     let found = match ending {
@@ -141,22 +141,22 @@ fn search(systems: &Systems, range: [f64; 2], most: u64, work: &mut Work) -> Ran
     found
 }
 
-/// Whether there is a state at this θ.
+/// Returns true if a state exists at this θ.
 pub fn state_at(systems: &Systems, theta: f64, most: u64, work: &mut Work) -> bool {
     matches!(search(systems, [theta, theta], most, work), Range::State(..))
 }
 
-/// Where a proof below a known state ends, or a lesser state.
+/// The end of a proof: a bound, or a lower state.
 pub enum Proof {
     /// No state is below this.
     Below(f64),
-    /// None is below this; the pairs that move in a state found above it.
+    /// No state is below this; the pairs move in a state found above it.
     State(f64, Vec<usize>),
-    /// None is below this; the work is used up.
+    /// No state is below this; the work is used up.
     Open(f64),
 }
 
-/// The whole range below a known state at once, where that is cheap.
+/// Closes the whole range below a known state in one step, if little work suffices.
 pub fn at_once(systems: &Systems, top: f64, most: u64, work: &mut Work) -> Proof {
     let proof = match search(systems, [0.0, top], (most / 50).min(200_000_000), work) {
         Range::Closed => Proof::Below(top),
@@ -167,8 +167,8 @@ pub fn at_once(systems: &Systems, top: f64, most: u64, work: &mut Work) -> Proof
     proof
 }
 
-/// The range from `proved` to `top` in parts from below. At most `most` matrix entries are swept, and a tenth of that where
-/// the search is hopeless.
+/// Closes the range from `proved` to `top` in parts from below. It sweeps at most `most` matrix entries, and a tenth of
+/// that if the search makes no progress.
 pub fn in_parts(systems: &Systems, [mut proved, top]: [f64; 2], most: u64, work: &mut Work) -> Proof {
     let first = proved;
     let left = most.saturating_sub(work.entries);

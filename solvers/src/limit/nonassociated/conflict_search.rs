@@ -1,16 +1,15 @@
-//! Search for a non-associated limit state with θ ≤ t, or proof that there is none.
+//! Search for a non-associated limit state with θ ≤ t, or proof that none exists.
 //!
-//! In every such state each pair i *yields* (s_i = 0) or is *at rest* (γ_i = 0). Statics can refuse
-//! that a set of pairs yields together, kinematics that a set is at rest together; each refusal is
-//! a clause over the pairs, valid for this and every lower t. Clauses are propagated and combined
-//! as in conflict-driven clause learning (Marques-Silva & Sakallah 1999); where neither system
-//! refuses, the moving pair that took part in most recent refusals is made to yield, at first the
-//! one with the greatest product s_i γ_i of the two present points.
+//! In every such state each pair i *yields* (s_i = 0) or is *at rest* (γ_i = 0). Statics can refute that a set of pairs
+//! yields together; kinematics can refute that a set is at rest together. Each refutation is a clause over the pairs,
+//! valid for this and every lower t. Clauses are propagated and combined as in conflict-driven clause learning
+//! (Marques-Silva & Sakallah 1999). If neither system refutes, the search sets a moving pair to yield: the pair with
+//! most recent refutations, at first the pair with the greatest product s_i γ_i of the two present points.
 
 use crate::limit::settings::SETTINGS;
 use crate::optimise::dense_simplex::{Dictionary, Feasibility};
 
-/// A pair and whether it yields, as 2 i + (1 if at rest).
+/// A pair and its status, as 2 i + (1 if at rest, 0 if it yields).
 type Literal = usize;
 
 fn literal(pair: usize, yields: bool) -> Literal {
@@ -21,12 +20,12 @@ fn pair_of(literal: Literal) -> usize {
     literal / 2
 }
 
-/// How a search ended.
+/// The end of a search.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Ending {
     /// These pairs can yield together and move together.
     Found(Vec<usize>),
-    /// There is no state with θ ≤ t.
+    /// No state with θ ≤ t exists.
     Exhausted,
     /// The limit of work was reached.
     Limit,
@@ -50,19 +49,19 @@ pub struct Search {
     watches: Vec<Vec<usize>>,
     activity: Vec<f64>,
     bump: f64,
-    /// Refusals so far.
+    /// Number of refutations.
     pub conflicts: u64,
-    /// Feasibility questions so far.
+    /// Number of feasibility questions.
     pub programs: u64,
-    /// Decisions so far.
+    /// Number of decisions.
     pub decisions: u64,
-    /// Questions that rounding left open; they refuse nothing.
+    /// Number of questions that rounding left undecided; they refute nothing.
     pub doubts: u64,
     empty: bool,
 }
 
 impl Search {
-    /// A search over two systems; `excluded` pairs never move.
+    /// Creates a search over two systems; `excluded` pairs never move.
     pub fn new(statics: Dictionary, mut kinematics: Dictionary, excluded: &[bool]) -> Self {
         let pairs = excluded.len();
         for (i, _) in excluded.iter().enumerate().filter(|(_, e)| **e) {
@@ -126,7 +125,7 @@ impl Search {
         self.propagated = self.propagated.min(limit);
     }
 
-    /// Unit propagation; the index of a violated clause.
+    /// Propagates unit clauses. Returns the index of a violated clause.
     fn propagate(&mut self) -> Option<usize> {
         while self.propagated < self.trail.len() {
             let pair = self.trail[self.propagated];
@@ -188,8 +187,8 @@ impl Search {
         index
     }
 
-    /// Learns from a clause all of whose literals are false: goes back and asserts the consequence.
-    /// False where there is nothing to go back to.
+    /// Learns from a clause with only false literals: backtracks and asserts the consequence. Returns false if no
+    /// decision is left to revise.
     fn learn(&mut self, literals: Vec<Literal>) -> bool {
         self.conflicts += 1;
         let top = literals.iter().map(|&l| self.level[pair_of(l)]).max().unwrap_or(0);
@@ -247,7 +246,7 @@ impl Search {
         true
     }
 
-    /// Makes a reason smaller: leaves out each member in turn and asks again.
+    /// Makes a reason smaller: tries to leave out each member.
     fn shrink(&mut self, reason: Vec<usize>, statics: bool) -> Vec<usize> {
         let pairs = self.pairs;
         let base = self.excluded.clone();
@@ -282,7 +281,7 @@ impl Search {
         kept
     }
 
-    /// Refuses that the pairs of `reason` yield together (statics) or are at rest together.
+    /// Adds the clause that the pairs of `reason` do not all yield (statics) or are not all at rest (kinematics).
     fn refuse(&mut self, reason: Vec<usize>, statics: bool) -> bool {
         let reason = if reason.len() <= 60 { self.shrink(reason, statics) } else { reason };
         let clause: Vec<Literal> = reason
@@ -293,7 +292,7 @@ impl Search {
         self.learn(clause)
     }
 
-    /// Adds the clause that one of two pairs is at rest, before anything is decided.
+    /// Adds the clause that one of two pairs is at rest. Call it before the first decision.
     pub fn not_both(&mut self, first: usize, second: usize) {
         self.restart_with(vec![literal(first, false), literal(second, false)]);
     }
@@ -320,7 +319,7 @@ impl Search {
         self.statics.work() + self.kinematics.work()
     }
 
-    /// Goes on until something is found, nothing is left, or the work in all reaches `most`.
+    /// Continues until a state is found, no case is left, or the total work reaches `most`.
     pub fn run(&mut self, most: u64) -> Ending {
         loop {
             if self.empty {

@@ -1,27 +1,27 @@
-//! The bracket as it closes: what was proved and what was found after so much work.
+//! The bracket as a function of the work: proved lower bounds and states found.
 
 use voussoir_core::limit::{BracketPoint, BracketWork};
 
-/// The points so far, with θ for factors.
+/// The points so far, in θ instead of factors.
 #[derive(Debug, Clone, Default)]
 pub struct Curve {
     points: Vec<BracketPoint>,
 }
 
 impl Curve {
-    /// After so much work by one of those who close the bracket, none below `lower`.
+    /// Records that after this work no state exists below `lower`.
     pub fn proved(&mut self, by: BracketWork, work: f64, lower: f64) {
         let (most, found) = self.present();
         self.add(BracketPoint { by, work, lower: most.max(lower), found });
     }
 
-    /// The same where a state was found.
+    /// Records a state found after this work.
     pub fn found(&mut self, by: BracketWork, work: f64, theta: f64) {
         let (lower, least) = self.present();
         self.add(BracketPoint { by, work, lower, found: Some(least.map_or(theta, |least| least.min(theta))) });
     }
 
-    /// A state that is known without further work.
+    /// Records a state that is known without further work.
     pub fn known(&mut self, theta: f64) {
         let (by, work) = self.points.last().map_or((BracketWork::Local, 0.0), |point| (point.by, point.work));
         if self.present().1.is_none_or(|found| theta < found) {
@@ -33,7 +33,7 @@ impl Curve {
         self.points.last().map_or((0.0, None), |point| (point.lower, point.found))
     }
 
-    /// Of a stretch without change its ends are kept.
+    /// Adds a point. An interval without change keeps only its two ends.
     fn add(&mut self, point: BracketPoint) {
         let same = |other: &BracketPoint| (other.by, other.lower, other.found) == (point.by, point.lower, point.found);
         if self.points.len() > 1 && self.points[self.points.len() - 2..].iter().all(same) {
@@ -42,7 +42,7 @@ impl Curve {
         self.points.push(point);
     }
 
-    /// The points as factors, for a stage that starts at `start`, with the ends that were reported.
+    /// Returns the points as factors for a stage that starts at `start`, with the reported ends.
     pub fn factors(mut self, start: f64, unit: f64, [lower, found]: [f64; 2]) -> Vec<BracketPoint> {
         for point in &mut self.points {
             point.lower = (start + unit * point.lower).min(lower);
@@ -56,7 +56,7 @@ impl Curve {
 mod tests {
     use super::*;
 
-    /// Both ends only ever close, and of a stretch without change its ends are left.
+    /// Both ends only become narrower, and an interval without change keeps its two ends.
     #[test]
     fn a_bracket_only_closes() {
         let mut curve = Curve::default();

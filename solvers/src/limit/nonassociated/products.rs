@@ -1,14 +1,13 @@
 //! A lower bound of θ from products of statics with kinematics: one linear program, no search.
 //!
-//! At a state, X = γ rᵀ, X_θ = γ θ, Q = q̇ rᵀ and Q_θ = q̇ θ obey linear rows: equilibrium times each γ_i
-//! and each component of q̇, yield times γ_i ≥ 0 (with equality for the same pair: γ_i s_i = 0), the flow
-//! rule times each force, p·q̇ = 1 times each force, θ γ_i ≤ t γ_i. Their least θ is a linear program:
-//! the reformulation-linearisation of Sherali & Adams (1990). No bound on γ is assumed.
+//! At a state, X = γ rᵀ, X_θ = γ θ, Q = q̇ rᵀ and Q_θ = q̇ θ satisfy linear rows: equilibrium times each γ_i and each
+//! component of q̇, yield times γ_i ≥ 0 (with equality for the same pair: γ_i s_i = 0), the flow rule times each force,
+//! p·q̇ = 1 times each force, θ γ_i ≤ t γ_i. Their least θ is a linear program: the reformulation-linearisation of
+//! Sherali & Adams (1990). No bound on γ is assumed.
 //!
-//! Products of all joints with all would be too many. Kept are those of joints whose blocks are
-//! near, and of joints cut by one layer around the ground, with the equilibrium of all that lies
-//! above the cut: that what slides must carry is known only from there. Leaving out products leaves
-//! out rows, so the bound stays valid.
+//! Products of all joints with all joints would be too many. The program keeps products of joints with blocks near each
+//! other, and of joints cut by one layer around the ground, with the equilibrium of the part above the cut: only this
+//! gives the load on sliding joints. Products that are left out only remove rows, so the bound stays valid.
 
 use crate::limit::settings::SETTINGS;
 use crate::limit::systems::Systems;
@@ -21,13 +20,13 @@ use voussoir_core::linear::{Entries, SparseLdlt};
 /// Linear form: (index, coefficient).
 type Form = Vec<(usize, f64)>;
 
-/// Multipliers below this share of the greatest are zero; tried in turn.
+/// Multipliers below this share of the greatest are set to zero; the values are tried in order.
 const SUPPORTS: [f64; 5] = [1e-6, 1e-5, 1e-4, 1e-7, 1e-3];
-/// Regularisations of the interior-point method, tried in turn.
+/// Regularisations of the interior-point method; they are tried in order.
 const REGULARISATIONS: [f64; 2] = [SETTINGS.apart, SETTINGS.great_shift];
-/// The bound of θ in the program lies so far above the known state.
+/// Distance of the upper bound of θ in the program above the known state, relative to it.
 const MARGIN_ABOVE: f64 = 0.05;
-/// The largest neighbourhood tried first.
+/// The largest neighbourhood that is tried first.
 const NEAREST: usize = 3;
 
 /// Minimise x_0 subject to equations row·x = h and rows row·x ≥ h.
@@ -35,7 +34,7 @@ struct Program {
     columns: usize,
     equations: Vec<(Form, f64)>,
     rows: Vec<(Form, f64)>,
-    /// What each row says.
+    /// Meaning of each row.
     kinds: Vec<Kind>,
     /// Index of the equation γ_i s_i = 0, with i.
     idle: Vec<(usize, usize)>,
@@ -43,7 +42,7 @@ struct Program {
     most: f64,
 }
 
-/// Something ≥ 0.
+/// A quantity that is not negative.
 #[derive(Clone, Copy)]
 pub enum Kind {
     /// γ_i.
@@ -64,24 +63,24 @@ pub enum Kind {
 
 /// A proved bound.
 pub struct Bound {
-    /// No state has a lesser θ.
+    /// No state has a lower θ.
     pub theta: f64,
-    /// What proves it, from below.
+    /// Steps of the proof, from below.
     pub steps: Vec<Step>,
 }
 
 /// Proof that no state with a ≤ θ ≤ t lies below a bound.
 pub struct Step {
-    /// The bound before rounding is taken off.
+    /// The bound before the allowance for rounding.
     pub raw: f64,
     /// a and t.
     pub range: [f64; 2],
-    /// Multipliers of what is ≥ 0, in the units of the systems; those of γ_i s_i = 0 have either sign.
+    /// Multipliers of the quantities ≥ 0, in the units of the systems; multipliers of γ_i s_i = 0 have either sign.
     pub multipliers: Vec<(Kind, f64)>,
 }
 
 impl Step {
-    /// The proof in SI units, for load factors from `start` on.
+    /// Returns the proof in SI units, for load factors from `start`.
     pub fn stored(&self, systems: &Systems, problem: &LimitProblem, start: f64) -> ProductStep {
         let code = |i: usize| {
             let pair = &systems.pairs[i];
@@ -124,13 +123,13 @@ impl Step {
     }
 }
 
-/// Which products are kept.
+/// Products that are kept.
 struct Kept {
-    /// Joint with joint.
+    /// Pairs of joints.
     joints: Vec<Vec<bool>>,
-    /// Motion of a group with joint.
+    /// Pairs of a group's motion and a joint.
     groups: Vec<Vec<bool>>,
-    /// Groups above a cut, with the joints that are cut.
+    /// Groups above a cut, with the cut joints.
     cuts: Vec<(Vec<usize>, Vec<usize>)>,
 }
 
@@ -195,14 +194,14 @@ impl Kept {
     }
 }
 
-/// Columns of the products, numbered as they appear.
+/// Columns of the products, numbered in the order of first use.
 struct Columns {
     of: HashMap<(usize, usize), usize>,
     one: (usize, usize),
 }
 
 impl Columns {
-    /// The form Σ v (first × second) as a row over columns, and the constant moved to the right.
+    /// Returns the form Σ v (first × second) as a row over columns, and its constant on the right-hand side.
     fn row(&mut self, terms: impl IntoIterator<Item = ((usize, usize), f64)>) -> (Form, f64) {
         let (mut row, mut right) = (Form::new(), 0.0);
         for (key, v) in terms {
@@ -217,7 +216,7 @@ impl Columns {
     }
 }
 
-/// A program in the making. Second factors are forces, then θ and 1; first factors are 1, then γ_i, then q̇.
+/// A program during its construction. Second factors are forces, then θ and 1; first factors are 1, then γ_i, then q̇.
 struct Builder<'a> {
     systems: &'a Systems,
     kept: Kept,
@@ -228,7 +227,7 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    /// Index of θ among the second factors; 1 comes after it.
+    /// Returns the index of θ among the second factors; 1 comes after it.
     fn theta(&self) -> usize {
         self.systems.forces
     }
@@ -237,12 +236,12 @@ impl Builder<'_> {
         self.systems.forces + 1
     }
 
-    /// Index of γ_i among the first factors.
+    /// Returns the index of γ_i among the first factors.
     fn gamma(&self, i: usize) -> usize {
         1 + i
     }
 
-    /// Index of a component of q̇ among the first factors.
+    /// Returns the index of a component of q̇ among the first factors.
     fn velocity(&self, q: usize) -> usize {
         1 + self.systems.pairs.len() + q
     }
@@ -251,7 +250,7 @@ impl Builder<'_> {
         self.joint_of[self.systems.pairs[i].normal[0].0]
     }
 
-    /// Equilibrium of each group and of all above each cut, with the joints it needs.
+    /// Returns the equilibrium of each group and of the part above each cut, with the joints in it.
     fn balances(&self) -> Vec<(Form, Vec<usize>)> {
         let (systems, theta, one) = (self.systems, self.theta(), self.one());
         let mut balances: Vec<(Form, Vec<usize>)> = Vec::new();
@@ -269,7 +268,7 @@ impl Builder<'_> {
                     sum[theta] += systems.varying[3 * group + x];
                     sum[one] += systems.fixed[3 * group + x];
                 }
-                // What acts between two groups above the cut cancels, but for rounding.
+                // // Forces between two groups above the cut cancel, except for rounding.
                 (0..systems.forces).filter(|&j| !cut.contains(&self.joint_of[j])).for_each(|j| sum[j] = 0.0);
                 balances.push((sum.into_iter().enumerate().collect(), cut.clone()));
             }
@@ -278,7 +277,7 @@ impl Builder<'_> {
         balances
     }
 
-    /// Equilibrium times 1, γ_i and q̇; `None` where equations are more than `most`.
+    /// Adds equilibrium times 1, γ_i and q̇; `None` if this gives more than `most` equations.
     fn equilibrium(&mut self, most: usize) -> Option<()> {
         let (pairs, rows) = (self.systems.pairs.len(), self.systems.equilibrium.len());
         for (index, (form, joints)) in self.balances().iter().enumerate() {
@@ -304,7 +303,7 @@ impl Builder<'_> {
         Some(())
     }
 
-    /// γ_i, γ_i θ, γ_i (t − θ) and θ are not negative.
+    /// Adds the rows γ_i, γ_i θ, γ_i (t − θ) and θ ≥ 0.
     fn signs(&mut self) {
         let (theta, one, t) = (self.theta(), self.one(), self.program.most);
         for i in 0..self.systems.pairs.len() {
@@ -319,7 +318,7 @@ impl Builder<'_> {
         self.program.kinds.push(Kind::Theta);
     }
 
-    /// s_j and γ_i s_j are not negative, γ_i s_i is zero.
+    /// Adds s_j ≥ 0, γ_i s_j ≥ 0 and γ_i s_i = 0.
     fn slacks(&mut self) {
         let one = self.one();
         for (j, pair) in self.systems.pairs.iter().enumerate() {
@@ -345,8 +344,8 @@ impl Builder<'_> {
         }
     }
 
-    /// The flow rule of each force variable, Eᵀ q̇ + Dᵀ γ = 0, and p·q̇ = 1, each times forces, θ and 1; `None` where
-    /// equations and rows are more than `most`.
+    /// Adds the flow rule of each force variable, Eᵀ q̇ + Dᵀ γ = 0, and p·q̇ = 1, each times forces, θ and 1; `None` if
+    /// there are more than `most` equations and rows.
     fn flow_rule(&mut self, most: usize) -> Option<()> {
         let systems = self.systems;
         let mut flow: Vec<(Form, usize)> = self.joint_of.iter().map(|&joint| (Form::new(), joint)).collect();
@@ -378,7 +377,7 @@ impl Builder<'_> {
 }
 
 impl Program {
-    /// The rows for θ ≤ t with products up to `reach`; `None` where they are more than `most`.
+    /// Creates the rows for θ ≤ t with products up to `reach`; `None` if there are more than `most` rows.
     fn new(systems: &Systems, problem: &LimitProblem, t: f64, reach: usize, most: usize) -> Option<Self> {
         let mut joint_of = vec![0; systems.forces];
         for (k, &(first, own)) in systems.variables.joints.iter().enumerate() {
@@ -398,7 +397,7 @@ impl Program {
         Some(program)
     }
 
-    /// Multipliers by an interior-point method: of the equations, then of the rows (≥ 0).
+    /// Computes multipliers by an interior-point method: of the equations, then of the rows (≥ 0).
     fn multipliers(&self, regularisation: f64) -> Option<(Vec<f64>, u64)> {
         let (mut i, mut j, mut v, mut right) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let equations = self.equations.iter().map(|row| (row, 1.0));
@@ -416,7 +415,7 @@ impl Program {
         q[0] = 1.0;
         let cones =
             [SupportedConeT::ZeroConeT(self.equations.len()), SupportedConeT::NonnegativeConeT(self.rows.len())];
-        // The rows depend on each other: more regularisation than usual keeps the factors apart.
+        // // The rows depend on each other: the factorisation needs more regularisation than usual.
         let settings = DefaultSettings::<f64> {
             verbose: false,
             max_iter: 100,
@@ -426,12 +425,12 @@ impl Program {
         };
         let mut solver = DefaultSolver::new(&p, &q, &a, &right, &cones, settings).ok()?;
         solver.solve();
-        // Whatever it calls its end: the multipliers are made right, and their bound recomputed.
+        // // The status of the solver does not matter: the multipliers are corrected and their bound recomputed.
         let z = &solver.solution.z;
         z.iter().all(|v| v.is_finite()).then(|| (z.clone(), u64::from(solver.solution.iterations)))
     }
 
-    /// A row as Clarabel sees it: form, right-hand side and sign.
+    /// Returns a row in the form of Clarabel: linear form, right-hand side and sign.
     fn signed(&self, k: usize) -> (&Form, f64, f64) {
         match self.equations.get(k) {
             Some((form, h)) => (form, *h, 1.0),
@@ -442,7 +441,7 @@ impl Program {
         }
     }
 
-    /// x_0 + (signed rows)ᵀ z, which is zero for multipliers that prove a bound.
+    /// Returns x_0 + (signed rows)ᵀ z, which is zero for multipliers that prove a bound.
     fn residual(&self, z: &[f64]) -> Vec<f64> {
         let mut r = vec![0.0; self.columns];
         r[0] = 1.0;
@@ -453,8 +452,9 @@ impl Program {
         r
     }
 
-    /// The bound that multipliers prove: x_0 ≥ −Σ h z where x_0 + (signed rows)ᵀ z = 0 and z ≥ 0 on rows.
-    /// Those below one of several thresholds are zero, the others are moved there to rounding.
+    /// Returns the bound that multipliers prove: x_0 ≥ −Σ h z if x_0 + (signed rows)ᵀ z = 0 and z ≥ 0 on rows.
+    /// Multipliers below one of several thresholds are set to zero; the others are corrected to satisfy the equation to
+    /// rounding.
     fn bound(&self, z: &[f64]) -> Option<Bound> {
         SUPPORTS.into_iter().find_map(|least| self.bound_on(least, z.to_vec()))
     }
@@ -498,9 +498,9 @@ impl Program {
     }
 }
 
-/// The greatest lower bound of θ, for states with θ ≤ t, from the widest neighbourhood whose rows
-/// are at most `most`; with the iterations it took. `None` where even the smallest, or with `widest_only` the
-/// widest, has more rows, or nothing was proved.
+/// Returns the greatest lower bound of θ for states with θ ≤ t, from the widest neighbourhood with at most `most` rows,
+/// and the number of iterations. `None` if the smallest neighbourhood (with `widest_only` the widest) has more rows, or
+/// if nothing was proved.
 pub fn lower_bound(
     systems: &Systems,
     problem: &LimitProblem,
@@ -508,7 +508,7 @@ pub fn lower_bound(
     most: usize,
     widest_only: bool,
 ) -> (Option<Bound>, u64) {
-    // With room above the known state the program has an interior, which its method needs.
+    // // A margin above the known state gives the program an interior, which the method needs.
     let above = t * (1.0 + MARGIN_ABOVE);
     let fits = |reach: usize| Program::new(systems, problem, above, reach, most);
     let least = if widest_only { NEAREST } else { 0 };

@@ -1,4 +1,4 @@
-//! The solver `limit_least`: local search for the least state, then a proof that nothing lies below.
+//! The solver `limit_least`: local search for the least state, then a proof that no lower state exists.
 
 use super::bracket::{Proof, Work, at_once, dissipations, in_parts, state_at};
 use super::curve::Curve;
@@ -20,9 +20,9 @@ use voussoir_core::limit::{
 use voussoir_core::model::Wrenches;
 use voussoir_core::plugin::{Capability, Card, Keys, PluginKind};
 
-/// Rows of products that are solved only so that what the search proved can be checked.
+/// Greatest number of rows of products that are solved only to make the result of the search checkable.
 const CHECKED_ROWS: usize = 5_000;
-/// Starts of the local search.
+/// Number of starts of the local search.
 const STARTS: usize = 24;
 
 /// The least load with the laws' own flow.
@@ -68,11 +68,11 @@ voussoir_core::inventory::submit! {
     }
 }
 
-/// Said where the loads before the stage are at a limit state.
+/// Note if the loads before the stage are at a limit state.
 const MOVES_ALREADY: &str = "the loads present before this stage are at a limit state of the laws' own flow, with a mechanism \
      on which they do work: blocks stand by wedging alone, and whether they do depends on how the joints were compressed";
 
-/// Why a bracket is left open.
+/// Reason of an open bracket.
 const AT_LIMIT: &str = "the search ended at its limit";
 const GIVEN_UP: &str = "with a tenth of its work the search could not exclude even the lowest hundredth of what was open, and was given up";
 
@@ -96,7 +96,8 @@ struct Least<'a> {
 }
 
 impl Least<'_> {
-    /// Whether the dense systems can be built: not too large, and every joint in linear rows.
+    /// Returns an error unless the dense systems can be built: the scene is small enough and every joint has linear
+    /// rows.
     fn searchable(&self) -> Result<(), String> {
         let s = &self.systems;
         if self.problem.joints.iter().any(|joint| joint.strength.block.is_some()) {
@@ -114,7 +115,7 @@ impl Least<'_> {
         Ok(())
     }
 
-    /// The state in which these pairs move, to rounding, at the least factor.
+    /// Computes the state in which these pairs move, to rounding, at the least factor.
     fn state(&self, moving: &[usize]) -> Option<(f64, FlowState)> {
         let pairs = self.systems.pairs.len();
         let excluded: Vec<bool> = (0..pairs).map(|i| !moving.contains(&i)).collect();
@@ -146,13 +147,13 @@ impl Least<'_> {
             return None;
         }
         let theta = z[self.systems.forces];
-        // Rounding of a zero factor is not a factor.
+        // // A factor within rounding of zero is zero.
         let theta = if theta.abs() < SETTINGS.zero { 0.0 } else { theta };
         let field = self.systems.joint_forces(&z);
         Some((theta, FlowState { factor: theta * self.systems.unit, field, motion }))
     }
 
-    /// The least state of many local searches below `most` (∞: no bound is known).
+    /// Finds the least state of many local searches below `most` (∞: no bound is known).
     fn local(&mut self, most: f64, first: Option<Vec<f64>>) -> Option<State> {
         let bound = most.is_finite().then_some(most);
         let mut statics = self.systems.statics(bound)?;
@@ -209,7 +210,7 @@ impl LimitSolver for LimitNonassociated {
         let base: Wrenches = combined(&problem.fixed, &problem.varying, start);
         let mut least = Least { problem, systems: Systems::new(problem, &base), work: Work::default() };
         let unit = least.systems.unit;
-        // The greatest θ of interest: that of associated flow, or of the search.
+        // // The greatest θ of interest: the result of associated flow or of the search.
         let associated_theta = own.associated_factor.map(|factor| (factor - start) / unit);
         let most = associated_theta.unwrap_or((max - start) / unit);
         let mut best = least.first(&answer, start);
@@ -227,7 +228,7 @@ impl LimitSolver for LimitNonassociated {
                 lower = least.prove(self, most, &mut best);
             }
         }
-        // Where something lower is not excluded, the sequence may know it.
+        // // If a lower state is not excluded, the sequence of linear programs may find it.
         if best.as_ref().is_none_or(|b| lower.theta < b.0 * (1.0 - SETTINGS.closed)) {
             let from = answer.field.clone().unwrap_or_default();
             match sequence(problem, &base, &from, &mut answer.counters) {
@@ -268,7 +269,7 @@ impl LimitSolver for LimitNonassociated {
 }
 
 impl Least<'_> {
-    /// The associated answer itself, where its mechanism does not slide: then it obeys any flow.
+    /// Returns the associated answer itself if its mechanism does not slide: then it satisfies any flow rule.
     fn first(&self, answer: &LimitAnswer, start: f64) -> Option<(f64, FlowState)> {
         let (factor, field, motion) = (answer.factor?, answer.field.clone()?, answer.motion.clone()?);
         let gamma = self.systems.multipliers(self.problem, &motion);
@@ -277,7 +278,7 @@ impl Least<'_> {
         (!slides && answer.status == Status::Collapse).then_some(((factor - start) / self.systems.unit, state))
     }
 
-    /// Whether the base loads alone are at a limit state with a mechanism on which they do work.
+    /// Returns true if the base loads alone are at a limit state with a mechanism on which they do work.
     fn moves_already(&mut self, base: &Wrenches, limit: f64) -> bool {
         let none: Wrenches = vec![[0.0; 3]; base.len()];
         if self.problem.magnitude(base) == 0.0 {
@@ -288,7 +289,7 @@ impl Least<'_> {
         state_at(&Systems::new(&alone, &none), 1.0, entries, &mut self.work)
     }
 
-    /// Keeps a state where it is less than the best one.
+    /// Keeps a state if it is lower than the best one.
     fn take(&self, moving: Option<Vec<usize>>, best: &mut Option<(f64, FlowState)>) -> bool {
         let Some(found) = moving.and_then(|moving| self.state(&moving)) else { return false };
         let better = best.as_ref().is_none_or(|b| found.0 < b.0 - SETTINGS.below_state / 2.0 * b.0.abs());
@@ -298,7 +299,7 @@ impl Least<'_> {
         better
     }
 
-    /// Raises the lower bound as far as the limits allow, taking lesser states on the way.
+    /// Raises the lower bound as far as the limits of work allow, and keeps lower states found on the way.
     fn prove(&mut self, limits: &LimitNonassociated, most: f64, best: &mut Option<(f64, FlowState)>) -> Lower {
         let entries = (limits.search_limit * 1e9).min(1e18) as u64;
         let (mut lower, mut gap) = (Lower { theta: 0.0, products: None, searched: 0.0 }, SETTINGS.below_state);
@@ -322,7 +323,7 @@ impl Least<'_> {
                 Proof::Below(proved) => {
                     lower.search(proved);
                     if lower.products.is_none() {
-                        // What the search has proved can be checked where products prove it too.
+                        // // A bound of the search can be checked only if products prove it too.
                         lower.product(self.products(known, limits.product_rows.min(CHECKED_ROWS), true));
                     }
                     return lower;
@@ -349,7 +350,7 @@ impl Least<'_> {
                         self.work.curve.found(BracketWork::Search, swept, theta);
                         continue;
                     }
-                    // The known state itself, to rounding: the proof ends further below it.
+                    // // The proof ends this far below the known state because of rounding.
                     if gap < SETTINGS.closed {
                         gap *= 10.0;
                     } else if whole {
@@ -373,7 +374,7 @@ impl Least<'_> {
     }
 }
 
-/// The proved lower end and what it rests on.
+/// The proved lower end and its proof.
 struct Lower {
     theta: f64,
     /// The bound by products.
@@ -388,8 +389,8 @@ impl Lower {
         self.theta = self.theta.max(proved);
     }
 
-    /// Takes a bound by products, which need not be greater than that of the search to replace it where
-    /// both close the bracket: it can be checked.
+    /// Adds a bound by products. If both bounds close the bracket, it replaces the search even if it is lower, because
+    /// it can be checked.
     fn product(&mut self, bound: Option<Bound>) {
         let Some(bound) = bound else { return };
         if bound.theta >= self.searched * (1.0 - SETTINGS.closed / 2.0) {
@@ -411,7 +412,7 @@ impl Lower {
     }
 }
 
-/// The answer with the best state and the proved bound.
+/// Builds the answer from the best state and the proved bound.
 fn finish(
     mut answer: LimitAnswer,
     (mut own, curve, why): (NonAssociated, Curve, &str),
@@ -444,7 +445,7 @@ fn finish(
             answer.non_associated = Some(own);
         }
         _ if answer.status == Status::Collapse => {
-            // Nothing but the associated answer: an upper bound, and flagged as such.
+            // // Only the associated answer is known: an upper bound, marked as such.
             answer.notes.push(format!(
                 "no limit state with the laws' own flow was found; none lies below {proved:.9} (proved)"
             ));

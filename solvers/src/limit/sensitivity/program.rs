@@ -1,37 +1,37 @@
-//! The linear program of a one-sided derivative, and whether the face is stable enough for it.
+//! The linear program of a one-sided derivative, and the check that the derivative exists.
 
 use super::row::FaceRow;
 use crate::limit::settings::SETTINGS;
 use crate::optimise::dense_simplex::{Dictionary, Equations, Feasibility};
 use nalgebra::{DMatrix, DVector};
 
-/// What does not depend on the parameter: s is the difference of a field of the face from r̂, δr a step.
+/// The parts that do not depend on the parameter. s is the difference between a field of the face and r̂; δr is a step.
 #[derive(Debug, Default)]
 pub(super) struct Program {
-    /// s = `spread` t: keeps equilibrium and the work of the mechanism.
+    /// s = `spread` t: it preserves equilibrium and the work of the mechanism.
     pub spread: DMatrix<f64>,
     /// Null space of E.
     pub steps: DMatrix<f64>,
-    /// −E⁺ p: the step that carries one unit of load.
+    /// −E⁺ p: the step that carries a unit load.
     pub response: DVector<f64>,
     /// E⁺.
     pub inverse: DMatrix<f64>,
-    /// Rows that are tight in r̂.
+    /// Tight rows of r̂.
     pub tight: Vec<usize>,
 }
 
-/// How the data change.
+/// Derivatives of the data.
 #[derive(Debug)]
 pub(super) struct Direction {
     /// E′.
     pub matrix: DMatrix<f64>,
     /// E′ r̂ + w′ + λ p′.
     pub residual: DVector<f64>,
-    /// Of the tight rows: A′ r̂ − b′, and A′.
+    /// A′ r̂ − b′ and A′ of the tight rows.
     pub rows: Vec<(f64, DVector<f64>)>,
 }
 
-/// A program over free variables, then variables ≥ 0 of which the last are the slacks of its rows.
+/// A program with free variables, then variables ≥ 0; the last of these are the slacks of its rows.
 struct Rows {
     free: usize,
     own: usize,
@@ -39,7 +39,7 @@ struct Rows {
 }
 
 impl Rows {
-    /// Σ a x ≤ b, as an equation with a slack.
+    /// Writes Σ a x ≤ b as an equation with a slack.
     fn dictionary(self) -> Option<Dictionary> {
         let (width, count) = (self.free + self.own, self.rows.len());
         let (rows, right) = self
@@ -61,8 +61,8 @@ fn pivots(dictionary: &Rows) -> u64 {
 }
 
 impl Program {
-    /// Whether the theorem holds: a field strictly inside the strengths at a load a little less (so that mechanisms are
-    /// bounded), and no field of the face that grows without end.
+    /// Returns an error if the theorem does not hold. It needs a field strictly inside the strengths at a slightly
+    /// lower load (so that mechanisms are bounded), and a bounded set of fields on the face.
     pub fn stable(&self, rows: &[FaceRow]) -> Result<(), String> {
         let steps = self.steps.ncols();
         let inside = self.tight.iter().map(|&row| {
@@ -79,7 +79,7 @@ impl Program {
         if spread == 0 {
             return Ok(());
         }
-        // Variables: how far each row becomes slack, at most 1.
+        // // Variables: slack gained by each row, at most 1.
         let mut grows = Rows { free: spread, own: rows.len(), rows: Vec::new() };
         for (index, row) in rows.iter().enumerate() {
             let along: Vec<f64> = (row.coefficients.transpose() * &self.spread).iter().copied().collect();
@@ -100,7 +100,7 @@ impl Program {
         Ok(())
     }
 
-    /// The greatest δλ, in units of force over load.
+    /// Returns the greatest δλ, in units of force over load.
     pub fn greatest(&self, rows: &[FaceRow], direction: &Direction) -> Result<f64, String> {
         let (spread, steps) = (self.spread.ncols(), self.steps.ncols());
         let along_face = &direction.matrix * &self.spread;

@@ -6,17 +6,17 @@ use nalgebra::DVector;
 #[derive(Debug, Clone)]
 pub(super) struct FaceRow {
     pub joint: usize,
-    /// Index among the joint's rows, or of the end of its stress block.
+    /// The strength from which the row comes.
     pub source: Source,
-    /// Factor that has made its length 1.
+    /// Factor that scales the row to length 1.
     pub scale: f64,
-    /// Over all forces.
+    /// Coefficients over all forces.
     pub coefficients: DVector<f64>,
-    /// ≥ 0.
+    /// Slack, ≥ 0.
     pub slack: f64,
 }
 
-/// Which strength a row comes from.
+/// The strength from which a row comes: a row of the joint, or one end of its stress block.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Source {
     Row(usize),

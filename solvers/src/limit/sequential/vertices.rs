@@ -1,7 +1,7 @@
-//! The programs of a sequence by the simplex method, each from the basis of the one before.
+//! The programs of a sequence, solved by the simplex method from the basis of the previous program.
 //!
-//! They differ in the bounds of rows alone: fictitious cohesion moves with the normal forces. A basis that was the best
-//! stays one that no multiplier contradicts, and a few pivots of the dual simplex method lead to the next vertex.
+//! The programs differ only in the bounds of rows: fictitious cohesion changes with the normal forces. An optimal basis
+//! stays dual feasible, and a few pivots of the dual simplex method lead to the next vertex.
 
 use crate::limit::engine::Greatest;
 use crate::limit::settings::SETTINGS;
@@ -12,14 +12,15 @@ use voussoir_core::limit::{Counters, JointForce, LimitJoint, LimitProblem};
 /// Programs with associated rows that differ in their bounds.
 pub struct Vertices {
     statics: Dictionary,
-    /// The rows of the present program: those that flow otherwise stand with their flow as normal.
+    /// The rows of the present program; non-associated rows have their flow as normal.
     systems: Systems,
-    /// What a unit of each slack adds to the weighted sum of fictitious cohesion.
+    /// Contribution of a unit of each slack to the weighted sum of fictitious cohesion.
     weights: Vec<(usize, f64)>,
 }
 
 impl Vertices {
-    /// With the bounds of the laws themselves. `None` in scenes too large for dense dictionaries and with joints that crush.
+    /// Creates the programs with the bounds of the laws. `None` if the scene is too large for dense dictionaries or a
+    /// joint crushes.
     pub fn new(problem: &LimitProblem, systems: &Systems) -> Option<Self> {
         if systems.entries() > LARGEST || problem.joints.iter().any(|joint| joint.strength.block.is_some()) {
             return None;
@@ -30,8 +31,8 @@ impl Vertices {
         Some(Vertices { statics: systems.statics(None)?, systems, weights })
     }
 
-    /// The greatest factor with fictitious cohesion d·r ≤ b + (d − a)·r̄, rows of `own` being the laws': a vertex of its
-    /// fields. `None` where rounding spoils it.
+    /// Returns the greatest factor with fictitious cohesion d·r ≤ b + (d − a)·r̄, at a vertex of its fields; rows of
+    /// `own` have the laws' flow. `None` if rounding makes the result unusable.
     pub fn greatest(
         &mut self,
         problem: &LimitProblem,
@@ -66,7 +67,7 @@ impl Vertices {
         let gamma: Vec<f64> = (0..systems.pairs.len()).map(|i| statics.reduced_cost(i).max(0.0)).collect();
         least_cohesion(statics, &gamma, &self.weights);
         let moving: Vec<(usize, f64)> = greatest_shares(&gamma).into_iter().map(|i| (i, gamma[i])).collect();
-        // The costs of the factor again, from which the next program goes on.
+        // // Restores the costs of the factor; the next program starts from them.
         statics.minimise(&primary, 0);
         let zero: Vec<usize> = (0..systems.pairs.len()).filter(|&i| statics.at_zero(i)).collect();
         let (z, violation) = systems.field(&zero, vec![0.0; systems.forces + 1])?;
@@ -80,8 +81,8 @@ impl Vertices {
     }
 }
 
-/// From a vertex with the greatest factor to the one where normal forces give the least cohesion to the next program: where
-/// fields are many, which vertex the pivots meet depends on how joints are numbered, and this one does not.
+/// Moves from a vertex with the greatest factor to the one whose normal forces give the least cohesion in the next
+/// program. If many fields exist, the result then does not depend on the numbering of joints.
 fn least_cohesion(statics: &mut Dictionary, gamma: &[f64], weights: &[(usize, f64)]) {
     let costly: Vec<usize> = (0..gamma.len()).filter(|&i| gamma[i] > SETTINGS.active).collect();
     costly.iter().for_each(|&i| statics.fix(i, true));
@@ -89,8 +90,8 @@ fn least_cohesion(statics: &mut Dictionary, gamma: &[f64], weights: &[(usize, f6
     costly.iter().for_each(|&i| statics.fix(i, false));
 }
 
-/// (d − a)·r of all rows that flow otherwise, as weights of the slacks of openings, s_k = b_k + N_k. Joints far from the middle
-/// of the scene count more: with equal weights fields are many again.
+/// Returns (d − a)·r of all non-associated rows as weights of the slacks of openings, s_k = b_k + N_k. Joints far from
+/// the middle of the scene have greater weights: with equal weights the field would not be unique.
 fn cohesion_weights(problem: &LimitProblem, systems: &Systems) -> Vec<(usize, f64)> {
     let far = |joint: &LimitJoint| (joint.ends[0] + joint.ends[1] - 2.0 * problem.pole).norm();
     let mean = problem.joints.iter().map(far).sum::<f64>() / problem.joints.len() as f64;
