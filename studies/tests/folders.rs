@@ -1,11 +1,26 @@
 //! Result folders: nothing lost, doubled, foreign or written elsewhere.
 
 use serde_json::Value;
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 fn voussoir(arguments: &[&str], at: &Path) -> Output {
     Command::new(env!("CARGO_BIN_EXE_voussoir")).args(arguments).current_dir(at).output().expect("the program starts")
+}
+
+/// Runs the program with `--json` and kills it after so many lines on standard output, each of which is a finished case.
+fn killed_after(lines: usize, arguments: &[&str], at: &Path) {
+    let mut run = Command::new(env!("CARGO_BIN_EXE_voussoir"))
+        .args(arguments)
+        .current_dir(at)
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    let said = BufReader::new(run.stdout.take().expect("its output"));
+    drop(said.lines().take(lines).collect::<Vec<_>>());
+    drop(run.kill());
+    run.wait().expect("it has ended");
 }
 
 fn code(output: &Output) -> i32 {
@@ -210,13 +225,18 @@ fn files_are_those_of_the_results() {
         std::fs::write(out.join(name), original).expect("written");
     }
     assert_eq!(code(&voussoir(&["verify", "out", "--jobs", "2"], &at)), 0);
-    // A figure that no case has, under a name as writers give it.
+    // A list of files that is not that of the study.
+    let whole = text(&out.join("results.json"));
+    std::fs::write(out.join("results.json"), whole.replacen("\"report.html\"", "\"rapport.html\"", 1))
+        .expect("written");
+    let output = voussoir(&["verify", "out"], &at);
+    assert!(code(&output) == 1 && said(&output).contains("the list of files"), "{}", said(&output));
+    std::fs::write(out.join("results.json"), whole).expect("written");
+    // Files that no run has written stay, whatever their names.
     for name in ["figures/case-0099-mechanism.svg", "curve.csv"] {
         std::fs::write(out.join(name), "foreign").expect("written");
-        let output = voussoir(&["verify", "out"], &at);
-        assert!(code(&output) == 1 && said(&output).contains(name), "{name}: {}", said(&output));
-        std::fs::remove_file(out.join(name)).expect("removed");
     }
+    assert_eq!(code(&voussoir(&["verify", "out"], &at)), 0);
     let set = ["run", "a.toml", "--out", "out", "--quiet", "--set", "sweep.\"scene.profile.rise\".count=2"];
     assert_eq!(code(&voussoir(&set, &at)), 0);
     assert!(out.join("figures/case-0001-scene.svg").exists() && !out.join("figures/case-0003-scene.svg").exists());
@@ -225,6 +245,81 @@ fn files_are_those_of_the_results() {
     assert_eq!(code(&voussoir(&set, &at)), 0);
     assert!(!out.join("results.csv").exists() && !out.join("figures/sweep.svg").exists());
     assert_eq!(text(&out.join("figures/mine.svg")), "mine");
+    for name in ["figures/case-0099-mechanism.svg", "curve.csv"] {
+        assert_eq!(text(&out.join(name)), "foreign", "{name}");
+    }
+    // They are not overwritten either; what was solved is kept until they have made room.
+    std::fs::write(out.join("results.csv"), "foreign").expect("written");
+    let output = voussoir(&["run", "a.toml", "--out", "out"], &at);
+    assert!(code(&output) == 3 && said(&output).contains("results.csv: no run has written"), "{}", said(&output));
+    assert_eq!(text(&out.join("results.csv")), "foreign");
+    std::fs::remove_file(out.join("results.csv")).expect("removed");
+    let output = voussoir(&["run", "a.toml", "--out", "out", "--resume"], &at);
+    assert!(code(&output) == 0 && said(&output).contains("8 finished cases are kept"), "{}", said(&output));
+}
+
+/// A list of files that leads out of the folder, or to what every run writes, removes nothing.
+#[test]
+fn a_forged_list_of_files_removes_nothing_elsewhere() {
+    let at = folder("forged_list");
+    let out = at.join("out");
+    std::fs::write(at.join("precious"), "precious").expect("written");
+    assert_eq!(code(&voussoir(&["run", "a.toml", "--out", "out", "--quiet"], &at)), 0);
+    let mut results: Value = serde_json::from_str(&text(&out.join("results.json"))).expect("JSON");
+    let absolute = at.join("precious").display().to_string();
+    results["files"] =
+        serde_json::json!(["../precious", absolute, "figures/../../precious", "", ".", "resolved.toml", 7]);
+    std::fs::write(out.join("results.json"), results.to_string()).expect("written");
+    for name in ["results.csv", "report.html"] {
+        std::fs::remove_file(out.join(name)).expect("removed");
+    }
+    std::fs::remove_dir_all(out.join("figures")).expect("removed");
+    assert_eq!(code(&voussoir(&["run", "a.toml", "--out", "out", "--quiet"], &at)), 0);
+    assert_eq!(text(&at.join("precious")), "precious");
+}
+
+/// Killed at each stage of a run, from the first case to the last figure: no file is half written, and the run goes on.
+#[test]
+fn killed_at_every_stage() {
+    let at = folder("stages");
+    let out = at.join("out");
+    assert_eq!(code(&voussoir(&["run", "a.toml", "--out", "whole", "--quiet"], &at)), 0);
+    let stages = [
+        "unfinished.jsonl",
+        "results.json.tmp",
+        "results.csv.tmp",
+        "results.json",
+        "resolved.toml",
+        "results.csv",
+        "figures",
+        "figures/case-0003-scene.svg",
+        "report.html",
+    ];
+    for stage in stages {
+        drop(std::fs::remove_dir_all(&out));
+        for round in 0..3 {
+            let mut run = Command::new(env!("CARGO_BIN_EXE_voussoir"))
+                .args(["run", "a.toml", "--out", "out", "--quiet", "--resume"])
+                .current_dir(&at)
+                .spawn()
+                .expect("the program starts");
+            while !out.join(stage).exists() && run.try_wait().expect("a state").is_none() {
+                std::hint::spin_loop();
+            }
+            drop(run.kill());
+            run.wait().expect("it has ended");
+            if out.join("results.json").exists() {
+                assert_eq!(timeless(&out), timeless(&at.join("whole")), "{stage}, {round}");
+            }
+        }
+        assert_eq!(code(&voussoir(&["run", "a.toml", "--out", "out", "--quiet", "--resume"], &at)), 0, "{stage}");
+        assert_eq!(timeless(&out), timeless(&at.join("whole")), "{stage}");
+        assert_eq!(code(&voussoir(&["verify", "out"], &at)), 0, "{stage}");
+        let left: Vec<_> =
+            std::fs::read_dir(&out).expect("a folder").flatten().map(|entry| entry.file_name()).collect();
+        let half = |name: &std::ffi::OsString| name.to_string_lossy().ends_with(".tmp") || name == "unfinished.jsonl";
+        assert!(!left.iter().any(half), "{stage}: {left:?}");
+    }
 }
 
 /// Nothing is written through a symbolic link: not the folder, not what stands in it.
@@ -277,14 +372,7 @@ fn killed_and_resumed() {
     std::fs::write(at.join("a.toml"), many + "[output]\nfigures = false\n").expect("written");
     assert_eq!(code(&voussoir(&["run", "a.toml", "--out", "whole", "--quiet"], &at)), 0);
     for round in 0..5 {
-        let mut run = Command::new(env!("CARGO_BIN_EXE_voussoir"))
-            .args(["run", "a.toml", "--out", "out", "--quiet", "--resume"])
-            .current_dir(&at)
-            .spawn()
-            .expect("the program starts");
-        std::thread::sleep(std::time::Duration::from_millis(20 + 37 * round));
-        drop(run.kill());
-        run.wait().expect("it has ended");
+        killed_after(1 + 20 * round, &["run", "a.toml", "--out", "out", "--resume", "--json"], &at);
     }
     assert_eq!(code(&voussoir(&["run", "a.toml", "--out", "out", "--quiet", "--resume"], &at)), 0);
     assert_eq!(timeless(&at.join("out")), timeless(&at.join("whole")));

@@ -52,7 +52,7 @@ fn run<'py>(
     wanted.dedup();
     let resolved = toml_text(study.as_ref())?;
     let work = |told: &Told| run_with_parts(study.as_ref(), wanted, jobs, told);
-    let RunOutput { files, table, remarks, certified, results: _ } = interruptible(py, progress, work)?;
+    let RunOutput { files, table, remarks, certified } = interruptible(py, progress, work)?;
     let dict = PyDict::new(py);
     let bytes = PyDict::new(py);
     for (name, content) in &files {

@@ -8,8 +8,7 @@ use super::print::{complain, say};
 use crate::bench::{Bench, BenchOptions, Measurement, Reference, bench, csv, error_chart, names, profile_chart, table};
 use crate::config::diagnostic::suggest;
 use crate::figures::format::{format_short, status_word};
-use crate::kinds::CasesOf;
-use crate::study::Study;
+use crate::study::{HELD, Study};
 use std::path::{Path, PathBuf};
 
 /// What is asked of `bench`.
@@ -31,8 +30,8 @@ pub struct BenchArguments {
 /// Measures a study's variants, or all solvers that can answer it, side by side.
 pub fn measure(path: &Path, arguments: &BenchArguments) -> Outcome {
     let loaded = files::study(path, &files::overrides(&arguments.set)?)?;
-    let Some(CasesOf::Held(study)) = loaded.cases() else {
-        let why = format_args!("{}: only studies with a scene and at most 5000 cases can be benched", path.display());
+    let Some(study) = loaded.with_cases().filter(|study| !study.cases.is_empty()) else {
+        let why = format_args!("{}: only studies with a scene and at most {HELD} cases can be benched", path.display());
         return Err(CliError::wrong_input(why));
     };
     let reference = arguments.reference.as_deref().map(|word| reference(study, word)).transpose()?;

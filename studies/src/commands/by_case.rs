@@ -4,77 +4,115 @@ use super::case_lines::{CaseLines, LineHead};
 use super::error::CliError;
 use super::folder::{JOURNAL, ResultFolder};
 use super::options::{Options, useful_jobs};
-use super::print::say;
 use super::progress::Progress;
-use crate::kinds::{Backing, BackingCount, CasesOf, kind, resumed};
+use crate::kinds::{Backing, BackingCount, read_stored_cases, resumed};
+use crate::results::CaseResult;
 use crate::results::case_with_path::{CaseWithPath, read_case};
 use crate::results::sealed_line::sealed;
+use crate::results::stored_path::PATH_PROOFS;
 use crate::side_by_side::{in_order, side_by_side, threads};
+use crate::study::Study;
+use crate::verify::path_proofs::PathProofLines;
+use crate::writers::files::OutputFile;
+use serde::Deserialize;
 use std::collections::BTreeSet;
-use std::io::Write;
+use std::io::{self, Write};
 use voussoir_core::limit::Status;
 
-/// Solves cases; with `--resume` only those that are not finished in the journal. The lines of all of them, in order.
+/// Cases of a folder after a run.
+pub struct Solved {
+    /// All of them, in order of id.
+    pub lines: CaseLines,
+    /// What a user should know of stored cases, line by line.
+    pub remarks: Vec<String>,
+    /// Number of stored cases that were not asked for and stay.
+    pub others: usize,
+}
+
+/// Solves cases; with `--resume` only those that are not finished in the folder. With `--case` the other cases of the
+/// folder stay.
 pub fn solve_into_journal(
-    cases: &CasesOf<'_>,
-    name: &str,
+    study: &Study,
     ids: &[usize],
     folder: &ResultFolder,
     options: &Options,
-) -> Result<CaseLines, CliError> {
+    progress: &Progress,
+) -> Result<Solved, CliError> {
     let path = folder.path().join(JOURNAL);
-    let journal = folder
-        .journal(options.resume)
-        .ok_or_else(|| CliError::unwritten(&path, "it is no regular file that can be written"))?;
-    let mut own = journal.try_clone().map_err(|error| CliError::of_file(&path, error))?;
-    let before = journal.metadata().map_err(|error| CliError::of_file(&path, error))?.len();
+    let unusable = |error: io::Error| CliError::of_file(&path, error);
+    let keep = options.case.is_some();
     let mut lines = CaseLines::default();
-    if options.resume {
-        let wanted = |id: usize| ids.binary_search(&id).is_ok();
-        let mut take = |head: &LineHead| wanted(head.id) && head.status != Status::Stalled && !makes_cases(cases);
-        let damaged = lines.add(&path, 0, &mut take).map_err(|error| CliError::of_file(&path, error))?;
-        let told = keep_proved(cases, &mut lines, damaged, useful_jobs(options.jobs));
-        let told = told.map_err(|error| CliError::of_file(&path, error))?;
-        if !options.quiet && !options.json {
-            told.into_iter().for_each(say);
-        }
+    let mut remarks = Vec::new();
+    let journal = folder.journal(options.resume || keep).map_err(unusable)?;
+    let mut own = journal.try_clone().map_err(unusable)?;
+    let before = journal.metadata().map_err(unusable)?.len();
+    let wanted = |id: usize| ids.binary_search(&id).is_ok();
+    if options.resume || keep {
+        // A finished case does not tell which cases its kind has made from it.
+        let resume = options.resume && !study.makes_cases();
+        let mut take = |head: &LineHead| match wanted(head.id) {
+            true => resume && head.status != Status::Stalled,
+            false => keep,
+        };
+        let damaged = lines.add(&path, 0, &mut take).map_err(unusable)?;
+        remarks = keep_proved(study, &mut lines, damaged, useful_jobs(options.jobs)).map_err(unusable)?;
     }
     let finished: BTreeSet<usize> = lines.ids().collect();
+    let others = finished.iter().filter(|id| !wanted(**id)).count();
     let rest: Vec<usize> = ids.iter().copied().filter(|id| !finished.contains(id)).collect();
-    let progress = Progress::new(name, options.shown(), Some(journal));
+    progress.writes(journal);
     let mut failed = None;
-    cases.solve(&rest, useful_jobs(options.jobs), &progress, &mut |case| {
+    study.solve(&rest, useful_jobs(options.jobs), progress, &mut |case| {
         // Those of the study are in the journal since they were answered.
-        if case.label.id >= cases.count() {
-            let line = sealed(&CaseWithPath(&case)).map_err(std::io::Error::from);
+        if case.label.id >= study.count() {
+            let line = sealed(&CaseWithPath(&case)).map_err(io::Error::from);
             failed = line.and_then(|line| own.write_all(&line)).err().or(failed.take());
         }
     });
-    progress.finish();
+    progress.written().map_err(unusable)?;
     if let Some(error) = failed {
-        return Err(CliError::of_file(&path, error));
+        return Err(unusable(error));
     }
-    lines.add(&path, before, &mut |_| true).map_err(|error| CliError::of_file(&path, error))?;
+    lines.add(&path, before, &mut |_| true).map_err(unusable)?;
     lines.sort();
-    Ok(lines)
+    Ok(Solved { lines, remarks, others })
+}
+
+/// Writes the cases of results.json as lines before those of the journal, so that all finished cases of a folder are in one
+/// file. Of a file that is no results.json, and of its part that cannot be read, nothing is taken.
+pub fn refill(folder: &ResultFolder) -> Result<(), CliError> {
+    let Some(results) = folder.opened("results.json") else { return Ok(()) };
+    let proofs = folder.opened(PATH_PROOFS).map(|file| Box::new(file) as Box<dyn io::Read>);
+    let mut paths = PathProofLines::new(proofs);
+    let mut aside = folder.aside(JOURNAL).map_err(CliError::of_io)?;
+    let mut written = Ok(());
+    let read = read_stored_cases(results, &mut |_, entry| {
+        let Ok(case) = CaseResult::deserialize(&entry) else { return };
+        if written.is_ok() {
+            let case = paths.attached_to(case);
+            written = sealed(&CaseWithPath(&case)).map_err(io::Error::from).and_then(|line| aside.write_all(&line));
+        }
+    });
+    drop(read);
+    let written = written.and_then(|()| match folder.opened(JOURNAL) {
+        Some(mut journal) => io::copy(&mut journal, &mut aside).map(drop),
+        None => Ok(()),
+    });
+    written.and_then(|()| Box::new(aside).done()).map_err(CliError::of_io)
 }
 
 /// Stored cases that are checked at once, for each of those side by side.
 const AT_ONCE: usize = 64;
 
 /// Checks each stored case of lines by its own proof, `jobs` of them side by side.
-pub fn backings(
-    cases: &CasesOf<'_>,
-    lines: &CaseLines,
-    jobs: usize,
-) -> std::io::Result<Vec<Result<Backing, Vec<String>>>> {
+pub fn backings(study: &Study, lines: &CaseLines, jobs: usize) -> io::Result<Vec<Result<Backing, Vec<String>>>> {
     let count = lines.ids().count();
     side_by_side(jobs, || {
         let mut found = Vec::with_capacity(count);
         for from in (0..count).step_by(AT_ONCE * threads()) {
             let texts = (from..count.min(from + AT_ONCE * threads())).map(|index| lines.line(index));
-            found.extend(in_order(&texts.collect::<std::io::Result<Vec<_>>>()?, |text| match read_case(text) {
-                Ok(case) => cases.backing(&case),
+            found.extend(in_order(&texts.collect::<io::Result<Vec<_>>>()?, |text| match read_case(text) {
+                Ok(case) => study.backing(&case),
                 Err(error) => Err(vec![error.to_string()]),
             }));
         }
@@ -82,33 +120,18 @@ pub fn backings(
     })
 }
 
-/// A line about damaged lines of a journal.
-pub fn damaged_lines(count: usize) -> String {
-    format!("{count} lines of the journal are damaged; their cases are solved again")
-}
-
-/// Keeps the lines of cases that hold by their own proof. Prints their number and the number of cases that are solved again.
-fn keep_proved(
-    cases: &CasesOf<'_>,
-    lines: &mut CaseLines,
-    damaged: usize,
-    jobs: usize,
-) -> std::io::Result<Vec<String>> {
+/// Keeps the lines of cases that hold by their own proof. Returns their number and the number of cases that are solved again,
+/// in words.
+fn keep_proved(study: &Study, lines: &mut CaseLines, damaged: usize, jobs: usize) -> io::Result<Vec<String>> {
     lines.sort();
-    let found = backings(cases, lines, jobs)?;
+    let found = backings(study, lines, jobs)?;
     lines.retain(&found.iter().map(Result::is_ok).collect::<Vec<_>>());
     let mut count = BackingCount::default();
     found.iter().flatten().for_each(|backing| count.add(*backing));
     let refused = found.iter().filter(|backing| backing.is_err()).count();
     let mut told = resumed(found.len() - refused, count, refused);
-    told.extend((damaged > 0).then(|| damaged_lines(damaged)));
+    told.extend(
+        (damaged > 0).then(|| format!("{damaged} lines of the journal are damaged; their cases are solved again")),
+    );
     Ok(told)
-}
-
-/// Whether the study's kind makes cases besides those of the file: then a finished case does not tell which of them are.
-fn makes_cases(cases: &CasesOf<'_>) -> bool {
-    match cases {
-        CasesOf::Held(study) => kind(&study.kind).is_some_and(|kind| kind.makes_cases()),
-        CasesOf::Streamed(_) => false,
-    }
 }

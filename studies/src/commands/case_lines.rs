@@ -1,10 +1,12 @@
 //! Finished cases as lines of files: found by id, none of them held.
 
 use crate::regular_file::open_regular;
-use crate::results::CaseResult;
 use crate::results::case_with_path::read_case;
 use crate::results::sealed_line::case_in;
+use crate::results::{FinishedCases, TakeCases};
+use crate::side_by_side::{in_order, threads};
 use serde::Deserialize;
+use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
@@ -14,6 +16,11 @@ use voussoir_core::limit::Status;
 const MAX_LINE_BYTES: u64 = 2 << 30;
 /// Greatest length of a file with lines.
 const MAX_FILE_BYTES: u64 = 1 << 40;
+
+/// Cases that are read at once, for each of those side by side.
+const AT_ONCE: usize = 64;
+/// Bytes of lines that are read at once.
+const BYTES_AT_ONCE: usize = 4 << 20;
 
 /// What tells one line from another.
 #[derive(Debug, Deserialize)]
@@ -119,14 +126,36 @@ impl CaseLines {
         Ok(line)
     }
 
-    /// The case of a line.
-    pub fn case(&self, index: usize) -> io::Result<CaseResult> {
-        Ok(read_case(&self.line(index)?)?)
+    /// Hands over the cases at these places, as many at once as are read together.
+    fn hand_over(&self, places: impl Iterator<Item = usize>, take: TakeCases) -> io::Result<()> {
+        let (mut texts, mut bytes) = (Vec::new(), 0);
+        let mut read = |texts: &mut Vec<Vec<u8>>| {
+            let cases = in_order(texts, |text| read_case(text)).into_iter().collect::<Result<Vec<_>, _>>()?;
+            texts.clear();
+            take(&cases)
+        };
+        for place in places {
+            let text = self.line(place)?;
+            bytes += text.len();
+            texts.push(text);
+            // Of long cases no more are held than are read side by side.
+            if texts.len() >= threads() && (bytes >= BYTES_AT_ONCE || texts.len() >= AT_ONCE * threads()) {
+                read(&mut texts)?;
+                bytes = 0;
+            }
+        }
+        if texts.is_empty() { Ok(()) } else { read(&mut texts) }
+    }
+}
+
+impl FinishedCases for CaseLines {
+    fn each(&self, take: TakeCases) -> io::Result<()> {
+        self.hand_over(0..self.places.len(), take)
     }
 
-    /// The cases in order, each read when it is asked for.
-    pub fn cases(&self) -> impl Iterator<Item = io::Result<CaseResult>> {
-        (0..self.places.len()).map(|index| self.case(index))
+    fn each_of(&self, ids: &BTreeSet<usize>, take: TakeCases) -> io::Result<()> {
+        let place = |id: &usize| self.places.binary_search_by_key(id, |place| place.id).ok();
+        self.hand_over(ids.iter().filter_map(place), take)
     }
 }
 

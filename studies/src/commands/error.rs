@@ -40,6 +40,11 @@ impl CliError {
         Self::no_access(format_args!("voussoir: {}: {why}", path.display()))
     }
 
+    /// An error of a file that names the file.
+    pub fn of_io(error: std::io::Error) -> Self {
+        Self::no_access(format_args!("voussoir: {error}"))
+    }
+
     /// A file that cannot be written.
     pub fn unwritten(path: &Path, why: impl Display) -> Self {
         Self::no_access(format_args!("voussoir: cannot write {}: {why}", path.display()))

@@ -1,39 +1,50 @@
-//! A result folder: one run at a time, files whole or not at all, nothing through symbolic links.
+//! A result folder: one run at a time, files whole or not at all, nothing through symbolic links. The list of files in
+//! results.json says which files are those of a run; all others stay as they are.
 
 use super::error::CliError;
+use crate::kinds::read_head;
 use crate::regular_file::open_regular;
-use crate::results::stored_path::PATH_PROOFS;
+use crate::writers::files::{Files, OutputFile};
+use serde_json::Value as Json;
+use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{BufWriter, ErrorKind, Read, Write};
-use std::path::{Path, PathBuf};
+use std::io::{self, BufWriter, ErrorKind, Read, Write};
+use std::path::{Component, Path, PathBuf};
 
 /// Cases that are finished, a line of JSON each, while a run is under way.
 pub const JOURNAL: &str = "unfinished.jsonl";
 /// Held by the run that writes; the operating system lets go of it however that run ends.
 const LOCK: &str = ".voussoir.lock";
+/// Files that every run writes; no list names them.
+const OWN: [&str; 2] = ["results.json", "resolved.toml"];
 /// Greatest length of a file that is read as a whole.
 const MAX_HELD_BYTES: u64 = 4 << 30;
-/// Folders that writers fill.
-const FILLED: [&str; 2] = ["figures", "vtu"];
+/// Greatest length of a file that is read from its beginning to its end.
+const MAX_BYTES: u64 = 1 << 40;
 
 /// The folder that a run writes into; no other run can, while this one lives.
 pub struct ResultFolder {
     path: PathBuf,
     lock: File,
+    /// Files of the run before this one; `None` if its results.json is gone, but not its study.
+    earlier: Option<BTreeSet<String>>,
 }
 
 /// Refuses a symbolic link, a pipe and a device. A path that does not exist passes.
-fn no_link(path: &Path) -> Result<(), CliError> {
+fn no_link(path: &Path) -> io::Result<()> {
+    let refused = |why: &str| Err(io::Error::other(format!("cannot write {}: {why}", path.display())));
     match fs::symlink_metadata(path) {
-        Ok(found) if !found.is_file() && !found.is_dir() && !found.file_type().is_symlink() => {
-            Err(CliError::unwritten(path, "it is neither a regular file nor a folder"))
+        Ok(found) if found.file_type().is_symlink() => {
+            refused("it is a symbolic link, and nothing is written through one; give the place it leads to")
         }
-        Ok(found) if found.file_type().is_symlink() => Err(CliError::unwritten(
-            path,
-            "it is a symbolic link, and nothing is written through one; give the place it leads to",
-        )),
+        Ok(found) if !found.is_file() && !found.is_dir() => refused("it is neither a regular file nor a folder"),
         _ => Ok(()),
     }
+}
+
+/// An error with the file that it is about.
+fn about(path: &Path) -> impl Fn(io::Error) -> io::Error {
+    move |error| io::Error::new(error.kind(), format!("cannot write {}: {error}", path.display()))
 }
 
 /// Names of the entries of a folder, in order; none where it cannot be read.
@@ -49,18 +60,13 @@ fn locked(path: &Path) -> Result<File, CliError> {
     let place = path.join(LOCK);
     // A run that ends removes the file: a lock on what is no longer there is none.
     for _ in 0..100 {
-        let file = OpenOptions::new()
-            .create(true)
-            .append(true)
-            .open(&place)
-            .map_err(|error| CliError::unwritten(&place, error))?;
+        let open = OpenOptions::new().create(true).append(true).open(&place);
+        let file = open.map_err(|error| CliError::unwritten(&place, error))?;
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {
-                return Err(CliError::unwritten(
-                    path,
-                    "another run is writing into it; wait for it, or give another --out",
-                ));
+                let why = "another run is writing into it; wait for it, or give another --out";
+                return Err(CliError::unwritten(path, why));
             }
             // A file system without locks.
             Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Unsupported => {}
@@ -85,20 +91,32 @@ fn is_same(_: &File, place: &Path) -> bool {
     place.exists()
 }
 
+/// The files that the results.json of a folder names: relative, below the folder, and not those of every run. `None` if there
+/// is no such file beside the study of an earlier run.
+fn listed(path: &Path) -> Option<BTreeSet<String>> {
+    let head = open_regular(&path.join("results.json"), MAX_BYTES).map(read_head).unwrap_or_default();
+    if !head.contains_key("files") && path.join("resolved.toml").exists() {
+        return None;
+    }
+    let names = head.get("files").and_then(Json::as_array).into_iter().flatten().filter_map(Json::as_str);
+    let below = |name: &&str| {
+        let inside = Path::new(name).components().all(|part| matches!(part, Component::Normal(_)));
+        inside && !name.is_empty() && !OWN.contains(name) && ![JOURNAL, LOCK].contains(name)
+    };
+    Some(names.filter(below).map(String::from).collect())
+}
+
 impl ResultFolder {
     /// Opens a folder for a run, and makes it if need be.
     pub fn open(path: &Path) -> Result<Self, CliError> {
-        no_link(path)?;
+        no_link(path).map_err(CliError::of_io)?;
         fs::create_dir_all(path).map_err(|error| CliError::unwritten(path, error))?;
-        for name in entries(path) {
-            no_link(&path.join(&name))?;
-        }
-        for folder in FILLED {
-            for name in entries(&path.join(folder)) {
-                no_link(&path.join(folder).join(name))?;
-            }
-        }
-        Ok(ResultFolder { path: path.into(), lock: locked(path)? })
+        entries(path).iter().try_for_each(|name| no_link(&path.join(name))).map_err(CliError::of_io)?;
+        let lock = locked(path)?;
+        let folder = ResultFolder { path: path.into(), lock, earlier: listed(path) };
+        // Found now, not after hours of solving.
+        folder.earlier.iter().flatten().try_for_each(|name| folder.no_link_to(name)).map_err(CliError::of_io)?;
+        Ok(folder)
     }
 
     /// Where it is.
@@ -114,6 +132,11 @@ impl ResultFolder {
         if read.is_ok() { text } else { String::new() }
     }
 
+    /// A file in it; `None` if it cannot be opened.
+    pub fn opened(&self, name: &str) -> Option<File> {
+        open_regular(&self.path.join(name), MAX_BYTES).ok()
+    }
+
     /// Makes a part that is not whole the journal of its run, unless there is one.
     pub fn part_becomes_journal(&self, part: &str) {
         let journal = self.path.join(JOURNAL);
@@ -122,35 +145,32 @@ impl ResultFolder {
         }
     }
 
+    /// Refuses a symbolic link at a file or on the way to it.
+    fn no_link_to(&self, name: &str) -> io::Result<()> {
+        let mut place = self.path.clone();
+        Path::new(name).components().try_for_each(|part| {
+            place.push(part);
+            no_link(&place)
+        })
+    }
+
     /// Writes a file whole or not at all; folders on the way are made.
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), CliError> {
-        let mut file = self.aside(name)?;
-        let written = file.write_all(bytes);
-        file.done(written)
+        Files::write(self, name, bytes).map_err(CliError::of_io)
     }
 
     /// Begins a file that gets its name when it is done; folders on the way are made.
-    pub fn aside(&self, name: &str) -> Result<Aside, CliError> {
+    pub fn aside(&self, name: &str) -> io::Result<Aside> {
         let place = self.path.join(name);
-        let mut folder = self.path.clone();
-        for part in Path::new(name).parent().into_iter().flat_map(Path::components) {
-            folder.push(part);
-            no_link(&folder)?;
-            match fs::create_dir(&folder) {
-                Err(error) if error.kind() != ErrorKind::AlreadyExists => {
-                    return Err(CliError::unwritten(&folder, error));
-                }
-                _ => {}
-            }
+        self.no_link_to(name)?;
+        if let Some(folder) = place.parent() {
+            fs::create_dir_all(folder).map_err(about(folder))?;
         }
-        no_link(&place)?;
         let aside = self.path.join(format!("{name}.tmp"));
         // Left behind by a run that was killed; a link is removed, not followed.
         drop(fs::remove_file(&aside));
-        match OpenOptions::new().write(true).create_new(true).open(&aside) {
-            Ok(file) => Ok(Aside { file: BufWriter::with_capacity(1 << 16, file), aside, place }),
-            Err(error) => Err(CliError::unwritten(&place, error)),
-        }
+        let file = OpenOptions::new().write(true).create_new(true).open(&aside).map_err(about(&place))?;
+        Ok(Aside { file: BufWriter::with_capacity(1 << 16, file), aside, place })
     }
 
     /// Removes a file that a run before this one has left.
@@ -158,49 +178,48 @@ impl ResultFolder {
         drop(fs::remove_file(self.path.join(name)));
     }
 
-    /// Opens the journal; what a run before it left stays if `keep`. `None` where it cannot be written: that costs
-    /// only the chance to go on after an interruption.
-    pub fn journal(&self, keep: bool) -> Option<File> {
+    /// Opens the journal; what a run before it left stays if `keep`.
+    pub fn journal(&self, keep: bool) -> io::Result<File> {
         let place = self.path.join(JOURNAL);
         if !keep {
             drop(fs::remove_file(&place));
         }
-        no_link(&place).ok()?;
-        OpenOptions::new().create(true).append(true).open(&place).ok()
+        no_link(&place)?;
+        OpenOptions::new().create(true).append(true).open(&place)
     }
 
-    /// Removes what earlier runs have left: the journal, and files that writers name as they please but did not
-    /// write this time.
-    pub fn remove_left_over(&self, written: &[(String, Vec<u8>)]) {
-        self.remove(JOURNAL);
-        for name in named_by_writers(&self.path) {
-            if written.iter().all(|(kept, _)| *kept != name) {
-                drop(fs::remove_file(self.path.join(&name)));
-            }
+    /// Makes room for the files of a run: those that the run before this one has written and this one does not write are
+    /// removed. A file that is there and is not named by results.json is somebody's own; without results.json the two cannot
+    /// be told apart, and nothing is removed.
+    ///
+    /// # Errors
+    /// If a file of this run would overwrite such a file.
+    pub fn make_room(&self, names: &[String]) -> io::Result<()> {
+        let Some(earlier) = &self.earlier else { return Ok(()) };
+        let foreign = |name: &&String| !earlier.contains(*name) && self.path.join(name).exists();
+        if let Some(name) = names.iter().find(foreign) {
+            return Err(io::Error::other(format!(
+                "cannot write {}: no run has written the file that is there; move it away or give another --out (with \
+                 --resume, finished cases are not solved again)",
+                self.path.join(name).display()
+            )));
         }
-        FILLED.iter().for_each(|folder| drop(fs::remove_dir(self.path.join(folder))));
+        for name in earlier.iter().filter(|name| !names.contains(name)) {
+            self.remove(name);
+            let folders = Path::new(name).ancestors().skip(1).filter(|folder| *folder != Path::new(""));
+            // Those that are not empty stay.
+            folders.for_each(|folder| drop(fs::remove_dir(self.path.join(folder))));
+        }
+        // Left behind by a run that was killed while it wrote.
+        earlier.iter().for_each(|name| self.remove(&format!("{name}.tmp")));
+        Ok(())
     }
 }
 
-/// Files of a folder that have names which writers give, but for results.json.
-pub fn named_by_writers(path: &Path) -> Vec<String> {
-    let top = [
-        "results.csv",
-        "results.parquet",
-        "curve.csv",
-        "comparison.csv",
-        "joints.csv",
-        "sensitivities.csv",
-        "report.html",
-        PATH_PROOFS,
-    ];
-    let top = top.map(String::from);
-    let filled = FILLED.into_iter().flat_map(|folder| {
-        let names = entries(&path.join(folder)).into_iter().map(move |name| format!("{folder}/{name}"));
-        names.collect::<Vec<_>>()
-    });
-    let there = |name: &String| path.join(name).exists();
-    top.into_iter().filter(there).chain(filled.filter(|name| of_a_writer(name))).collect()
+impl Files for ResultFolder {
+    fn begin(&self, name: &str) -> io::Result<Option<Box<dyn OutputFile + '_>>> {
+        Ok(Some(Box::new(self.aside(name)?)))
+    }
 }
 
 /// A file under another name until it is whole.
@@ -211,40 +230,33 @@ pub struct Aside {
 }
 
 impl Write for Aside {
-    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        self.file.write(bytes)
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes).map_err(about(&self.place))
     }
 
     // Text comes in pieces of a few bytes.
     #[inline]
-    fn write_all(&mut self, bytes: &[u8]) -> std::io::Result<()> {
-        self.file.write_all(bytes)
+    fn write_all(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.file.write_all(bytes).map_err(about(&self.place))
     }
 
-    fn flush(&mut self) -> std::io::Result<()> {
-        self.file.flush()
-    }
-}
-
-impl Aside {
-    /// Gives the file its name if all was `written`, else removes it and says why.
-    pub fn done(mut self, written: std::io::Result<()>) -> Result<(), CliError> {
-        let attempt = written.and_then(|()| self.file.flush()).and_then(|()| {
-            self.file.get_ref().sync_data()?;
-            fs::rename(&self.aside, &self.place)
-        });
-        attempt.map_err(|error| {
-            drop(fs::remove_file(&self.aside));
-            CliError::unwritten(&self.place, error)
-        })
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush().map_err(about(&self.place))
     }
 }
 
-impl ResultFolder {
-    /// Removes what earlier runs have drawn or tabulated, but for results.json and results.csv.
-    pub fn remove_drawn(&self) {
-        let csv = ("results.csv".to_string(), Vec::new());
-        self.remove_left_over(&[csv]);
+impl OutputFile for Aside {
+    fn done(mut self: Box<Self>) -> io::Result<()> {
+        self.flush()?;
+        let named = self.file.get_ref().sync_data().and_then(|()| fs::rename(&self.aside, &self.place));
+        named.map_err(about(&self.place))
+    }
+}
+
+impl Drop for Aside {
+    /// A file that was not done is removed.
+    fn drop(&mut self) {
+        drop(fs::remove_file(&self.aside));
     }
 }
 
@@ -252,23 +264,5 @@ impl Drop for ResultFolder {
     fn drop(&mut self) {
         drop(fs::remove_file(self.path.join(LOCK)));
         drop(self.lock.unlock());
-    }
-}
-
-/// Whether a file in a folder that writers fill has a name of theirs; what a user has put there stays.
-fn of_a_writer(name: &str) -> bool {
-    let (folder, file) = name.split_once('/').unwrap_or_default();
-    let stem = file.strip_suffix(".tmp").unwrap_or(file);
-    match folder {
-        "figures" => stem.strip_suffix(".svg").is_some_and(|stem| {
-            let numbered = |start: &str| {
-                stem.strip_prefix(start).and_then(|rest| rest.chars().next()).is_some_and(|c| c.is_ascii_digit())
-            };
-            ["sweep", "curve", "map", "comparison", "envelope", "moving-load", "path"].contains(&stem)
-                || numbered("case-")
-                || numbered("curve-")
-                || stem.starts_with("chart-")
-        }),
-        _ => stem.starts_with("case-") && stem.ends_with(".vtu") || ["cases.pvd", "README.txt"].contains(&stem),
     }
 }

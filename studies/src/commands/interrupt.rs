@@ -1,6 +1,6 @@
 //! Ctrl-C: what is finished stays, and how to go on is said.
 
-use super::journal::{Journal, say_unwritten};
+use super::journal::Journal;
 use super::print::complain;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, Weak};
@@ -25,7 +25,7 @@ pub fn catch(arguments: &[String]) {
         // Held until the end: what is finished from now on is not counted.
         let mut journal = journal.as_ref().and_then(|own| own.lock().ok());
         if let Some(Err(error)) = journal.as_mut().and_then(|own| own.as_mut()).map(Journal::write) {
-            say_unwritten(&error);
+            complain(format_args!("voussoir: the journal of finished cases cannot be written: {error}"));
         }
         let (finished, all) = (FINISHED.load(Ordering::Relaxed), ALL.load(Ordering::Relaxed));
         let command = COMMAND.lock().ok().and_then(|own| own.clone()).unwrap_or_default();

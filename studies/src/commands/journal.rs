@@ -1,6 +1,5 @@
 //! The journal of finished cases, with which `--resume` goes on.
 
-use super::print::complain;
 use std::fs::File;
 use std::io::{Result, Write};
 use std::time::{Duration, Instant};
@@ -10,11 +9,6 @@ use std::time::{Duration, Instant};
 const WAITING: Duration = Duration::from_millis(50);
 /// Bytes of lines that do not wait.
 const MUCH: usize = 1 << 16;
-
-/// Says that the journal cannot be written.
-pub fn say_unwritten(error: &std::io::Error) {
-    complain(format_args!("voussoir: the journal of finished cases cannot be written: {error}"));
-}
 
 /// Finished cases, a line each.
 #[derive(Debug)]

@@ -2,17 +2,18 @@
 
 use super::by_case::backings;
 use super::case_lines::CaseLines;
-use super::error::{CliError, Outcome, Verdict};
+use super::error::{CliError, Outcome};
 use super::files;
 use super::folder::{JOURNAL, ResultFolder};
 use super::options::useful_jobs;
+use super::outputs::{tally, verdict, write_outputs};
 use super::print::say;
 use super::shard::{PART, PartEnd, PartHead, study_hash};
-use super::stream;
-use super::today::today;
 use crate::caught::{caught, silence_caught_panics};
-use crate::kinds::{BackingCount, CasesOf, RunRequest};
+use crate::kinds::BackingCount;
 use crate::regular_file::open_regular;
+use crate::side_by_side::side_by_side;
+use crate::study::Study;
 use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -62,7 +63,7 @@ fn merged(dirs: &[PathBuf], options: &MergeOptions) -> Outcome {
     if study_hash(study.resolved()) != first.head.study_hash {
         return Err(wrong(format!("{}: resolved.toml is not that of its cases", first.folder.display())));
     }
-    let cases = study.cases().ok_or_else(|| wrong("this kind of study is not solved in parts"))?;
+    let cases = study.with_cases().ok_or_else(|| wrong("this kind of study is not solved in parts"))?;
     let doubles = lines.sort();
     if !doubles.is_empty() {
         return Err(wrong(format!("{} stand in two parts", named(&doubles))));
@@ -74,11 +75,11 @@ fn merged(dirs: &[PathBuf], options: &MergeOptions) -> Outcome {
             "{} of {} are missing: {}",
             missing.len(),
             study.count(),
-            hint(&parts, &missing, &cases)
+            hint(&parts, &missing, cases)
         )));
     }
     let jobs = useful_jobs(options.jobs);
-    let count = confirmed(&cases, &lines, jobs)?;
+    let count = confirmed(cases, &lines, jobs)?;
     let out = match (&options.out, dirs) {
         (Some(out), _) => out.clone(),
         (None, [dir]) if !dir.join(PART).is_file() => dir.clone(),
@@ -86,27 +87,16 @@ fn merged(dirs: &[PathBuf], options: &MergeOptions) -> Outcome {
     };
     let text = files::read(&first.folder.join("resolved.toml"))?;
     let folder = ResultFolder::open(&out)?;
-    folder.write("resolved.toml", text.as_bytes())?;
     if !options.quiet {
         say(format!("{} cases: {count}", lines.ids().count()));
     }
-    let study = match cases {
-        CasesOf::Streamed(sweep) => return stream::finish(sweep, &folder, &lines, None, options.quiet),
-        CasesOf::Held(study) => study,
-    };
-    let results = lines.cases().collect::<Result<Vec<_>, _>>().map_err(|error| CliError::of_file(&out, error))?;
-    let (version, date) = (env!("CARGO_PKG_VERSION").to_string(), Some(today()));
-    let output =
-        study.output_of(&RunRequest { version, date, jobs, quiet: options.quiet, ..Default::default() }, results);
-    for (name, bytes) in &output.files {
-        folder.write(name, bytes)?;
-    }
-    folder.remove_left_over(&output.files);
+    let write = || write_outputs(cases, &folder, &text, &lines, (jobs, options.quiet));
+    let made = side_by_side(jobs, write)?;
     if !options.quiet {
-        say(output.table);
+        say(made.table + &tally(&made.totals, &lines));
         say(format!("{} parts confirmed and merged; results in {}", parts.len(), out.display()));
     }
-    Ok(Verdict::of(output.certified))
+    Ok(verdict(&made.totals))
 }
 
 /// The folders of parts in a folder, or the folder itself.
@@ -198,7 +188,7 @@ fn named(ids: &[usize]) -> String {
 }
 
 /// Which cases are missing, and in which part they would be.
-fn hint(parts: &[Part], missing: &[usize], cases: &CasesOf<'_>) -> String {
+fn hint(parts: &[Part], missing: &[usize], cases: &Study) -> String {
     let of = parts.first().map_or(1, |part| part.head.shard.of);
     let there: BTreeSet<usize> = parts.iter().map(|part| part.head.shard.number).collect();
     let absent: Vec<String> = (1..=of).filter(|number| !there.contains(number)).map(|n| format!("{n}/{of}")).collect();
@@ -217,7 +207,7 @@ fn hint(parts: &[Part], missing: &[usize], cases: &CasesOf<'_>) -> String {
 }
 
 /// Every case must be the study's own, and hold by its own proof.
-fn confirmed(cases: &CasesOf<'_>, lines: &CaseLines, jobs: usize) -> Result<BackingCount, CliError> {
+fn confirmed(cases: &Study, lines: &CaseLines, jobs: usize) -> Result<BackingCount, CliError> {
     let found = backings(cases, lines, jobs).map_err(|error| CliError::of_file(Path::new(PART), error))?;
     let (mut count, mut findings) = (BackingCount::default(), Vec::new());
     for (id, backing) in lines.ids().zip(found) {

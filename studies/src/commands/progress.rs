@@ -1,16 +1,16 @@
 //! Progress on a terminal, and the journal of finished cases for `--resume`.
 
 use super::interrupt;
-use super::journal::{Journal, say_unwritten};
+use super::journal::Journal;
 use super::print::say_data;
 use crate::results::CaseResult;
 use crate::results::case_with_path::CaseWithPath;
 use crate::results::sealed_line::sealed;
 use crate::solve::{Observer, PathProgress};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use serde_json::Value as Json;
 use std::collections::BTreeSet;
 use std::fs::File;
+use std::io::{Error, Result};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
@@ -35,6 +35,8 @@ pub struct Progress {
     /// When a path was last shown, in tenths of a second since the start.
     shown: AtomicU64,
     journal: Arc<Mutex<Option<Journal>>>,
+    /// The reason why a finished case could not be stored.
+    unwritten: Mutex<Option<Error>>,
     /// Ids of the cases whose lines are on standard output.
     said: Mutex<BTreeSet<usize>>,
 }
@@ -43,50 +45,68 @@ pub struct Progress {
 const LONG: u64 = 10;
 
 impl Progress {
-    /// Progress of the study called `name`; finished cases are added to the file `journal`.
-    pub fn new(name: &str, shown_as: Shown, journal: Option<File>) -> Self {
-        let journal = Arc::new(Mutex::new(journal.map(Journal::new)));
-        interrupt::keeps(&journal);
+    /// Progress of the study called `name`.
+    pub fn new(name: &str, shown_as: Shown) -> Self {
         Progress {
             bar: ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden()),
             shown_as,
             name: name.into(),
             started: Instant::now(),
             shown: AtomicU64::new(0),
-            journal,
+            journal: Arc::default(),
+            unwritten: Mutex::default(),
             said: Mutex::default(),
         }
     }
 
-    /// Says as lines those cases of a results.json that were not answered while it looked on: finished earlier, made by
-    /// the study's kind, or of a kind that answers none.
-    pub fn say_others(&self, results: &[u8]) {
-        let results: Json = serde_json::from_slice(results).unwrap_or_default();
-        let said = self.said.lock().map(|said| said.clone()).unwrap_or_default();
-        let known = |case: &&Json| case["id"].as_u64().is_none_or(|id| !said.contains(&(id as usize)));
-        results["cases"].as_array().into_iter().flatten().filter(known).for_each(|case| say_data(&case.to_string()));
+    /// Adds finished cases to this file from now on.
+    pub fn writes(&self, file: File) {
+        if let Ok(mut journal) = self.journal.lock() {
+            *journal = Some(Journal::new(file));
+        }
+        interrupt::keeps(&self.journal);
     }
 
-    /// Takes the bar off the terminal and writes what waits to be written to the journal.
-    pub fn finish(&self) {
+    /// Writes the finished cases that are still held.
+    ///
+    /// # Errors
+    /// If a finished case could not be written.
+    pub fn written(&self) -> Result<()> {
         self.keep(Journal::write);
+        self.unwritten.lock().ok().and_then(|mut error| error.take()).map_or(Ok(()), Err)
+    }
+
+    /// Prints a case as a line, unless it was printed when it was answered.
+    pub fn say_other(&self, case: &CaseResult) {
+        let said = self.said.lock().is_ok_and(|said| said.contains(&case.label.id));
+        if !said {
+            say_data(&serde_json::to_string(case).unwrap_or_default());
+        }
+    }
+
+    /// Takes the bar off the terminal.
+    pub fn finish(&self) {
         self.bar.finish_and_clear();
     }
 }
 
 impl Progress {
-    /// Does something to the journal, which is given up where it fails.
-    fn keep(&self, what: impl FnOnce(&mut Journal) -> std::io::Result<()>) {
+    /// Does something to the journal; its first error ends the run.
+    fn keep(&self, what: impl FnOnce(&mut Journal) -> Result<()>) {
         let Ok(mut journal) = self.journal.lock() else { return };
-        if let Some(Err(error)) = journal.as_mut().map(what) {
-            // It costs only the chance to go on after an interruption.
-            say_unwritten(&error);
-            *journal = None;
+        if let Some(Err(error)) = journal.as_mut().map(what)
+            && let Ok(mut unwritten) = self.unwritten.lock()
+        {
+            unwritten.get_or_insert(error);
         }
     }
 }
 
 impl Observer for Progress {
+    fn cancelled(&self) -> bool {
+        self.unwritten.lock().is_ok_and(|error| error.is_some())
+    }
+
     fn begins(&self, cases: usize) {
         self.bar.set_length(cases as u64);
         interrupt::begins(cases);

@@ -1,23 +1,23 @@
 //! `voussoir run`.
 
-use super::by_case::damaged_lines;
-use super::case_lines::CaseLines;
+use super::by_case::{refill, solve_into_journal};
 use super::error::{CliError, Outcome, Verdict, joined};
 use super::files;
 use super::folder::{JOURNAL, ResultFolder};
 use super::open::open;
 use super::options::{Options, useful_jobs};
+use super::outputs::{tally, verdict, write_outputs};
 use super::print::{say, say_data};
 use super::progress::Progress;
 use super::today::today;
-use super::{interrupt, shard, stream};
-use crate::kinds::{CasesOf, LoadedStudy, RunRequest};
+use super::{interrupt, shard};
+use crate::kinds::{LoadedStudy, RunRequest, one_case};
 use crate::regular_file::open_regular;
-use crate::results::stored_path::PATH_PROOFS;
+use crate::results::FinishedCases;
 use crate::side_by_side::side_by_side;
-use crate::solve::label_of;
-use crate::writers::results_json::write_results;
-use serde_json::json;
+use crate::solve::{Observer, label_of};
+use crate::study::Study;
+use serde_json::{Value as Json, json};
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
@@ -123,7 +123,7 @@ fn wanted(study: &dyn LoadedStudy, case: Option<usize>) -> Result<Vec<usize>, Cl
 
 /// Prints the label of each case as a line of JSON.
 fn list(study: &dyn LoadedStudy, options: &Options) -> Outcome {
-    let Some(cases) = study.cases() else {
+    let Some(cases) = study.with_cases() else {
         (0..study.count()).for_each(|id| say_data(&json!({ "study": study.name(), "id": id }).to_string()));
         return Ok(Verdict::Proved);
     };
@@ -143,25 +143,54 @@ fn run_one(study: &dyn LoadedStudy, path: &Path, dir: &Path, options: &Options) 
     })?;
     let resolved = format!("{SOURCE}{}\n{resolved}", path.display().to_string().replace(['\n', '\r'], " "));
     let wanted = wanted(study, options.case)?;
-    if let Some(shard) = options.shard {
-        return shard::run(study, shard, dir, &resolved, options);
+    match (options.shard, study.with_cases()) {
+        (Some(shard), _) => shard::run(study, shard, dir, &resolved, options),
+        (None, Some(study)) => run_cases(study, &wanted, dir, &resolved, options),
+        (None, None) => run_whole(study, wanted, dir, &resolved, options),
     }
-    if let Some(CasesOf::Streamed(sweep)) = study.cases() {
-        return stream::run(sweep, dir, &resolved, options);
-    }
-    run_held(study, wanted, dir, &resolved, options)
 }
 
-/// Finished cases of the journal, a line each, and the number of damaged lines.
-fn finished_cases(folder: &ResultFolder) -> (String, usize) {
-    let mut lines = CaseLines::default();
-    let damaged = lines.add(&folder.path().join(JOURNAL), 0, &mut |_| true).unwrap_or(0);
-    let texts = (0..lines.ids().count()).filter_map(|index| String::from_utf8(lines.line(index).ok()?).ok());
-    (texts.map(|text| text + "\n").collect(), damaged)
+/// Runs a study whose cases are stored one by one.
+fn run_cases(study: &Study, wanted: &[usize], dir: &Path, resolved: &str, options: &Options) -> Outcome {
+    let folder = ResultFolder::open(dir)?;
+    if options.resume || options.case.is_some() {
+        refill(&folder)?;
+    }
+    let progress = Progress::new(&study.name, options.shown());
+    let solved = solve_into_journal(study, wanted, &folder, options, &progress)?;
+    progress.phase("writing and drawing");
+    let quiet = options.quiet || options.json;
+    let made = write_outputs(study, &folder, resolved, &solved.lines, (options.jobs, quiet))?;
+    progress.finish();
+    if options.json {
+        let said = solved.lines.each(&mut |cases| {
+            cases.iter().for_each(|case| progress.say_other(case));
+            Ok(())
+        });
+        said.map_err(|error| CliError::of_file(folder.path(), error))?;
+    } else if !options.quiet {
+        say(made.table + &tally(&made.totals, &solved.lines));
+        solved.remarks.iter().for_each(say);
+        options
+            .case
+            .iter()
+            .filter(|_| study.count() > 1)
+            .for_each(|id| say(one_case(*id, study.count(), solved.others)));
+        say(format!("results in {}", folder.path().display()));
+    }
+    open_report(&folder, &made.names, options);
+    Ok(verdict(&made.totals))
 }
 
-/// Runs a study whose cases are held, all at once.
-fn run_held(study: &dyn LoadedStudy, wanted: Vec<usize>, dir: &Path, resolved: &str, options: &Options) -> Outcome {
+/// Opens the report if that is asked for.
+fn open_report(folder: &ResultFolder, names: &[String], options: &Options) {
+    if options.open && names.iter().any(|name| name == "report.html") {
+        open(folder.path().join("report.html"));
+    }
+}
+
+/// Runs a study of a kind that writes its files at once, after those that it reports on.
+fn run_whole(study: &dyn LoadedStudy, wanted: Vec<usize>, dir: &Path, resolved: &str, options: &Options) -> Outcome {
     let folder = ResultFolder::open(dir)?;
     let (mut verdict, mut parts) = (Verdict::Proved, Vec::new());
     for part in study.parts() {
@@ -169,55 +198,39 @@ fn run_held(study: &dyn LoadedStudy, wanted: Vec<usize>, dir: &Path, resolved: &
         verdict = verdict.max(run_one(part.study.as_ref(), Path::new(&part.file), &own, options)?);
         parts.push(files::read(&own.join("results.json"))?);
     }
-    let keep = options.case.is_some();
-    let mut damaged = 0;
-    let stored = (options.resume || keep).then(|| {
-        let (lines, found) = finished_cases(&folder);
-        damaged = found;
-        [folder.read("results.json"), folder.read(PATH_PROOFS), lines]
-    });
-    let progress = Progress::new(study.name(), options.shown(), folder.journal(options.resume || keep));
+    let progress = Progress::new(study.name(), options.shown());
     let request = RunRequest {
         wanted,
         jobs: useful_jobs(options.jobs),
-        resume: options.resume,
-        keep,
-        stored,
+        kept: options.case.map(|_| folder.read("results.json")),
         version: env!("CARGO_PKG_VERSION").into(),
         date: Some(today()),
         parts,
         quiet: options.quiet || options.json,
-        // Lines of JSON are read from the text.
-        results_apart: !options.json,
     };
     let output = study.run(&request, &progress);
     progress.finish();
-    folder.write("resolved.toml", resolved.as_bytes())?;
     // What is worth most comes first: a disk may be full.
-    if let Some(results) = &output.results {
-        let mut file = folder.aside("results.json")?;
-        let written = write_results(&mut file, results).map(drop);
-        file.done(written)?;
-    }
     let (results, others): (Vec<_>, Vec<_>) = output.files.iter().partition(|(name, _)| name == "results.json");
-    for (name, bytes) in results.into_iter().chain(others) {
+    let names: Vec<String> = others.iter().map(|(name, _)| name.clone()).collect();
+    folder.make_room(&names).map_err(CliError::of_io)?;
+    for (name, bytes) in results.iter() {
         folder.write(name, bytes)?;
     }
-    folder.remove_left_over(&output.files);
+    folder.write("resolved.toml", resolved.as_bytes())?;
+    for (name, bytes) in others {
+        folder.write(name, bytes)?;
+    }
+    folder.remove(JOURNAL);
     if options.json {
-        output
-            .files
-            .iter()
-            .filter(|(name, _)| name == "results.json")
-            .for_each(|(_, bytes)| progress.say_others(bytes));
+        let results: Json =
+            results.first().and_then(|(_, bytes)| serde_json::from_slice(bytes).ok()).unwrap_or_default();
+        results["cases"].as_array().into_iter().flatten().for_each(|case| say_data(&case.to_string()));
     } else if !options.quiet {
         say(output.table);
-        (damaged > 0).then(|| damaged_lines(damaged)).iter().for_each(say);
         output.remarks.iter().for_each(say);
         say(format!("results in {}", folder.path().display()));
     }
-    if options.open && output.files.iter().any(|(name, _)| name == "report.html") {
-        open(folder.path().join("report.html"));
-    }
+    open_report(&folder, &names, options);
     Ok(verdict.max(Verdict::of(output.certified)))
 }

@@ -9,8 +9,11 @@ use super::error::{CliError, Outcome, Verdict};
 use super::folder::{JOURNAL, ResultFolder};
 use super::options::{Options, Shard, useful_jobs};
 use super::print::say;
-use crate::kinds::{CasesOf, LoadedStudy};
+use super::progress::Progress;
+use crate::kinds::LoadedStudy;
 use crate::results::sealed_line::{checksum, sealed_text};
+use crate::study::Study;
+use crate::writers::files::OutputFile;
 use serde::{Deserialize, Serialize};
 use std::io::Write;
 use std::path::Path;
@@ -51,15 +54,15 @@ pub fn ids_of(study: &dyn LoadedStudy, shard: Option<Shard>) -> Result<Vec<usize
 }
 
 /// The cases of a study that can be solved in parts.
-fn cases_of(study: &dyn LoadedStudy) -> Result<CasesOf<'_>, CliError> {
-    study.cases().ok_or_else(|| {
+fn cases_of(study: &dyn LoadedStudy) -> Result<&Study, CliError> {
+    study.with_cases().ok_or_else(|| {
         let words = "is of a kind that cannot be solved in parts; it costs little";
         CliError::wrong_input(format_args!("--shard: the study \"{}\" {words}", study.name()))
     })
 }
 
 /// Returns true if a part holds all its cases, no line is damaged and every case holds by its own proof.
-fn finished(path: &Path, cases: &CasesOf<'_>, count: usize, jobs: usize) -> bool {
+fn finished(path: &Path, cases: &Study, count: usize, jobs: usize) -> bool {
     let mut lines = CaseLines::default();
     let whole = lines.add(path, 0, &mut |_| true).is_ok_and(|damaged| damaged == 0);
     whole
@@ -82,7 +85,7 @@ pub fn run(study: &dyn LoadedStudy, shard: Shard, dir: &Path, resolved: &str, op
     };
     let first = serde_json::to_string(&head).unwrap_or_default();
     if options.resume && folder.read(PART).lines().next() == Some(first.as_str()) {
-        if finished(&path, &cases, ids.len(), useful_jobs(options.jobs)) {
+        if finished(&path, cases, ids.len(), useful_jobs(options.jobs)) {
             if !options.quiet {
                 say(format!("{} is finished", path.display()));
             }
@@ -93,13 +96,15 @@ pub fn run(study: &dyn LoadedStudy, shard: Shard, dir: &Path, resolved: &str, op
     }
     folder.remove(PART);
     folder.write("resolved.toml", resolved.as_bytes())?;
-    let lines = solve_into_journal(&cases, study.name(), &ids, &folder, options)?;
-    let mut part = folder.aside(PART)?;
+    let progress = Progress::new(study.name(), options.shown());
+    let solved = solve_into_journal(cases, &ids, &folder, options, &progress)?;
+    progress.finish();
+    let mut part = folder.aside(PART).map_err(CliError::of_io)?;
     let (mut count, mut certified) = (0, 0);
     let mut copy = || -> std::io::Result<()> {
         writeln!(part, "{first}")?;
-        for index in 0..lines.ids().count() {
-            let line = lines.line(index)?;
+        for index in 0..solved.lines.ids().count() {
+            let line = solved.lines.line(index)?;
             let head: super::case_lines::LineHead = serde_json::from_slice(&line)?;
             certified += usize::from(head.certificate.passed);
             count += 1;
@@ -107,10 +112,10 @@ pub fn run(study: &dyn LoadedStudy, shard: Shard, dir: &Path, resolved: &str, op
         }
         writeln!(part, "{}", serde_json::to_string(&PartEnd { cases_in_part: count })?)
     };
-    let copied = copy();
-    part.done(copied)?;
+    copy().and_then(|()| Box::new(part).done()).map_err(CliError::of_io)?;
     folder.remove(JOURNAL);
     if !options.quiet && !options.json {
+        solved.remarks.iter().for_each(say);
         say(format!(
             "{} of {} cases in {}; `voussoir merge {}` puts the parts together",
             ids.len(),

@@ -2,12 +2,11 @@
 
 use super::error::{CliError, Outcome, Verdict};
 use super::files;
-use super::folder::named_by_writers;
 use super::options::useful_jobs;
 use super::print::say;
 use super::progress::{Progress, Shown};
 use crate::caught::{caught, silence_caught_panics};
-use crate::kinds::{CasesOf, LoadedStudy, StoredResults, Verification};
+use crate::kinds::{LoadedStudy, StoredResults, Verification};
 use crate::regular_file::open_regular;
 use crate::results::stored_path::PATH_PROOFS;
 use crate::verify::first_difference;
@@ -112,26 +111,20 @@ fn confirm(dir: &Path, wanted: Option<&dyn LoadedStudy>, options: &VerifyOptions
 
 /// Compares a folder with its study.
 fn compared(dir: &Path, study: &dyn LoadedStudy, jobs: usize) -> Result<Verification, CliError> {
-    let streamed = matches!(study.cases(), Some(CasesOf::Streamed(_)));
-    let limit = |name: &str| if name == "results.json" && !streamed { MAX_HELD_BYTES } else { MAX_FILE_BYTES };
+    let held = study.with_cases().is_none();
+    let limit = |name: &str| if name == "results.json" && held { MAX_HELD_BYTES } else { MAX_FILE_BYTES };
     drop(opened(dir, "results.json", limit("results.json"))?);
     let file = |name: &str| match open_regular(&dir.join(name), limit(name)) {
         Ok(file) => Some(Box::new(file) as Box<dyn Read>),
         Err(error) if error.kind() == ErrorKind::NotFound => None,
         Err(error) => Some(Box::new(Unreadable(error.kind())) as Box<dyn Read>),
     };
-    let progress = Progress::new(study.name(), Shown::Bar, None);
+    let progress = Progress::new(study.name(), Shown::Bar);
     let found = study.verify_stored(&StoredResults { jobs: useful_jobs(jobs), file: &file }, &progress);
     progress.finish();
-    let mut found = found.map_err(|error| {
+    found.map_err(|error| {
         CliError::wrong_input(format_args!("{}: not a results file: {error}", dir.join("results.json").display()))
-    })?;
-    // Where cases are missing nothing is made, and what they wrote is not foreign for that.
-    if !found.made.is_empty() {
-        let foreign = named_by_writers(dir).into_iter().filter(|name| !found.made.contains(name));
-        found.files.extend(foreign.map(|name| format!("{name} is none of the files that results.json gives")));
-    }
-    Ok(found)
+    })
 }
 
 /// The number of cases that stored paths prove, in words.

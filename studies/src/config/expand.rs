@@ -145,6 +145,15 @@ impl Expansion {
         (0..self.axes.len()).flat_map(keys).collect()
     }
 
+    /// The values of a swept key in the order of its axis, as the first variant and scene have them.
+    pub fn values(&self, key: &str) -> Vec<Json> {
+        let place = |axis: &Axis| axis.keys.iter().any(|(own, _)| own == key);
+        let Some(axis) = self.axes.iter().position(place) else { return Vec::new() };
+        let inner: usize = self.axes[axis + 1..].iter().map(|axis| axis.values.len()).product();
+        let of = |step: usize| self.case(step * inner).ok()?.parameters.get(key).cloned();
+        (0..self.axes[axis].values.len()).filter_map(of).collect()
+    }
+
     /// Returns true if all values of a key are numbers, or texts that are numbers with a unit in every variant and scene.
     fn is_number(&self, axis: usize, place: usize) -> bool {
         let own = &self.axes[axis];

@@ -6,7 +6,7 @@ use super::sample::*;
 use super::sweep::{study_chart, sweep_chart};
 use super::text_layout::Area;
 use super::*;
-use crate::results::{CaseResult, StudyResults};
+use crate::results::{CaseResult, StudyResults, Totals};
 use crate::study::{Drawn, Output, Resolved, SweptKeys};
 use crate::writers::{SceneOutput, StudyOutput, writers};
 use serde_json::Value as Json;
@@ -279,6 +279,7 @@ fn with_output<T>(figures: bool, then: impl FnOnce(&StudyOutput) -> T) -> T {
     then(&StudyOutput {
         name: "rise & <fall>",
         results: &results,
+        totals: &Totals::of(&results.cases),
         scenes,
         sweep_keys: vec!["scene.profile.rise".into()],
         keys: SweptKeys::default(),

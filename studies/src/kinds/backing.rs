@@ -1,9 +1,8 @@
 //! The check of a stored case by itself, before it is copied into other results.
 
-use super::kind::CasesOf;
 use crate::caught::caught;
 use crate::results::CaseResult;
-use crate::study::Case;
+use crate::study::{Case, Study};
 use crate::verify::case::verify_case;
 use crate::verify::path_proofs::check_stored_path;
 use std::fmt;
@@ -24,7 +23,7 @@ pub enum Backing {
     Stalled,
 }
 
-impl CasesOf<'_> {
+impl Study {
     /// Checks a stored case: it must belong to this study as it is now, and its stored fields must prove it.
     ///
     /// # Errors

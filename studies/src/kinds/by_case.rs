@@ -1,39 +1,24 @@
-//! The cases of a study, one by one: solved in parts whose results are put together again.
+//! The cases of a study, solved one after another or in parts whose results are put together again.
 
-use super::kind::{CasesOf, kind};
+use super::kind::kind;
 use crate::results::{CaseLabel, CaseResult};
-use crate::side_by_side::{in_order, side_by_side};
-use crate::solve::{Observer, solve_followed};
-use crate::study::Case;
+use crate::side_by_side::side_by_side;
+use crate::solve::Observer;
+use crate::study::{Case, Study};
 use std::borrow::Cow;
 
-/// Streamed cases that are solved before their results are handed over, for each of those side by side.
+/// Cases that are solved before their results are handed over, for each of those side by side.
 const AT_ONCE: usize = 64;
 
-impl<'a> CasesOf<'a> {
-    /// Number of cases.
-    pub fn count(&self) -> usize {
-        match self {
-            CasesOf::Held(study) => study.cases.len(),
-            CasesOf::Streamed(sweep) => sweep.count(),
-        }
+impl Study {
+    /// The case that a result belongs to, as the study's kind finds it.
+    pub fn case_of(&self, label: &CaseLabel) -> Option<Cow<'_, Case>> {
+        kind(&self.kind)?.case(self, label)
     }
 
-    /// The case with this id; `None` beyond the last.
-    pub fn case(&self, id: usize) -> Option<Cow<'a, Case>> {
-        match self {
-            CasesOf::Held(study) => study.cases.get(id).map(Cow::Borrowed),
-            CasesOf::Streamed(sweep) if id < sweep.count() => sweep.case(id).ok().map(Cow::Owned),
-            CasesOf::Streamed(_) => None,
-        }
-    }
-
-    /// The case that a result belongs to, also one that the study's kind has made.
-    pub fn case_of(&self, label: &CaseLabel) -> Option<Cow<'a, Case>> {
-        match self {
-            CasesOf::Held(study) => study.case_of(label),
-            CasesOf::Streamed(_) => self.case(label.id),
-        }
+    /// Returns true if the study's kind makes cases besides those of the file.
+    pub fn makes_cases(&self) -> bool {
+        kind(&self.kind).is_some_and(|kind| kind.makes_cases())
     }
 
     /// Of `count` parts of the study the one, from 0, in which a case is solved: by the hash of the resolved case, so
@@ -44,8 +29,8 @@ impl<'a> CasesOf<'a> {
         Some(((hash >> 64) % count as u128) as usize)
     }
 
-    /// Solves cases, `jobs` of them side by side, and hands the results over in order of id, with those of cases that
-    /// the study's kind makes besides. Of streamed cases no more are held than are solved at once.
+    /// Solves cases, `jobs` of them side by side, and hands the results over: those of a few cases in order of id, with
+    /// those that the study's kind makes of them, then those of the next. No more are held than are solved at once.
     pub fn solve(
         &self,
         ids: &[usize],
@@ -54,19 +39,13 @@ impl<'a> CasesOf<'a> {
         take: &mut (dyn FnMut(CaseResult) + Send),
     ) {
         observer.begins(ids.len());
-        match self {
-            CasesOf::Held(study) => {
-                let mut results =
-                    kind(&study.kind).map(|kind| kind.solve(study, ids, jobs, observer)).unwrap_or_default();
-                results.sort_by_key(|case| case.label.id);
-                results.into_iter().for_each(take);
+        let Some(kind) = kind(&self.kind) else { return };
+        // A kind that makes cases works side by side on those of one case.
+        let at_once = if kind.makes_cases() { 1 } else { AT_ONCE * jobs.max(1) };
+        side_by_side(jobs, || {
+            for ids in ids.chunks(at_once) {
+                kind.solve(self, ids, jobs, observer).into_iter().for_each(&mut *take);
             }
-            CasesOf::Streamed(sweep) => side_by_side(jobs, || {
-                for chunk in ids.chunks(AT_ONCE * jobs.max(1)) {
-                    let one = |id: &usize| solve_followed(&sweep.case(*id).ok()?, observer);
-                    in_order(chunk, one).into_iter().flatten().for_each(&mut *take);
-                }
-            }),
-        }
+        });
     }
 }

@@ -69,8 +69,8 @@ pub(super) fn beside_each_other(study: &Study, cases: &[CaseResult], reference: 
     // A study without variants is one by itself.
     let alone = [study.name.clone()];
     let variants = if study.outline.variants.is_empty() { &alone[..] } else { &study.outline.variants };
-    let rows = study.cases.len().checked_div(variants.len())?;
-    let answered = |id: usize| cases.iter().find(|case| case.label.id == id);
+    let rows = study.count().checked_div(variants.len())?;
+    let answered = |id: usize| cases.binary_search_by_key(&id, |case| case.label.id).ok().map(|place| &cases[place]);
     let row = |row: usize| {
         let base = answered(reference * rows + row).and_then(factor);
         let cell = |variant: usize| {
@@ -88,10 +88,10 @@ pub(super) fn beside_each_other(study: &Study, cases: &[CaseResult], reference: 
                 flow_read_as: case.and_then(|case| case.flow_read_as.clone()),
             }
         };
-        let first = &study.cases[row];
+        let first = study.label(row).unwrap_or_default();
         ComparisonRow {
-            scene: first.scene.clone(),
-            parameters: first.parameters.clone(),
+            scene: first.scene,
+            parameters: first.parameters,
             cells: (0..variants.len()).map(cell).collect(),
         }
     };
@@ -110,7 +110,7 @@ fn factor(case: &CaseResult) -> Option<f64> {
 
 impl StudyKind for Compare {
     fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, StudyError> {
-        Ok(Box::new(Study::from_source(source)?))
+        Ok(Box::new(Study::from_source_in_turn(source)?))
     }
 
     fn check(&self, outline: &Outline) -> Vec<Diagnostic> {

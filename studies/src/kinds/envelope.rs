@@ -38,10 +38,11 @@ voussoir_core::inventory::submit! {
 impl Envelope {
     /// All places of all runs of one case of the study, in order of id.
     fn of_case(&self, study: &Study, base: usize, request: &Request, observer: &dyn Observer) -> Vec<CaseResult> {
-        let case = &study.cases[base];
+        let Some(case) = study.case(base) else { return Vec::new() };
+        let case = case.as_ref();
         let runs = request.runs(case);
         let run = |(number, run): (usize, &Run)| {
-            let first = study.cases.len() + (base * runs.len() + number) * STRIDE;
+            let first = study.count() + (base * runs.len() + number) * STRIDE;
             let solve = |index: usize, value: f64| {
                 let case = case_at(study, base, first + index, &request.values(run, value))?;
                 solve_unless_cancelled(&case, observer)
@@ -55,11 +56,11 @@ impl Envelope {
 
 impl StudyKind for Envelope {
     fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, StudyError> {
-        let study = Study::from_source(source)?;
+        let study = Study::from_source_in_turn(source)?;
         let Some(request) = study.outline.read::<Request>() else { return Ok(Box::new(study)) };
         // Mistakes at one end of the range show before anything is solved.
-        for case in &study.cases {
-            for run in request.runs(case) {
+        for case in (0..study.count()).filter_map(|id| study.case(id)) {
+            for run in request.runs(&case) {
                 for value in request.range() {
                     study.at(case.id, &request.values(&run, value))?;
                 }
@@ -90,13 +91,13 @@ impl StudyKind for Envelope {
     }
 
     fn case<'a>(&self, study: &'a Study, label: &CaseLabel) -> Option<Cow<'a, Case>> {
-        if let Some(case) = study.cases.get(label.id) {
-            return Some(Cow::Borrowed(case));
+        if label.id < study.count() {
+            return study.case(label.id);
         }
         let request = study.outline.read::<Request>()?;
         // Every case has as many runs as the first, because kinds of loads are not swept.
-        let runs = request.runs(study.cases.first()?).len();
-        let base = (label.id - study.cases.len()) / STRIDE / runs;
+        let runs = request.runs(&*study.case(0)?).len();
+        let base = (label.id - study.count()) / STRIDE / runs;
         let keys = request.keys().into_iter();
         let given = keys.filter_map(|key| label.parameters.get(&key).cloned().map(|value| (key, value)));
         case_at(study, base, label.id, &given.collect::<Vec<_>>()).map(Cow::Owned)

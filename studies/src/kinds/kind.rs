@@ -1,13 +1,13 @@
 //! What a study kind is: how its files are read, what it does with cases, and what it adds to results.
 
-use super::same_bytes::SameBytes;
-use crate::results::{CaseLabel, CaseResult, Comparison, StudyResults};
+use super::stored_results::{RESULTS, StoredResults};
+use crate::results::{CaseLabel, CaseResult, Comparison};
 use crate::solve::{Observer, Unobserved, solve_cases};
-use crate::study::{Case, Outline, ReadFile, Study, StudyError, StudySource, Sweep};
+use crate::study::{Case, Outline, ReadFile, Study, StudyError, StudySource};
 use crate::verify::Agreement;
 use serde_json::{Map, Value as Json};
 use std::borrow::Cow;
-use std::io::{Cursor, Read, Write};
+use std::io::{Cursor, Read};
 use voussoir_core::plugin::{Diagnostic, Parameter};
 
 /// A kind of study, chosen by `kind = …`. Instances register with
@@ -49,7 +49,7 @@ pub trait StudyKind: Sync {
     /// The case that a result belongs to: one of the study's, or one that this kind has made, which the result's
     /// parameters describe. Without the solver, so that `verify` and writers can ask.
     fn case<'a>(&self, study: &'a Study, label: &CaseLabel) -> Option<Cow<'a, Case>> {
-        study.cases.get(label.id).map(Cow::Borrowed)
+        study.case(label.id)
     }
 
     /// What this kind adds to the results of the cases; a pure function of its arguments, so that
@@ -110,12 +110,12 @@ pub trait LoadedStudy: Send + Sync {
         Err("this study has no scene".into())
     }
 
-    /// Its cases, where they can be solved in parts and put together again.
-    fn cases(&self) -> Option<CasesOf<'_>> {
+    /// The study, if it has cases with a scene, which are solved and stored one by one.
+    fn with_cases(&self) -> Option<&Study> {
         None
     }
 
-    /// Solves what is wanted and turns it into the texts of files.
+    /// Solves what is wanted and turns it into files, all of them held.
     fn run(&self, request: &RunRequest, observer: &dyn Observer) -> RunOutput;
 
     /// Checks stored results; an error where they cannot be read.
@@ -126,15 +126,6 @@ pub trait LoadedStudy: Send + Sync {
         let file = |name: &str| (name == RESULTS).then(|| Box::new(Cursor::new(results.to_string())) as Box<dyn Read>);
         self.verify_stored(&StoredResults { jobs: 1, file: &file }, &Unobserved)
     }
-}
-
-/// The cases of a study.
-#[derive(Debug, Clone, Copy)]
-pub enum CasesOf<'a> {
-    /// All of them are held.
-    Held(&'a Study),
-    /// They are so many that each is made when it is needed.
-    Streamed(&'a Sweep),
 }
 
 /// A study that is run for another one, which reports on it.
@@ -169,13 +160,8 @@ pub struct RunRequest {
     pub wanted: Vec<usize>,
     /// Cases side by side.
     pub jobs: usize,
-    /// Whether a wanted case that is stored is taken as it stands.
-    pub resume: bool,
-    /// Whether stored cases that are not wanted stay in the results.
-    pub keep: bool,
-    /// The texts that are in the folder already: results.json, path_proofs.jsonl, and a line of JSON for each case that was finished
-    /// after them. Only cases of this very study count, whatever the folder held.
-    pub stored: Option<[String; 3]>,
+    /// The results.json that is there, if stored cases that are not wanted stay in the results.
+    pub kept: Option<String>,
     /// Version of the program, for results.json.
     pub version: String,
     /// The day of the run, for results.json.
@@ -184,9 +170,6 @@ pub struct RunRequest {
     pub parts: Vec<String>,
     /// Whether nobody reads the table: it stays empty.
     pub quiet: bool,
-    /// Whether the caller writes results.json itself, from [`RunOutput::results`] where there are some: the text need not
-    /// be held.
-    pub results_apart: bool,
 }
 
 /// What a run has made.
@@ -194,68 +177,12 @@ pub struct RunRequest {
 pub struct RunOutput {
     /// (file name relative to the result folder, bytes), in a fixed order.
     pub files: Vec<(String, Vec<u8>)>,
-    /// What results.json holds, where that is not among the files.
-    pub results: Option<StudyResults>,
     /// The table for the terminal.
     pub table: String,
     /// What a user should know of the run, line by line.
     pub remarks: Vec<String>,
     /// Whether every case is answered and certified.
     pub certified: bool,
-}
-
-/// The file that everything else in a result folder is made from.
-pub(super) const RESULTS: &str = "results.json";
-
-/// What `verify` is given.
-pub struct StoredResults<'a> {
-    /// Cases side by side.
-    pub jobs: usize,
-    /// A file of the result folder from its beginning, results.json and others; `None` where there is none.
-    pub file: &'a dyn Fn(&str) -> Option<Box<dyn Read>>,
-}
-
-impl StoredResults<'_> {
-    /// results.json from its beginning.
-    pub fn results(&self) -> Result<Box<dyn Read>, String> {
-        (self.file)(RESULTS).ok_or(format!("there is no {RESULTS}"))
-    }
-
-    /// The text of a file.
-    pub fn text(&self, name: &str) -> Result<String, String> {
-        let mut text = String::new();
-        let mut file = (self.file)(name).ok_or(format!("there is no {name}"))?;
-        file.read_to_string(&mut text).map_err(|error| error.to_string())?;
-        Ok(text)
-    }
-
-    /// Returns true if a file of another processor differs by rounding only.
-    fn same_claims(&self, name: &str, bytes: &[u8], agreement: Agreement) -> bool {
-        // A file much longer than the one that is made is another one: it is not read to its end.
-        let limit = 2 * bytes.len() as u64 + 1024;
-        let read = |file: Box<dyn Read>| {
-            let mut stored = Vec::new();
-            file.take(limit).read_to_end(&mut stored).is_ok() && agreement.same_file(&stored, bytes)
-        };
-        agreement == Agreement::Program || agreement == Agreement::Processor && (self.file)(name).is_some_and(read)
-    }
-
-    /// What is wrong with the files beside results.json: each that is there must be the one that is made from it.
-    pub fn altered<'a>(&self, made: impl Iterator<Item = (&'a str, &'a [u8])>, agreement: Agreement) -> Vec<String> {
-        let others = made.filter(|(name, _)| *name != RESULTS);
-        let differs = |(name, bytes): &(&str, &[u8])| {
-            let Some(stored) = (self.file)(name) else { return false };
-            let mut same = SameBytes::new(stored);
-            let bits = same.write_all(bytes).is_ok() && same.ended();
-            !bits && !self.same_claims(name, bytes, agreement)
-        };
-        others.filter(differs).map(|(name, _)| not_made(name)).collect()
-    }
-}
-
-/// What is said of a file that is not the one that results.json gives.
-pub(super) fn not_made(name: &str) -> String {
-    format!("{name} is not what {RESULTS} gives")
 }
 
 /// What a check of results has found.
@@ -269,8 +196,6 @@ pub struct Verification {
     pub findings: Vec<(usize, String)>,
     /// What is wrong with the other files.
     pub files: Vec<String>,
-    /// Names of all files that the results give.
-    pub made: Vec<String>,
     /// Number of the study's own cases that are in the results.
     pub own: usize,
     /// Number of cases of the study.

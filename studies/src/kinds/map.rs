@@ -45,8 +45,8 @@ voussoir_core::inventory::submit! {
 /// The different values of a key in the order of the cases; `None` unless all are numbers.
 fn values(study: &Study, key: &str) -> Option<Vec<f64>> {
     let mut found: Vec<f64> = Vec::new();
-    for case in &study.cases {
-        let value = case.parameters.get(key)?.as_f64()?;
+    for value in study.values(key) {
+        let value = value.as_f64()?;
         if !found.contains(&value) {
             found.push(value);
         }
@@ -56,7 +56,7 @@ fn values(study: &Study, key: &str) -> Option<Vec<f64>> {
 
 impl StudyKind for Map {
     fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, StudyError> {
-        Ok(Box::new(Study::from_source(source)?))
+        Ok(Box::new(Study::from_source_in_turn(source)?))
     }
 
     fn check(&self, outline: &Outline) -> Vec<Diagnostic> {

@@ -34,7 +34,7 @@ voussoir_core::inventory::submit! {
 
 impl StudyKind for Optimise {
     fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, StudyError> {
-        let study = Study::from_source(source)?;
+        let study = Study::from_source_in_turn(source)?;
         if let Some(request) = study.outline.read::<Request>() {
             // A key that does not exist, or that takes no number, shows at both ends.
             let at = |value: f64| study.at(0, &request.values(value));
@@ -61,7 +61,7 @@ impl StudyKind for Optimise {
         let Some(request) = study.outline.read::<Request>() else { return results };
         let all = || {
             let of = |&base: &usize| {
-                let first = study.cases.len() + base * STRIDE;
+                let first = study.count() + base * STRIDE;
                 let solve = |index: usize, value: f64| {
                     let case = case_at(study, base, first + index, &request.values(value))?;
                     let result = solve_unless_cancelled(&case, observer)?;
@@ -80,8 +80,8 @@ impl StudyKind for Optimise {
     }
 
     fn case<'a>(&self, study: &'a Study, label: &CaseLabel) -> Option<Cow<'a, Case>> {
-        if let Some(case) = study.cases.get(label.id) {
-            return Some(Cow::Borrowed(case));
+        if label.id < study.count() {
+            return study.case(label.id);
         }
         let request = study.outline.read::<Request>()?;
         let base = (label.id - study.cases.len()) / STRIDE;

@@ -1,7 +1,6 @@
 //! Running a study from a program: typed results, an observer, nothing written.
 
-use super::kind::kind;
-use crate::results::StudyResults;
+use crate::results::{CaseResult, StudyResults};
 use crate::solve::{Observer, Unobserved};
 use crate::study::Study;
 
@@ -48,15 +47,16 @@ impl Study {
     /// # Ok::<(), StudyError>(())
     /// ```
     pub fn run_with(&self, options: &RunOptions) -> StudyResults {
-        let known = |id: &usize| *id < self.cases.len();
+        let known = |id: &usize| *id < self.count();
         let mut wanted: Vec<usize> = match options.cases {
             Some(ids) => ids.iter().copied().filter(known).collect(),
-            None => (0..self.cases.len()).collect(),
+            None => (0..self.count()).collect(),
         };
         wanted.sort_unstable();
         wanted.dedup();
-        options.observer.begins(wanted.len());
-        let solve = |kind: &dyn super::kind::StudyKind| kind.solve(self, &wanted, options.jobs, options.observer);
-        self.results(env!("CARGO_PKG_VERSION"), kind(&self.kind).map(solve).unwrap_or_default())
+        let mut cases = Vec::new();
+        self.solve(&wanted, options.jobs, options.observer, &mut |case| cases.push(case));
+        cases.sort_by_key(|case: &CaseResult| case.label.id);
+        self.results(env!("CARGO_PKG_VERSION"), cases)
     }
 }

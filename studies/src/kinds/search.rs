@@ -36,7 +36,9 @@ pub(super) fn intervals(tried: &[(f64, Json)]) -> Vec<Json> {
 /// A case of a study at other values, without figures of its own, under the id that it has among all.
 pub(super) fn case_at(study: &Study, base: usize, id: usize, values: &[(String, Json)]) -> Option<Case> {
     // A stored id may name any case.
-    study.cases.get(base)?;
+    if base >= study.count() {
+        return None;
+    }
     let mut case = study.at(base, values).ok()?;
     case.id = id;
     case.brief = true;

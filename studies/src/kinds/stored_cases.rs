@@ -7,15 +7,53 @@ use std::io::{BufReader, Read};
 
 /// Passes on each case with the entries that come before all cases, and returns the entries beside the cases. An error if it
 /// is not a results file.
-pub(super) fn read_cases(file: impl Read, take: Take) -> Result<Map<String, Json>, String> {
+pub fn read_stored_cases(file: impl Read, take: Take) -> Result<Map<String, Json>, String> {
     let mut text = serde_json::Deserializer::from_reader(BufReader::with_capacity(1 << 16, file));
     let whole = Whole(take).deserialize(&mut text).map_err(|error| error.to_string())?;
     text.end().map_err(|error| error.to_string())?;
     Ok(whole)
 }
 
+/// The entries before the cases; what can be read of them.
+pub fn read_head(file: impl Read) -> Map<String, Json> {
+    let mut head = Map::new();
+    let mut text = serde_json::Deserializer::from_reader(BufReader::with_capacity(1 << 16, file));
+    // The error says that the cases are not read.
+    drop(Head(&mut head).deserialize(&mut text));
+    head
+}
+
+/// The entries before the cases, added to a map.
+struct Head<'a>(&'a mut Map<String, Json>);
+
+impl<'de> DeserializeSeed<'de> for Head<'_> {
+    type Value = ();
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
+        deserializer.deserialize_map(self)
+    }
+}
+
+impl<'de> Visitor<'de> for Head<'_> {
+    type Value = ();
+
+    fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        formatter.write_str("results of a study")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
+        while let Some(key) = map.next_key::<String>()? {
+            if key == "cases" {
+                return Err(A::Error::custom("the cases are not read"));
+            }
+            self.0.insert(key, map.next_value()?);
+        }
+        Ok(())
+    }
+}
+
 /// Receives the head of the file and a case.
-pub(super) type Take<'a> = &'a mut dyn FnMut(&Map<String, Json>, Json);
+pub type Take<'a> = &'a mut dyn FnMut(&Map<String, Json>, Json);
 
 /// The whole file.
 struct Whole<'a>(Take<'a>);
@@ -87,7 +125,8 @@ mod tests {
     fn cases_come_one_by_one_and_the_rest_stays() {
         let read = |text: &str| {
             let mut cases = Vec::new();
-            read_cases(text.as_bytes(), &mut |_, case| cases.push(case)).map(|beside| (Json::from(beside), cases))
+            read_stored_cases(text.as_bytes(), &mut |_, case| cases.push(case))
+                .map(|beside| (Json::from(beside), cases))
         };
         let (beside, cases) = read(r#"{ "study": "a", "cases": [1, { "b": 0.1 }], "own": [] }"#).expect("results");
         assert_eq!((beside, cases), (json!({ "study": "a", "own": [] }), vec![json!(1), json!({ "b": 0.1 })]));

@@ -263,6 +263,40 @@ impl CaseResult {
         self.path.yielded.clear();
     }
 
+    /// The result for what a study kind adds.
+    pub fn brief(&self) -> Self {
+        CaseResult { carried: CarriedLoad::default(), ..self.without_drawings() }
+    }
+
+    /// The result without what only drawings of the case itself and its proof read.
+    pub fn without_drawings(&self) -> Self {
+        let path = PathRecord { states: Vec::new(), joint_states: None, yielded: Vec::new(), ..self.path.clone() };
+        CaseResult {
+            label: self.label.clone(),
+            load_factor_error: self.load_factor_error,
+            greatest: self.greatest,
+            non_associated: NonAssociatedAnswer {
+                associated_load_factor: self.non_associated.associated_load_factor,
+                ..NonAssociatedAnswer::default()
+            },
+            flow_read_as: self.flow_read_as.clone(),
+            solver: self.solver.clone(),
+            notes: self.notes.clone(),
+            mechanism: self.mechanism.clone(),
+            proof: ProofFields::default(),
+            certificate: self.certificate.clone(),
+            counters: self.counters.clone(),
+            stages: self.stages.clone(),
+            path,
+            sensitivities: self.sensitivities.clone(),
+            partial_factors: None,
+            loads: Vec::new(),
+            carried: self.carried.clone(),
+            stored_path: None,
+            ..*self
+        }
+    }
+
     /// Whether nothing is left of the forces and motions that would prove it.
     pub fn has_no_fields(&self) -> bool {
         self.proof.field.is_none() && self.proof.motion.is_none() && self.path.displacements.is_none()

@@ -6,6 +6,7 @@ pub mod case_with_path;
 mod comparison;
 pub mod convert;
 mod entries;
+mod finished;
 pub mod inelastic_state;
 mod limit_points;
 pub mod load_entries;
@@ -19,6 +20,7 @@ pub mod stage_start;
 pub mod stored_path;
 mod study_results;
 pub mod thrust_line;
+mod totals;
 
 pub use case_result::{
     CaseLabel, CaseResult, EndProof, NonAssociatedAnswer, PathRecord, Proof, ProofFields, StageResult,
@@ -28,9 +30,11 @@ pub use comparison::{Comparison, ComparisonCell, ComparisonRow, MapAxes};
 pub use entries::{
     DisplacementEntry, EventEntry, FieldEntry, FillEntry, LoadEntry, LoadOrigin, MotionEntry, StateEntry, YieldedEntry,
 };
+pub use finished::{FinishedCases, TakeCases};
 pub use limit_points::{BranchEntry, FollowedTo, LimitPointEntry, NextState, StabilityEntry};
 pub use load_factor_error::LoadFactorError;
 pub use origin::{FORMAT, HEAD, Origin, PluginCrate, head, this_program, without_origin, words};
 pub use rank::{least_of, load_rank};
 pub use sensitivity::SensitivityEntry;
 pub use study_results::StudyResults;
+pub use totals::{MAX_SHOWN, Totals};

@@ -5,8 +5,9 @@ use crate::config::diagnostic::LocatedDiagnostic;
 use crate::config::document::{Node, Value, from_json};
 use crate::config::origin::Origin;
 use crate::config::overlay::set;
+use crate::results::Totals;
 use crate::solve::{Observer, solve_unless_cancelled};
-use crate::study::{Study, StudyError, StudyFile, StudySource, Sweep, value_of};
+use crate::study::{Study, StudyError, StudyFile, StudySource, value_of};
 use crate::writers::StudyOutput;
 use crate::writers::report::report_html;
 use serde::Deserialize;
@@ -15,7 +16,7 @@ use serde_json::{Value as Json, json};
 /// A study with a scene whose cases are shown in the browser.
 #[derive(Debug)]
 pub struct Session {
-    sweep: Sweep,
+    study: Study,
 }
 
 /// A request of the page.
@@ -37,29 +38,29 @@ const LISTED: usize = 500;
 impl Session {
     /// Reads a study. The error contains all mistakes in its first case and its axes.
     pub fn read(source: StudySource) -> Result<Self, StudyError> {
-        Ok(Session { sweep: StudyFile::read(source)?.sweep_unchecked()? })
+        Ok(Session { study: StudyFile::read(source)?.study_unchecked()? })
     }
 
     /// Returns the name of the study.
     pub fn name(&self) -> &str {
-        &self.sweep.name
+        &self.study.name
     }
 
     /// Returns the purpose of the study's kind; here each case is shown separately.
     pub fn kind(&self) -> &str {
-        &self.sweep.kind
+        &self.study.kind
     }
 
     /// Returns the number of cases.
     pub fn count(&self) -> usize {
-        self.sweep.count()
+        self.study.count()
     }
 
     /// Returns variant, scene and swept values of each case; `None` if there are too many for a list.
     pub fn labels(&self) -> Option<Vec<String>> {
-        let keys = self.sweep.swept_keys();
+        let keys = self.study.swept_keys();
         let label = |id: usize| {
-            let case = self.sweep.expansion.case(id).ok()?;
+            let case = self.study.label(id)?;
             let swept = Some(keys.text(&case.parameters)).filter(|text| !text.is_empty());
             let words: Vec<String> = case.variant.into_iter().chain(case.scene).chain(swept).collect();
             Some(if words.is_empty() { format!("case {id}") } else { words.join(", ") })
@@ -69,7 +70,7 @@ impl Session {
 
     /// Returns the study file of a request, with one case.
     fn root(&self, asked: &Asked) -> Result<Node, Vec<LocatedDiagnostic>> {
-        let mut root = self.sweep.expansion.case(asked.case)?.root;
+        let mut root = self.study.expansion.case(asked.case)?.root;
         let run = Node { value: Value::String("run".into()), origin: root.place("kind") };
         set(&mut root, "kind", run, &Origin::Value).map_err(|wrong| vec![*wrong])?;
         let mut wrong = Vec::new();
@@ -118,8 +119,9 @@ impl Session {
         let result = study.cases.first().and_then(|case| solve_unless_cancelled(case, observer));
         let result = result.ok_or("this takes too long here: copy the study file and give it to voussoir run")?;
         let results = study.results(env!("CARGO_PKG_VERSION"), vec![result]);
+        let totals = Totals::of(&results.cases);
         let cases: Vec<_> = results.cases.iter().filter_map(|case| study.case_of(&case.label)).collect();
-        Ok(report_html(&StudyOutput::new(&study, &results, &cases), DRAWN))
+        Ok(report_html(&StudyOutput::new(&study, &results, &totals, &cases), DRAWN))
     }
 
     /// Returns the page of a case, with sliders at the values of the study file.

@@ -159,7 +159,7 @@ pub fn solve_followed(case: &Case, observer: &dyn Observer) -> Option<CaseResult
 /// Solves the cases of a study whose ids are in `wanted`, with `jobs` cases in parallel; results are in the order of `wanted`.
 /// Cases without a result when the observer cancels are omitted.
 pub fn solve_cases(study: &Study, wanted: &[usize], jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {
-    let one = |id: &usize| solve_followed(&study.cases[*id], observer);
+    let one = |id: &usize| solve_followed(&*study.case(*id)?, observer);
     if jobs > 1 {
         side_by_side(jobs, || in_order(wanted, one)).into_iter().flatten().collect()
     } else {

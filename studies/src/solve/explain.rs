@@ -14,7 +14,7 @@ use voussoir_core::plugin::{PluginKind, card};
 
 /// Describes the problem of the first case in words; the other cases differ only by their parameters.
 pub fn explain(study: &Study) -> String {
-    explain_first(&study.name, &study.kind, study.cases.len(), study.cases.first())
+    explain_first(&study.name, &study.kind, study.count(), study.case(0).as_deref())
 }
 
 /// Describes a study by its name, kind, number of cases and first case.

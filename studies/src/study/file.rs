@@ -1,4 +1,4 @@
-//! A study file with its axes: makes the cases, all at once or one at a time.
+//! A study file whose axes are read: the cases are made from here.
 
 use super::case::{build_case, shared_key};
 use super::diagnostics::located;
@@ -7,7 +7,6 @@ use super::keys::{kind_tables, study_keys};
 use super::model::{Case, Drawn, Output, Study};
 use super::outline::Outline;
 use super::source::{FILE_NAME, StudySource, kind_of, no_file_name};
-use super::sweep::Sweep;
 use super::tables::{OutputKeys, VariantTable, WriterKeys};
 use crate::config::check::Checker;
 use crate::config::checked_keys::CheckedKeys;
@@ -30,7 +29,9 @@ const SMALL_PATH_PROOF: usize = 200_000;
 const MAX_MISTAKES: usize = 100;
 /// Number of cases that are made before they are passed on.
 const AT_ONCE: usize = 64;
-/// Greatest number of different notes of a sweep that are kept.
+/// Greatest number of cases that are held while a command works. More are made one after another, each when it is needed.
+pub const HELD: usize = 1000;
+/// Greatest number of different notes of a study that are kept.
 const MAX_NOTES: usize = 100;
 
 /// A study file with a scene: variants, scenes and axes are read; no case is made yet.
@@ -81,45 +82,50 @@ impl StudyFile {
         self.expansion.count()
     }
 
-    /// Returns the study with all its cases. The error contains all mistakes.
-    pub fn study(mut self) -> Result<Study, StudyError> {
-        let mut cases = Vec::new();
-        let few = self.expansion.count() <= MOST_WITH_PATH_PROOFS;
-        make_cases(&self.expansion, &self.checked, &mut self.diagnostics, |mut case| {
-            let unasked = case.resolved.at("output.path_proofs").is_none_or(Json::is_null);
-            if few && case.output_fields && unasked {
-                case.output_path_proofs = SMALL_PATH_PROOF;
-            }
-            cases.push(case);
-        });
-        let Sweep { name, kind, outline, output, resolved, expansion, checked, .. } = self.sweep_of(cases.first())?;
-        Ok(Study { name, kind, outline, output, cases, resolved, expansion, checked })
+    /// The study with all its cases; every mistake at once.
+    pub fn study(self) -> Result<Study, StudyError> {
+        self.made(usize::MAX)
     }
 
-    /// Returns the study without its cases. Each case is made once for its check, so that the error contains all mistakes.
-    pub fn sweep(mut self) -> Result<Sweep, StudyError> {
-        let (mut first, mut notes) = (None, Vec::new());
-        make_cases(&self.expansion, &self.checked, &mut self.diagnostics, |case| {
+    /// The study, every case made once, so that every mistake is told at once; the cases are held if there are few.
+    pub fn study_in_turn(self) -> Result<Study, StudyError> {
+        self.made(HELD)
+    }
+
+    /// Makes each case once and holds up to so many, or none.
+    fn made(mut self, most: usize) -> Result<Study, StudyError> {
+        let (mut cases, mut first, mut notes) = (Vec::new(), None, Vec::new());
+        let count = self.expansion.count();
+        make_cases(&self.expansion, &self.checked, &mut self.diagnostics, |mut case| {
             for note in &case.notes {
                 if notes.len() < MAX_NOTES && !notes.contains(note) {
                     notes.push(note.clone());
                 }
             }
-            first.get_or_insert(case);
+            if count <= MOST_WITH_PATH_PROOFS && case.output_fields && case.resolved.at("output.path_proofs").is_none_or(Json::is_null)
+            {
+                case.output_path_proofs = SMALL_PATH_PROOF;
+            }
+            if count <= most {
+                cases.push(case);
+            } else {
+                first.get_or_insert(case);
+            }
         });
-        self.sweep_of(first.as_ref()).map(|sweep| Sweep { notes, ..sweep })
+        let study = self.study_of(cases.first().or(first.as_ref()))?;
+        Ok(Study { cases, notes, ..study })
     }
 
-    /// Returns the study without its cases; only the first one is made. The caller must know that [`StudyFile::sweep`] accepts
-    /// the study.
-    pub fn sweep_unchecked(mut self) -> Result<Sweep, StudyError> {
+    /// The study with none of its cases made but the first: for those who know that [`StudyFile::study_in_turn`]
+    /// accepts it.
+    pub fn study_unchecked(mut self) -> Result<Study, StudyError> {
         let first = self.expansion.case(0).and_then(|expanded| build_case(0, expanded, &|_| None));
         let first = first.map_err(|wrong| self.diagnostics.extend(wrong)).ok();
-        self.sweep_of(first.as_ref())
+        self.study_of(first.as_ref())
     }
 
-    /// Returns the part of the study that does not depend on cases other than the first, or all mistakes.
-    fn sweep_of(mut self, first: Option<&Case>) -> Result<Sweep, StudyError> {
+    /// What does not depend on the cases but the first, or all mistakes.
+    fn study_of(mut self, first: Option<&Case>) -> Result<Study, StudyError> {
         if !self.diagnostics.is_empty() {
             sort(&mut self.diagnostics);
             return Err(self.diagnostics.into());
@@ -130,11 +136,12 @@ impl StudyFile {
             return Err(vec![LocatedDiagnostic::new(&self.root.place("name"), "name", why).help(FILE_NAME)].into());
         }
         let text_of = |name: &str| first.and_then(|case| case.read::<String>(name)).unwrap_or_default();
-        Ok(Sweep {
+        Ok(Study {
             name: text_of("name"),
             kind: text_of("kind"),
             outline: self.outline,
             output: first.and_then(|case| output(case.get("output")?, self.expansion.count())).unwrap_or_default(),
+            cases: Vec::new(),
             notes: Vec::new(),
             resolved: self.root.to_toml(),
             expansion: self.expansion,

@@ -5,12 +5,14 @@ use super::error::StudyError;
 use super::file::StudyFile;
 use super::model::{Case, Study};
 use super::source::StudySource;
-use super::sweep::Sweep;
 use crate::config::document::{Node, Value};
 use crate::config::dotted_key::segments;
+use crate::config::expand::Expanded;
 use crate::config::origin::Origin;
 use crate::config::overlay::set;
+use crate::results::CaseLabel;
 use serde_json::Value as Json;
+use std::borrow::Cow;
 
 /// Reads a study. `file` is its name in messages, `sets` the `--set KEY=VALUE` of the command line; a value that is not
 /// valid TOML is a text.
@@ -24,8 +26,44 @@ impl Study {
         StudyFile::read(source)?.study()
     }
 
-    /// Returns case `id` with other values of some keys, numbers or texts, for study kinds that choose values themselves. Its
-    /// `id` and `parameters` are those in the case, with the changed keys.
+    /// The same, which holds no case of a study of more than [`super::HELD`] cases.
+    pub fn from_source_in_turn(source: StudySource) -> Result<Study, StudyError> {
+        StudyFile::read(source)?.study_in_turn()
+    }
+
+    /// Number of cases.
+    pub fn count(&self) -> usize {
+        self.expansion.count()
+    }
+
+    /// A case, made now if it is not held; `None` beyond the last.
+    pub fn case(&self, id: usize) -> Option<Cow<'_, Case>> {
+        if let Some(case) = self.cases.get(id) {
+            return Some(Cow::Borrowed(case));
+        }
+        let expanded = (id < self.count()).then(|| self.expansion.case(id).ok())??;
+        build_case(id, expanded, &|name| shared_key(&self.checked, &self.expansion, name)).ok().map(Cow::Owned)
+    }
+
+    /// Variant, scene and swept values of a case, without its hash; `None` beyond the last.
+    pub fn label(&self, id: usize) -> Option<CaseLabel> {
+        let Expanded { variant, scene, parameters, .. } =
+            (id < self.count()).then(|| self.expansion.case(id).ok())??;
+        Some(CaseLabel { id, case_hash: String::new(), variant, scene, parameters })
+    }
+
+    /// The values of a swept key in the order of its axis.
+    pub fn values(&self, key: &str) -> Vec<Json> {
+        self.expansion.values(key)
+    }
+
+    /// Swept keys, outermost first.
+    pub fn keys(&self) -> Vec<String> {
+        self.expansion.swept().map(String::from).collect()
+    }
+
+    /// Case `id` with other values of some keys, numbers or texts, as a study kind needs it that chooses values itself. Its `id`
+    /// and `parameters` are those of the case, with the keys that are set.
     pub fn at(&self, id: usize, values: &[(String, Json)]) -> Result<Case, StudyError> {
         let mut expanded = self.expansion.case(id)?;
         for (key, value) in values {
@@ -41,12 +79,5 @@ impl Study {
         let other = |name: &str| values.iter().any(|(key, _)| segments(key).first().is_some_and(|first| first == name));
         let known = |name: &str| if other(name) { None } else { shared_key(&self.checked, &self.expansion, name) };
         Ok(build_case(id, expanded, &known)?)
-    }
-}
-
-impl Sweep {
-    /// Returns case `id < count()`.
-    pub fn case(&self, id: usize) -> Result<Case, StudyError> {
-        Ok(build_case(id, self.expansion.case(id)?, &|name| shared_key(&self.checked, &self.expansion, name))?)
     }
 }

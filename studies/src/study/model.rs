@@ -170,10 +170,14 @@ pub struct Study {
     pub outline: Outline,
     /// Output settings.
     pub output: Output,
-    /// All cases in order.
+    /// All cases in order, if they are held. Of studies that were read one case at a time, this list is empty:
+    /// [`Study::case`] makes a case.
     pub cases: Vec<Case>,
-    /// The file with `--set` applied. Values are unchanged and defaults are not filled in, because a variant may change the
-    /// meaning of a default or of a specific weight. If this file is read again, it gives exactly the same cases.
+    /// Different notes of the cases, up to a hundred.
+    pub notes: Vec<String>,
+    /// The file with `--set` applied. Values stand as they were written and defaults are not filled
+    /// in, because a variant may change what a default or a specific weight means; read again, it
+    /// makes exactly the same cases.
     pub resolved: toml::Value,
     /// Base, variants, scenes and axes, from which cases are made.
     pub(crate) expansion: Expansion,

@@ -3,7 +3,6 @@
 use super::keys::study_keys;
 use super::model::{Case, Study};
 use super::resolved::Resolved;
-use super::sweep::Sweep;
 use crate::config::expand::Expansion;
 use crate::config::key_meaning::{KeyMeaning, key_meaning};
 use crate::figures::format::{format_quantity, format_value};
@@ -153,13 +152,6 @@ impl SweptKeys {
 }
 
 impl Study {
-    /// Units and words of the swept keys.
-    pub fn swept_keys(&self) -> SweptKeys {
-        SweptKeys::of_expansion(study_keys(), &self.expansion)
-    }
-}
-
-impl Sweep {
     /// Units and words of the swept keys.
     pub fn swept_keys(&self) -> SweptKeys {
         SweptKeys::of_expansion(study_keys(), &self.expansion)

@@ -28,4 +28,4 @@ pub mod tolerances;
 pub use agreement::Agreement;
 pub use fit::misfits;
 pub use same_study::first_difference;
-pub use study::{StoredCheck, hash_finding, solve_again, solve_others_again, verify, verify_against};
+pub use study::{CheckedCase, against, by_itself, solve_again, verify, verify_against};

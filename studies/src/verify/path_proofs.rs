@@ -6,19 +6,16 @@
 use super::agreement::Agreement;
 use super::{meaning, misfits};
 use crate::caught::caught;
+use crate::results::CaseResult;
 use crate::results::sealed_line::case_in;
 use crate::results::stored_path::{PATH_PROOFS, PathLine, StoredPath};
-use crate::results::{CaseResult, StudyResults};
-use crate::side_by_side::{in_order, side_by_side};
 use crate::solve::proved_case;
-use crate::study::{Case, Study};
+use crate::study::Case;
 use std::io::{BufRead, BufReader, Read};
 use std::sync::Arc;
 
 /// Greatest length of a line.
 const MAX_LINE_BYTES: u64 = 1 << 30;
-/// Lines that are held at once, for each of those that are checked side by side.
-const AT_ONCE: usize = 4;
 
 /// The lines of a file in their order, none held but the next.
 pub struct PathProofLines<'a> {
@@ -208,49 +205,4 @@ fn take_unproved(again: &mut CaseResult, stored: &CaseResult, finite: bool) {
     } else if let (Some(own), Some(stored)) = (&mut again.mechanism, &stored.mechanism) {
         own.unique = stored.unique;
     }
-}
-
-/// The cases of a study that the lines of its file prove.
-#[derive(Default)]
-pub struct PathProofs {
-    /// Results in place of solving again.
-    pub again: Vec<CaseResult>,
-    /// Number of cases whose end is proved.
-    pub proved: usize,
-    /// Findings by case.
-    pub findings: Vec<(usize, String)>,
-    /// Findings about lines that belong to no case.
-    pub lines: Vec<String>,
-}
-
-/// Checks the file of a study whose cases are held, `jobs` lines side by side.
-pub fn check_path_proofs(
-    study: &Study,
-    results: &StudyResults,
-    file: Option<Box<dyn Read + '_>>,
-    agreement: Agreement,
-    jobs: usize,
-) -> PathProofs {
-    let (mut lines, mut found) = (PathProofLines::new(file), PathProofs::default());
-    for chunk in results.cases.chunks(AT_ONCE * jobs.max(1)) {
-        let pairs: Vec<_> =
-            chunk.iter().filter_map(|result| lines.of(result.label.id).map(|line| (result, line))).collect();
-        let checked = side_by_side(jobs, || {
-            in_order(&pairs, |(result, line)| {
-                let case = study.case_of(&result.label).ok_or_else(|| line.says("the study has no such case"))?;
-                line.check(&case, result).map(|proved| (proved.is_enough(&case, agreement), proved))
-            })
-        });
-        for ((result, _), checked) in pairs.iter().zip(checked) {
-            match checked {
-                Ok((is_enough, proved)) => {
-                    found.proved += 1;
-                    found.again.extend(is_enough.then_some(proved.result));
-                }
-                Err(why) => found.findings.push((result.label.id, why)),
-            }
-        }
-    }
-    found.lines = lines.finish();
-    found
 }

@@ -9,7 +9,8 @@ use crate::solve::{Observer, Unobserved, solve_case};
 use crate::study::{Case, Study};
 use serde::Deserialize;
 use serde_json::{Value as Json, json};
-use std::collections::{BTreeMap, BTreeSet};
+use std::borrow::Cow;
+use std::collections::BTreeSet;
 
 /// What is wrong with a set of results, by case; empty when everything is confirmed. Solves all its cases again.
 pub fn verify(study: &Study, results: &StudyResults) -> Vec<(usize, String)> {
@@ -22,34 +23,14 @@ pub fn verify(study: &Study, results: &StudyResults) -> Vec<(usize, String)> {
 
 /// The cases that a set of results must hold, solved again.
 pub fn solve_again(study: &Study, results: &StudyResults, jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {
-    solve_others_again(study, results, Vec::new(), jobs, observer)
-}
-
-/// The same, if some of the cases are `proved` already: their results take the place of solving again.
-pub fn solve_others_again(
-    study: &Study,
-    results: &StudyResults,
-    mut proved: Vec<CaseResult>,
-    jobs: usize,
-    observer: &dyn Observer,
-) -> Vec<CaseResult> {
-    let kind = kind(&study.kind);
-    if kind.is_some_and(|kind| kind.makes_cases()) {
-        // Its search starts from all cases.
-        proved.clear();
-    }
     let wanted = match &results.only_cases {
         // Each once, however long the list.
-        Some(ids) => ids.iter().copied().filter(|id| *id < study.cases.len()).collect::<BTreeSet<_>>(),
-        None => (0..study.cases.len()).collect(),
+        Some(ids) => ids.iter().copied().filter(|id| *id < study.count()).collect::<BTreeSet<_>>(),
+        None => (0..study.count()).collect(),
     };
-    proved.retain(|case| wanted.contains(&case.label.id));
-    let done: BTreeSet<usize> = proved.iter().map(|case| case.label.id).collect();
-    let rest: Vec<usize> = wanted.difference(&done).copied().collect();
-    observer.begins(rest.len());
-    let mut again = kind.map(|kind| kind.solve(study, &rest, jobs, observer)).unwrap_or_default();
-    again.extend(proved);
-    again.sort_by_key(|case| case.label.id);
+    let (wanted, mut again) = (wanted.into_iter().collect::<Vec<_>>(), Vec::new());
+    study.solve(&wanted, jobs, observer, &mut |case| again.push(case));
+    again.sort_by_key(|case: &CaseResult| case.label.id);
     again
 }
 
@@ -58,97 +39,68 @@ pub fn solve_others_again(
 pub fn verify_against(study: &Study, stored: &Json, again: &[CaseResult]) -> Result<Vec<(usize, String)>, String> {
     let results = StudyResults::deserialize(stored).map_err(|error| error.to_string())?;
     let entries = stored["cases"].as_array().ok_or("there is no list of cases")?;
-    let mut check = StoredCheck::new(study, &results, again);
-    entries.iter().for_each(|entry| check.entry(entry));
-    check.findings()
-}
-
-/// A check of results that have been read, to which their entries are given one after another as they are stored: an
-/// entry may hold more than what is read of it.
-pub struct StoredCheck<'a> {
-    study: &'a Study,
-    results: &'a StudyResults,
-    agreement: Agreement,
-    again: BTreeMap<usize, &'a CaseResult>,
-    /// Cases whose results were proved, not solved again.
-    proved: BTreeSet<usize>,
-    wrong: Vec<(usize, String)>,
-    seen: usize,
-}
-
-impl<'a> StoredCheck<'a> {
-    /// Of these results, against the same cases solved `again`.
-    pub fn new(study: &'a Study, results: &'a StudyResults, again: &'a [CaseResult]) -> Self {
-        Self::with_proved(study, results, again, BTreeSet::new())
-    }
-
-    /// The same, if some of the results `again` were proved by stored paths.
-    pub fn with_proved(
-        study: &'a Study,
-        results: &'a StudyResults,
-        again: &'a [CaseResult],
-        proved: BTreeSet<usize>,
-    ) -> Self {
-        let agreement = Agreement::of(&results.origin, &study.resolved);
-        let mut wrong = study_findings(study, results, agreement);
-        wrong.extend(id_findings(study, results, again));
-        let again = again.iter().map(|case| (case.label.id, case)).collect();
-        StoredCheck { study, results, agreement, again, proved, wrong, seen: 0 }
-    }
-
-    /// The next entry of the list of cases.
-    pub fn entry(&mut self, entry: &Json) {
-        let Some(result) = self.results.cases.get(self.seen) else { return self.seen += 1 };
-        self.seen += 1;
-        let found = caught(|| self.differs(entry, result)).unwrap_or_else(|why| vec![why]);
-        self.wrong.extend(found.into_iter().map(|why| (result.label.id, why)));
-    }
-
-    /// Findings of a case, by itself and against solving again.
-    fn differs(&self, entry: &Json, result: &CaseResult) -> Vec<String> {
-        let Some(case) = self.study.case_of(&result.label) else { return vec!["the study has no such case".into()] };
-        let mut found = verify_case(&case, result);
-        found.extend(hash_finding(&case, result, &self.results.origin));
-        if let Some(again) = self.again.get(&result.label.id) {
-            found.extend(self.against(&case, (entry, result), again));
-        }
-        found
-    }
-
-    /// The differences of an entry from its case solved again.
-    fn against(&self, case: &Case, (entry, result): (&Json, &CaseResult), again: &CaseResult) -> Vec<String> {
-        let mut found = Vec::new();
-        let agreement = match self.proved.contains(&result.label.id) {
-            true => Agreement::Processor,
-            false => self.agreement,
-        };
-        let mut at_stored_values = None;
-        // Searches of two processors choose values that differ by rounding: the stored ones are solved again.
-        if self.agreement != Agreement::Bits && result.label.parameters != again.label.parameters {
-            let parameters = |case: &CaseResult| json!({ "parameters": case.label.parameters });
-            if !self.agreement.differences(&parameters(result), &parameters(again)).is_empty() {
-                found.push("the search does not try this case".into());
+    let agreement = Agreement::of(&results.origin, &study.resolved);
+    let mut wrong = study_findings(study, &results, agreement);
+    wrong.extend(id_findings(study, &results, again));
+    for (entry, result) in entries.iter().zip(&results.cases) {
+        let id = result.label.id;
+        let differs = || {
+            let mut found = by_itself(study, &results.origin, result);
+            if let Some(again) = again.iter().find(|case| case.label.id == id).filter(|_| found.case.is_some()) {
+                found.wrong.extend(against(study, agreement, (entry, result), again));
             }
-            at_stored_values = Some(solve_case(case));
-        }
-        match serde_json::to_value(at_stored_values.as_ref().unwrap_or(again)) {
-            Ok(again) => found.extend(agreement.differences(entry, &again)),
-            Err(why) => found.push(why.to_string()),
-        }
-        found
+            found.wrong
+        };
+        let found = caught(differs).unwrap_or_else(|why| vec![why]);
+        wrong.extend(found.into_iter().map(|why| (id, why)));
     }
+    Ok(wrong)
+}
 
-    /// What is wrong; an error where other entries were given than the results have.
-    pub fn findings(self) -> Result<Vec<(usize, String)>, String> {
-        match self.seen == self.results.cases.len() {
-            true => Ok(self.wrong),
-            false => Err("the list of cases has changed while it was read".into()),
+/// A stored case that was checked by itself.
+pub struct CheckedCase<'a> {
+    /// The case of the study that it belongs to.
+    pub case: Option<Cow<'a, Case>>,
+    /// The findings.
+    pub wrong: Vec<String>,
+}
+
+/// Checks a stored case by itself, without a solver.
+pub fn by_itself<'a>(study: &'a Study, origin: &Origin, result: &CaseResult) -> CheckedCase<'a> {
+    let case = study.case_of(&result.label);
+    let wrong = match &case {
+        Some(case) => verify_case(case, result).into_iter().chain(hash_finding(case, result, origin)).collect(),
+        None => vec!["the study has no such case".into()],
+    };
+    CheckedCase { case, wrong }
+}
+
+/// The differences of the entry of a case from the same case solved again.
+pub fn against(
+    study: &Study,
+    agreement: Agreement,
+    (entry, result): (&Json, &CaseResult),
+    again: &CaseResult,
+) -> Vec<String> {
+    let mut found = Vec::new();
+    let mut at_stored_values = None;
+    // Searches of two processors choose values that differ by rounding: the stored ones are solved again.
+    if agreement != Agreement::Bits && result.label.parameters != again.label.parameters {
+        let parameters = |case: &CaseResult| json!({ "parameters": case.label.parameters });
+        if !agreement.differences(&parameters(result), &parameters(again)).is_empty() {
+            found.push("the search does not try this case".into());
         }
+        at_stored_values = study.case_of(&result.label).map(|case| solve_case(&case));
     }
+    match serde_json::to_value(at_stored_values.as_ref().unwrap_or(again)) {
+        Ok(again) => found.extend(agreement.differences(entry, &again)),
+        Err(why) => found.push(why.to_string()),
+    }
+    found
 }
 
 /// Finds a wrong hash of a case in results of this origin. Results of another origin have another hash.
-pub fn hash_finding(case: &Case, result: &CaseResult, origin: &Origin) -> Option<String> {
+fn hash_finding(case: &Case, result: &CaseResult, origin: &Origin) -> Option<String> {
     let fine = origin.format == 0 || case.hash_in(origin) == result.label.case_hash;
     (!fine).then(|| "case_hash does not match the case".into())
 }
@@ -198,8 +150,8 @@ fn id_findings(study: &Study, results: &StudyResults, again: &[CaseResult]) -> V
     wrong.extend(seen.difference(&expected).map(|id| (*id, "is not among the cases that were asked for".into())));
     if let Some(only) = &results.only_cases {
         let ordered = only.windows(2).all(|pair| pair[0] < pair[1]);
-        let whole = only.is_empty() || only.len() >= study.cases.len();
-        if whole || !ordered || only.iter().any(|id| *id >= study.cases.len()) {
+        let whole = only.is_empty() || only.len() >= study.count();
+        if whole || !ordered || only.iter().any(|id| *id >= study.count()) {
             wrong.push((0, "only_cases is no choice of the study's cases".into()));
         }
     }

@@ -1,34 +1,48 @@
 //! `results.csv`: one row per case, units in the names of columns.
 
 use super::columns::Column;
-use super::csv_table::csv_table;
+use super::csv_table::csv_row;
 use super::register::register;
 use super::study_output::StudyOutput;
-use super::writer::Writer;
+use super::writer::{CaseTable, Writer};
 use crate::results::CaseResult;
 use serde_json::Value as Json;
+use std::io::{self, Write};
 
 /// Writes `results.csv`.
 #[derive(Debug)]
 pub struct ResultsCsv;
 
+/// The columns of the table.
+struct Rows(Vec<Column>);
+
 impl Writer for ResultsCsv {
-    fn files(&self, study: &StudyOutput, _options: &Json) -> Vec<(String, Vec<u8>)> {
-        vec![("results.csv".into(), results_csv(study).into_bytes())]
+    fn table<'a>(&self, study: &StudyOutput<'a>, _options: &Json) -> Option<Box<dyn CaseTable + 'a>> {
+        Some(Box::new(Rows(study.file_labels().with_results())))
     }
 }
 
-/// The table of a study: a cell is empty where a case has no such value; lists are separated by
-/// blanks, notes by ` | `.
-pub fn results_csv(study: &StudyOutput) -> String {
-    let columns = study.file_labels().with_results();
-    let rows = study.results.cases.iter().map(|case| row(&columns, case));
-    csv_table(columns.iter().map(Column::header).collect(), rows)
+impl CaseTable for Rows {
+    fn name(&self) -> String {
+        "results.csv".into()
+    }
+
+    fn begin(&mut self, out: &mut dyn Write) -> io::Result<()> {
+        out.write_all(&csv_row(self.0.iter().map(Column::header)))
+    }
+
+    fn add(&mut self, case: &CaseResult, out: &mut dyn Write) -> io::Result<()> {
+        out.write_all(&csv_row(self.0.iter().map(|column| column.cell(case).text())))
+    }
 }
 
-/// The row of a case under these columns.
-pub(super) fn row(columns: &[Column], case: &CaseResult) -> Vec<String> {
-    columns.iter().map(|column| column.cell(case).text()).collect()
+/// The whole table of a study.
+#[cfg(test)]
+pub fn results_csv(study: &StudyOutput) -> String {
+    let (mut rows, mut text) = (Rows(study.file_labels().with_results()), Vec::new());
+    rows.begin(&mut text).expect("written");
+    study.results.cases.iter().try_for_each(|case| rows.add(case, &mut text)).expect("written");
+    String::from_utf8(text).expect("text")
 }
 
 register!(

@@ -1,38 +1,16 @@
 //! Tables as CSV, of which no cell is a formula to a spreadsheet.
 
-use std::io::{self, Write};
-
 /// A table with its header. Rows are as long as the header.
 pub fn csv_table(header: Vec<String>, rows: impl Iterator<Item = Vec<String>>) -> String {
-    let whole = || -> io::Result<Vec<u8>> {
-        let mut table = CsvRows::new(Vec::new(), header)?;
-        for row in rows {
-            table.add(row)?;
-        }
-        table.finish()
-    };
-    String::from_utf8(whole().expect("every row is as long as the header")).expect("every cell is text")
+    let lines: Vec<u8> = std::iter::once(header).chain(rows).flat_map(|row| csv_row(row.into_iter())).collect();
+    String::from_utf8(lines).expect("every cell is text")
 }
 
-/// The same table, row by row.
-pub struct CsvRows<W: Write>(csv::Writer<W>);
-
-impl<W: Write> CsvRows<W> {
-    /// Writes the header.
-    pub fn new(out: W, header: Vec<String>) -> io::Result<Self> {
-        let mut rows = CsvRows(csv::Writer::from_writer(out));
-        rows.add(header).map(|()| rows)
-    }
-
-    /// Writes a row, as long as the header.
-    pub fn add(&mut self, row: Vec<String>) -> io::Result<()> {
-        Ok(self.0.write_record(row.into_iter().map(plain))?)
-    }
-
-    /// Where it was written to, all of it.
-    pub fn finish(self) -> io::Result<W> {
-        self.0.into_inner().map_err(|error| error.into_error())
-    }
+/// A row with its line end.
+pub fn csv_row(cells: impl Iterator<Item = String>) -> Vec<u8> {
+    let mut line = csv::WriterBuilder::new().buffer_capacity(1 << 10).from_writer(Vec::new());
+    line.write_record(cells.map(plain)).expect("memory takes what is written");
+    line.into_inner().expect("memory takes what is written")
 }
 
 /// A cell that is text or a number: what a spreadsheet would read as a formula gets an apostrophe in front, which

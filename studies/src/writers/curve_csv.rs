@@ -1,39 +1,47 @@
 //! `curve.csv`: the points of load-displacement curves, where a study asks for them.
 
 use super::columns::Column;
-use super::csv::row;
-use super::csv_table::csv_table;
+use super::csv_table::csv_row;
 use super::register::register;
 use super::study_output::StudyOutput;
-use super::writer::Writer;
+use super::writer::{CaseTable, Writer};
+use crate::results::CaseResult;
 use serde_json::Value as Json;
+use std::io::{self, Write};
 
 /// Writes `curve.csv`.
 #[derive(Debug)]
 pub struct CurveCsv;
 
+/// The columns that tell cases apart.
+struct Rows(Vec<Column>);
+
 impl Writer for CurveCsv {
-    fn files(&self, study: &StudyOutput, _options: &Json) -> Vec<(String, Vec<u8>)> {
-        let any = study.results.cases.iter().any(|case| case.path.curve.is_some());
-        if any { vec![("curve.csv".into(), curve_csv(study).into_bytes())] } else { Vec::new() }
+    fn table<'a>(&self, study: &StudyOutput<'a>, _options: &Json) -> Option<Box<dyn CaseTable + 'a>> {
+        study.totals.curves.then(|| Box::new(Rows(study.file_labels().columns())) as Box<dyn CaseTable>)
     }
 }
 
 /// One row per point of each case's curve, in the order of the path.
-pub fn curve_csv(study: &StudyOutput) -> String {
-    let labels = study.file_labels().columns();
-    let mut header: Vec<String> = labels.iter().map(Column::header).collect();
-    header.extend(["stage", "displacement [m]", "load_factor [-]"].map(String::from));
-    let mut rows = Vec::new();
-    for case in &study.results.cases {
+impl CaseTable for Rows {
+    fn name(&self) -> String {
+        "curve.csv".into()
+    }
+
+    fn begin(&mut self, out: &mut dyn Write) -> io::Result<()> {
+        let own = ["stage", "displacement [m]", "load_factor [-]"].map(String::from);
+        out.write_all(&csv_row(self.0.iter().map(Column::header).chain(own)))
+    }
+
+    fn add(&mut self, case: &CaseResult, out: &mut dyn Write) -> io::Result<()> {
+        let labels: Vec<String> = self.0.iter().map(|column| column.cell(case).text()).collect();
         let stage = case.stages.last().map_or("", |stage| stage.name.as_str());
         for [displacement, factor] in case.path.curve.iter().flatten() {
-            let mut row = row(&labels, case);
-            row.extend([stage.to_string(), displacement.to_string(), factor.to_string()]);
-            rows.push(row);
+            let own = [stage.to_string(), displacement.to_string(), factor.to_string()];
+            out.write_all(&csv_row(labels.iter().cloned().chain(own)))?;
         }
+        Ok(())
     }
-    csv_table(header, rows.into_iter())
 }
 
 register!(

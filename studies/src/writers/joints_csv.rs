@@ -1,14 +1,15 @@
 //! Loads that are carried: `joints.csv` with the forces of all joints, and a section of the report.
 
-use super::csv_table::csv_table;
+use super::csv_table::csv_row;
 use super::page;
 use super::register::register;
 use super::study_output::StudyOutput;
-use super::writer::Writer;
+use super::writer::{CaseTable, Writer};
 use crate::figures::format::{escape, format_force, format_number, status_word};
 use crate::results::CaseResult;
 use crate::results::carried::{JointEntry, PermissibleEntry, ReserveEntry, ReserveFlow};
 use serde_json::Value as Json;
+use std::io::{self, Write};
 
 /// Joints of a case in the report; all are in the file.
 const ROWS: usize = 400;
@@ -20,13 +21,20 @@ const CASES: usize = 10;
 pub struct Joints;
 
 impl Writer for Joints {
-    fn files(&self, study: &StudyOutput, _options: &Json) -> Vec<(String, Vec<u8>)> {
-        let cases = &study.results.cases;
-        let rows: Vec<Vec<String>> =
-            cases.iter().flat_map(|case| case.carried.joints.iter().map(|entry| row(case, entry))).collect();
-        if rows.is_empty() {
-            return Vec::new();
-        }
+    fn table<'a>(&self, study: &StudyOutput<'a>, _options: &Json) -> Option<Box<dyn CaseTable + 'a>> {
+        study.totals.joints.then(|| Box::new(Rows) as Box<dyn CaseTable>)
+    }
+}
+
+/// One row per joint of each case.
+struct Rows;
+
+impl CaseTable for Rows {
+    fn name(&self) -> String {
+        "joints.csv".into()
+    }
+
+    fn begin(&mut self, out: &mut dyn Write) -> io::Result<()> {
         let header = [
             "id",
             "variant",
@@ -46,7 +54,11 @@ impl Writer for Joints {
             "zone_least [m]",
             "zone_greatest [m]",
         ];
-        vec![("joints.csv".into(), csv_table(header.map(String::from).into(), rows.into_iter()).into_bytes())]
+        out.write_all(&csv_row(header.into_iter().map(String::from)))
+    }
+
+    fn add(&mut self, case: &CaseResult, out: &mut dyn Write) -> io::Result<()> {
+        case.carried.joints.iter().try_for_each(|entry| out.write_all(&csv_row(row(case, entry).into_iter())))
     }
 }
 

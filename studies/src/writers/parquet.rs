@@ -170,8 +170,7 @@ const MAGIC: &[u8; 4] = b"PAR1";
 const GROUP: usize = 4096;
 
 /// A table as Parquet, row by row. No more rows are held than one group has.
-pub struct Parquet<W: Write> {
-    out: W,
+pub struct Parquet {
     at: i64,
     /// Name and `enum Type` of each column.
     columns: Vec<(String, i64)>,
@@ -180,26 +179,30 @@ pub struct Parquet<W: Write> {
     rows: i64,
 }
 
-impl<W: Write> Parquet<W> {
-    /// Begins a table whose columns have these names and types.
-    pub fn new(mut out: W, columns: impl Iterator<Item = (String, CellKind)>) -> io::Result<Self> {
-        out.write_all(MAGIC)?;
+impl Parquet {
+    /// A table whose columns have these names and types.
+    pub fn new(columns: impl Iterator<Item = (String, CellKind)>) -> Self {
         let columns = columns.map(|(name, kind)| (name, kind.stored())).collect();
-        Ok(Parquet { out, at: MAGIC.len() as i64, columns, waiting: Vec::new(), groups: Vec::new(), rows: 0 })
+        Parquet { at: MAGIC.len() as i64, columns, waiting: Vec::new(), groups: Vec::new(), rows: 0 }
+    }
+
+    /// Writes the beginning.
+    pub fn begin(&mut self, out: &mut dyn Write) -> io::Result<()> {
+        out.write_all(MAGIC)
     }
 
     /// Adds a row: a cell for each column, of its type.
-    pub fn add(&mut self, row: Vec<Cell>) -> io::Result<()> {
+    pub fn add(&mut self, row: Vec<Cell>, out: &mut dyn Write) -> io::Result<()> {
         let fits = row.len() == self.columns.len()
             && row.iter().zip(&self.columns).all(|(cell, own)| cell.kind().stored() == own.1);
         if !fits {
             return Err(io::Error::other("a row is not like the columns of its table"));
         }
         self.waiting.push(row);
-        if self.waiting.len() == GROUP { self.write_group() } else { Ok(()) }
+        if self.waiting.len() == GROUP { self.write_group(out) } else { Ok(()) }
     }
 
-    fn write_group(&mut self) -> io::Result<()> {
+    fn write_group(&mut self, out: &mut dyn Write) -> io::Result<()> {
         let rows = std::mem::take(&mut self.waiting);
         let count = rows.len() as i64;
         let mut rows: Vec<_> = rows.into_iter().map(Vec::into_iter).collect();
@@ -208,7 +211,7 @@ impl<W: Write> Parquet<W> {
             let cells: Vec<Cell> = rows.iter_mut().filter_map(Iterator::next).collect();
             let page = page(&cells);
             let size = page.len() as i64;
-            self.out.write_all(&page)?;
+            out.write_all(&page)?;
             let encodings = [0, 3].map(|encoding| zigzag(encoding) as u8).map(|byte| vec![byte]);
             let meta = Struct::default()
                 .i32(1, *stored)
@@ -228,10 +231,10 @@ impl<W: Write> Parquet<W> {
         Ok(())
     }
 
-    /// Writes what tells of the groups, and gives back where it was written to.
-    pub fn finish(mut self) -> io::Result<W> {
+    /// Writes the rows that are still held, and the list of all groups.
+    pub fn end(&mut self, out: &mut dyn Write) -> io::Result<()> {
         if !self.waiting.is_empty() {
-            self.write_group()?;
+            self.write_group(out)?;
         }
         let root = Struct::default().text(4, "rows").i32(5, self.columns.len() as i64).end();
         let column = |(name, stored): &(String, i64)| {
@@ -247,10 +250,9 @@ impl<W: Write> Parquet<W> {
             .list(4, STRUCT, std::mem::take(&mut self.groups))
             .text(6, concat!("voussoir version ", env!("CARGO_PKG_VERSION")))
             .end();
-        self.out.write_all(&footer)?;
-        self.out.write_all(&(footer.len() as u32).to_le_bytes())?;
-        self.out.write_all(MAGIC)?;
-        Ok(self.out)
+        out.write_all(&footer)?;
+        out.write_all(&(footer.len() as u32).to_le_bytes())?;
+        out.write_all(MAGIC)
     }
 }
 
@@ -277,10 +279,13 @@ mod tests {
 
     #[test]
     fn a_table_takes_rows_like_its_columns_only() {
-        let mut table = Parquet::new(Vec::new(), [("a".to_string(), CellKind::Whole)].into_iter()).expect("a table");
-        table.add(vec![Cell::Whole(Some(1))]).expect("a row");
-        assert!(table.add(vec![Cell::Number(Some(1.0))]).is_err() && table.add(Vec::new()).is_err());
-        let bytes = table.finish().expect("a file");
+        let (mut table, mut bytes) = (Parquet::new([("a".to_string(), CellKind::Whole)].into_iter()), Vec::new());
+        table.begin(&mut bytes).expect("a table");
+        table.add(vec![Cell::Whole(Some(1))], &mut bytes).expect("a row");
+        assert!(
+            table.add(vec![Cell::Number(Some(1.0))], &mut bytes).is_err() && table.add(Vec::new(), &mut bytes).is_err()
+        );
+        table.end(&mut bytes).expect("a file");
         assert!(bytes.starts_with(MAGIC) && bytes.ends_with(MAGIC));
     }
 }

@@ -4,9 +4,11 @@ use super::columns::{Cell, CellKind};
 use super::parquet::Parquet;
 
 fn file(columns: Vec<(String, CellKind)>, rows: Vec<Vec<Cell>>) -> Vec<u8> {
-    let mut table = Parquet::new(Vec::new(), columns.into_iter()).expect("a table");
-    rows.into_iter().for_each(|row| table.add(row).expect("a row"));
-    table.finish().expect("a file")
+    let (mut table, mut bytes) = (Parquet::new(columns.into_iter()), Vec::new());
+    table.begin(&mut bytes).expect("a table");
+    rows.into_iter().for_each(|row| table.add(row, &mut bytes).expect("a row"));
+    table.end(&mut bytes).expect("a file");
+    bytes
 }
 
 /// Hexadecimal digits, without those of the program's version.

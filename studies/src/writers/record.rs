@@ -26,7 +26,8 @@ const SECTIONS: [(&str, &str); 7] = [
 /// The calculation record of a study, as HTML: what its first case was given, defaults included, in SI units, then
 /// what varies from case to case.
 pub fn record(study: &Study) -> String {
-    let Some(case) = study.cases.first() else { return String::new() };
+    let Some(case) = study.case(0) else { return String::new() };
+    let case = case.as_ref();
     let mut text = String::from("<div class=\"record\">\n");
     for (heading, table) in SECTIONS {
         let value = &case.resolved[table];
@@ -135,8 +136,7 @@ fn varied(study: &Study) -> Vec<(String, String)> {
     let (mut rows, keys) = (Vec::new(), study.swept_keys());
     for key in study.outline.axes.iter().flat_map(|(keys, _)| keys) {
         let mut seen = HashSet::new();
-        let swept = study.cases.iter().filter_map(|case| case.parameters.get(key));
-        let values: Vec<&Json> = swept.filter(|value| seen.insert(value.to_string())).collect();
+        let values: Vec<Json> = study.values(key).into_iter().filter(|value| seen.insert(value.to_string())).collect();
         // Texts contain their units.
         let unit = keys.unit(key).filter(|_| values.iter().all(|value| value.is_number()));
         let unit = unit.map_or(String::new(), |unit| format!(" {unit}"));
@@ -145,7 +145,7 @@ fn varied(study: &Study) -> Vec<(String, String)> {
             [first, .., last] if values.len() > LISTED => {
                 format!("{} … {}{unit} ({} values)", format_value(first), format_value(last), values.len())
             }
-            few => format!("{}{unit}", few.iter().map(|value| format_value(value)).collect::<Vec<_>>().join(", ")),
+            few => format!("{}{unit}", few.iter().map(format_value).collect::<Vec<_>>().join(", ")),
         };
         rows.push((keys.words_in_place(key), words));
     }

@@ -76,6 +76,14 @@ pub fn report_html(study: &StudyOutput, drawn: usize) -> String {
     }
     body += &comparison(study);
     body += "<h2>Cases</h2>\n";
+    if !study.totals.all_shown() {
+        body += &format!(
+            "<p>The tables and the chart show {} of {} cases: the least and the greatest load factor of every few neighbours, \
+             and cases without a certified answer. All cases are in results.csv.</p>\n",
+            cases.len(),
+            study.totals.cases
+        );
+    }
     body += &case_table(study);
     body += &notes(cases);
     if study.output.figures.anything() {
@@ -129,9 +137,9 @@ fn summary(study: &StudyOutput) -> String {
             text += &format!(" Mechanism: {}.", kind_words(mechanism.kind));
         }
     } else {
-        text += &format!("{} cases.", cases.len());
+        text += &format!("{} cases.", study.totals.cases);
         for status in page::STATUSES {
-            let count = cases.iter().filter(|case| case.status == status).count();
+            let count = study.totals.of_status(status);
             if count > 0 {
                 text += &format!(
                     " <strong>{count} {}</strong> ({}).",
@@ -152,13 +160,12 @@ fn summary(study: &StudyOutput) -> String {
                 format_number(high, 4)
             );
         }
-        let snapping: Vec<f64> = cases.iter().filter_map(CaseResult::snaps_from).collect();
-        if !snapping.is_empty() {
+        if let Some(lowest) = study.totals.lowest_snap {
             text += &format!(
                 " <strong>{} of {} cases snap before they reach their load factor</strong>, the lowest from λ = {}.",
-                snapping.len(),
-                cases.len(),
-                format_number(snapping.iter().copied().fold(f64::INFINITY, f64::min), 4)
+                study.totals.snapping,
+                study.totals.cases,
+                format_number(lowest, 4)
             );
         }
     }
@@ -167,8 +174,13 @@ fn summary(study: &StudyOutput) -> String {
         cases.map(|case| case.label.id).collect::<Vec<usize>>()
     };
     let (open, failed) = (unproved(true), unproved(false));
+    // Of very many cases their number.
+    let named = |ids: &[usize], count: usize| match study.totals.all_shown() {
+        true => id_list(ids, cases.len()),
+        false => format!("{count} cases"),
+    };
     if !open.is_empty() {
-        text += &format!(" <strong>Only bounds are proved for {}.</strong>", id_list(&open, cases.len()));
+        text += &format!(" <strong>Only bounds are proved for {}.</strong>", named(&open, study.totals.open));
     }
     text += &if failed.is_empty() && !open.is_empty() {
         String::new()
@@ -177,7 +189,7 @@ fn summary(study: &StudyOutput) -> String {
     } else {
         format!(
             " <strong class=\"bad\">The certificate failed for {}: do not rely on them.</strong>",
-            id_list(&failed, cases.len())
+            named(&failed, study.totals.cases - study.totals.certified - study.totals.open)
         )
     };
     text + "</p>\n"

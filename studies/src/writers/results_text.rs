@@ -182,7 +182,7 @@ mod tests {
     use super::*;
     use crate::results::{StudyResults, this_program};
     use crate::side_by_side::side_by_side;
-    use crate::writers::results_json::write_results;
+    use crate::writers::results_json::add_cases;
     use serde_json::json;
 
     /// Byte for byte what serde_json writes, with and without what may be left out, and however deep values stand.
@@ -216,7 +216,9 @@ mod tests {
             let expected = serde_json::to_string_pretty(&results).expect("JSON") + "\n";
             assert_eq!(String::from_utf8(text).expect("text"), expected);
             for jobs in [1, 2] {
-                let text = side_by_side(jobs, || write_results(Vec::new(), &results)).expect("written");
+                let mut text = ResultsText::begin(Vec::new(), &head).expect("written");
+                side_by_side(jobs, || add_cases(&mut text, &results.cases)).expect("written");
+                let text = text.finish(results.comparison.as_ref(), &results.own).expect("written");
                 assert_eq!(String::from_utf8(text).expect("text"), expected);
             }
         }

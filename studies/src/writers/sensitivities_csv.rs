@@ -1,15 +1,16 @@
 //! Derivatives of load factors: `sensitivities.csv`, and a table of the report.
 
-use super::csv_table::csv_table;
+use super::csv_table::csv_row;
 use super::page;
 use super::register::register;
 use super::study_output::StudyOutput;
-use super::writer::Writer;
+use super::writer::{CaseTable, Writer};
 use crate::config::key_meaning::KeyMeaning;
 use crate::figures::format::{format_number, format_short};
 use crate::results::{CaseResult, SensitivityEntry};
-use crate::study::meaning_in;
+use crate::study::{Study, meaning_in};
 use serde_json::Value as Json;
+use std::io::{self, Write};
 
 /// Rows of the report's table.
 const ROWS: usize = 400;
@@ -19,13 +20,31 @@ const ROWS: usize = 400;
 pub struct Sensitivities;
 
 impl Writer for Sensitivities {
-    fn files(&self, study: &StudyOutput, _options: &Json) -> Vec<(String, Vec<u8>)> {
-        let rows: Vec<Vec<String>> = entries(study).map(|entry| row(&entry)).collect();
-        if rows.is_empty() {
-            return Vec::new();
-        }
+    fn table<'a>(&self, study: &StudyOutput<'a>, _options: &Json) -> Option<Box<dyn CaseTable + 'a>> {
+        let study = study.inputs.filter(|_| study.totals.sensitivities)?;
+        Some(Box::new(Rows(study)))
+    }
+}
+
+/// The study, by which keys have units.
+struct Rows<'a>(&'a Study);
+
+impl CaseTable for Rows<'_> {
+    fn name(&self) -> String {
+        "sensitivities.csv".into()
+    }
+
+    fn begin(&mut self, out: &mut dyn Write) -> io::Result<()> {
         let header = ["id", "variant", "key", "unit", "value", "left [1/unit]", "right [1/unit]", "kink", "why"];
-        vec![("sensitivities.csv".into(), csv_table(header.map(String::from).into(), rows.into_iter()).into_bytes())]
+        out.write_all(&csv_row(header.into_iter().map(String::from)))
+    }
+
+    fn add(&mut self, case: &CaseResult, out: &mut dyn Write) -> io::Result<()> {
+        let Some(own) = self.0.case_of(&case.label).filter(|_| !case.sensitivities.is_empty()) else { return Ok(()) };
+        case.sensitivities.iter().try_for_each(|entry| {
+            let meaning = meaning_in(&own.resolved, &entry.key);
+            out.write_all(&csv_row(row(&Entry { case, own: entry, meaning }).into_iter()))
+        })
     }
 }
 

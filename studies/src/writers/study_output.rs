@@ -1,7 +1,7 @@
 //! What writers are given: the results and what they were computed from.
 
 use super::columns::Labels;
-use crate::results::{CaseResult, StudyResults, least_of};
+use crate::results::{CaseResult, StudyResults, Totals, least_of};
 use crate::study::{Case, Drawn, Output, Resolved, Study, SweptKeys};
 use serde_json::Value as Json;
 use std::borrow::Cow;
@@ -14,8 +14,10 @@ use voussoir_core::model::{Assembly, Stage};
 pub struct StudyOutput<'a> {
     /// Name of the study.
     pub name: &'a str,
-    /// Results, one per case.
+    /// Results; of very many cases only those that readers are shown.
     pub results: &'a StudyResults,
+    /// Counts over all cases.
+    pub totals: &'a Totals,
     /// Where each case comes from, in the order of the results.
     pub scenes: Vec<SceneOutput<'a>>,
     /// Swept keys, outermost first.
@@ -44,8 +46,9 @@ pub struct SceneOutput<'a> {
 }
 
 impl<'a> StudyOutput<'a> {
-    /// A study with results of some of its cases; `cases` are those of the results, in their order.
-    pub fn new(study: &'a Study, results: &'a StudyResults, cases: &'a [Cow<'a, Case>]) -> Self {
+    /// A study with the results that readers are shown; `cases` are those of the results, in their order, and `totals`
+    /// the counts over all cases.
+    pub fn new(study: &'a Study, results: &'a StudyResults, totals: &'a Totals, cases: &'a [Cow<'a, Case>]) -> Self {
         let scene = |case: &'a Cow<'a, Case>| SceneOutput {
             assembly: &case.assembly,
             stages: &case.stages,
@@ -58,11 +61,12 @@ impl<'a> StudyOutput<'a> {
         StudyOutput {
             name: &study.name,
             results,
+            totals,
             scenes: cases.iter().map(scene).collect(),
             sweep_keys: swept.map(|parameters| parameters.keys().cloned().collect()).unwrap_or_default(),
             keys,
             output: study.output.clone(),
-            drawn: drawn(study, results),
+            drawn: drawn(study.output.figures, results),
             inputs: Some(study),
         }
     }
@@ -79,7 +83,7 @@ impl<'a> StudyOutput<'a> {
             swept: &self.sweep_keys,
             keys: &self.keys,
             variants: any(|case| case.label.variant.is_some()),
-            scenes: any(|case| case.label.scene.is_some()),
+            scenes: self.totals.scenes,
         }
     }
 
@@ -105,13 +109,13 @@ impl<'a> StudyOutput<'a> {
 
 /// The cases that are drawn, where not all are: of kinds that search those they found, else the least load factor of
 /// each variant and its first case without an answer.
-fn drawn(study: &Study, results: &StudyResults) -> Option<BTreeSet<usize>> {
+pub(crate) fn drawn(figures: Drawn, results: &StudyResults) -> Option<BTreeSet<usize>> {
     for found in ["worsts", "optima"] {
         let Some(entries) = results.own.get(found).and_then(Json::as_array) else { continue };
         let of = |entry: &Json| [entry["case"].as_u64(), entry["best_finite"]["case"].as_u64()];
         return Some(entries.iter().flat_map(of).flatten().map(|id| id as usize).collect());
     }
-    (study.output.figures == Drawn::Worst).then(|| {
+    (figures == Drawn::Worst).then(|| {
         let mut alike: BTreeMap<_, Vec<&CaseResult>> = BTreeMap::new();
         for case in &results.cases {
             alike.entry((&case.label.variant, case.status == Status::Stalled)).or_default().push(case);

@@ -1,32 +1,31 @@
-//! Results of very many cases are verified from file to file: forged, missing, doubled and foreign entries are found
-//! too.
+//! Results are verified case by case, from file to file: forged, missing, doubled and foreign entries are found.
 
 use serde_json::{Value, json};
 use std::io::{Cursor, Read};
 use voussoir::kinds::{LoadedStudy, RunRequest, StoredResults};
 use voussoir::solve::Unobserved;
-use voussoir::study::{StudyFile, StudySource, Sweep};
+use voussoir::study::{Study, StudyFile, StudySource};
 use voussoir_tests::Arch;
 
 /// A change of a result file.
 type Forgery<'f> = &'f dyn Fn(&mut Value);
 
 /// Returns five cases as a sweep that is not stored in memory.
-fn sweep() -> Sweep {
+fn sweep() -> Study {
     let arch = Arch { voussoirs: 7, ends: "jointed", ..Arch::default() };
     let text = arch.study()
         + "[output]\nwriters = [\"results_json\", \"results_csv\", \"results_parquet\"]\n[sweep]\n\"scene.width\" = { list = [1.0, 2.0, 3.0, 4.0, 5.0] }\n";
     let source = StudySource::parse(&text, "test.toml", &[]).expect("a study");
-    StudyFile::read(source).and_then(StudyFile::sweep).expect("a sweep")
+    StudyFile::read(source).and_then(StudyFile::study_unchecked).expect("a sweep")
 }
 
 /// Returns the findings of `verify` for results.json and results.csv.
-fn findings(sweep: &Sweep, results: &[u8], table: Option<&[u8]>) -> Vec<String> {
+fn findings(sweep: &Study, results: &[u8], table: Option<&[u8]>) -> Vec<String> {
     findings_of(sweep, results, table, None)
 }
 
 /// Returns the findings of `verify` for results.json and both tables.
-fn findings_of(sweep: &Sweep, results: &[u8], table: Option<&[u8]>, parquet: Option<&[u8]>) -> Vec<String> {
+fn findings_of(sweep: &Study, results: &[u8], table: Option<&[u8]>, parquet: Option<&[u8]>) -> Vec<String> {
     let bytes = |name: &str| match name {
         "results.json" => Some(results.to_vec()),
         "results.csv" => table.map(<[u8]>::to_vec),
@@ -60,10 +59,10 @@ fn what_is_forged_is_found() {
         ("2: status", &|v| v["cases"][2]["status"] = json!("stands")),
         ("4: is missing", &|v| v["cases"] = list(v)[..4].into()),
         ("1: is missing", &|v| v["cases"] = [&list(v)[..1], &list(v)[2..]].concat().into()),
-        ("4: stands twice", &|v| v["cases"] = [&list(v)[..], &list(v)[4..]].concat().into()),
-        ("1: stands twice, or after", &|v| v["cases"].as_array_mut().expect("cases").swap(1, 2)),
+        ("4: appears twice", &|v| v["cases"] = [&list(v)[..], &list(v)[4..]].concat().into()),
+        ("1: the cases are not in their order", &|v| v["cases"].as_array_mut().expect("cases").swap(1, 2)),
         ("0: results of", &|v| v["study"] = json!("another")),
-        ("0: worsts is not in", &|v| v["worsts"] = json!([])),
+        ("0: what kind = \"run\" adds", &|v| v["worsts"] = json!([])),
         ("0: only_cases", &|v| v["only_cases"] = json!([0, 1, 2, 3, 4])),
     ];
     for (why, change) in forgeries {

@@ -17,7 +17,8 @@ struct Place<'a> {
 /// `worsts` and `curve` of results.json.
 pub(super) fn entries(study: &Study, request: &Request, cases: &[CaseResult]) -> Map<String, Json> {
     let (mut worsts, mut curve) = (Vec::new(), Vec::new());
-    for base in &study.cases {
+    for base in (0..study.count()).filter_map(|id| study.case(id)) {
+        let base = base.as_ref();
         let mut places: Vec<Place> = Vec::new();
         for result in cases.iter().filter(|result| belongs(base, result)) {
             let of = |key: &str| result.label.parameters.get(key).or_else(|| base.resolved.at(key));

@@ -22,7 +22,7 @@ impl Tried<'_> {
 /// `optima` of results.json.
 pub(super) fn entries(study: &Study, request: &Request, cases: &[CaseResult]) -> Map<String, Json> {
     let optimum = |base: &Case| {
-        let first = study.cases.len() + base.id * STRIDE;
+        let first = study.count() + base.id * STRIDE;
         let own = cases.iter().filter(|result| (first..first + STRIDE).contains(&result.label.id));
         let mut tried: Vec<Tried> = own.filter_map(|result| of_case(request, base, result)).collect();
         (!tried.is_empty()).then(|| {
@@ -30,7 +30,7 @@ pub(super) fn entries(study: &Study, request: &Request, cases: &[CaseResult]) ->
             entry(request, base, &tried)
         })
     };
-    let optima: Vec<Json> = study.cases.iter().filter_map(optimum).collect();
+    let optima: Vec<Json> = (0..study.count()).filter_map(|id| optimum(&*study.case(id)?)).collect();
     [("optima".to_string(), Json::from(optima))].into_iter().collect()
 }
 

@@ -7,8 +7,9 @@ use super::surface::yield_surface;
 use crate::figures::chart::chart_svg;
 use crate::figures::format::{format_number, format_value};
 use crate::figures::series::Series;
-use crate::kinds::case_study::remarks;
-use crate::kinds::kind::{LoadedStudy, Piece, RunOutput, RunRequest, StoredResults, Verification};
+use crate::kinds::case_study::one_case;
+use crate::kinds::kind::{LoadedStudy, Piece, RunOutput, RunRequest, Verification};
+use crate::kinds::stored_results::StoredResults;
 use crate::results::{head, without_origin};
 use crate::solve::Observer;
 use crate::study::SweptKeys;
@@ -46,9 +47,9 @@ impl LoadedStudy for PointStudy {
     }
 
     fn run(&self, request: &RunRequest, observer: &dyn Observer) -> RunOutput {
-        let stored = match &request.stored {
-            Some([results, ..]) if request.keep => stored_ids(&serde_json::from_str(results).unwrap_or_default()),
-            _ => Vec::new(),
+        let stored = match &request.kept {
+            Some(results) => stored_ids(&serde_json::from_str(results).unwrap_or_default()),
+            None => Vec::new(),
         };
         let others: Vec<usize> = stored.into_iter().filter(|id| !request.wanted.contains(id)).collect();
         // Driving a point costs little: those that stay are driven again, so that they are of this study.
@@ -62,9 +63,11 @@ impl LoadedStudy for PointStudy {
                 .map(|(n, text)| (n, text.into_bytes()))
                 .collect(),
             table: table(self, &results),
-            remarks: remarks(request, others, self.cases.len()),
+            remarks: match request.wanted[..] {
+                [id] if request.kept.is_some() && self.cases.len() > 1 => vec![one_case(id, self.cases.len(), others)],
+                _ => Vec::new(),
+            },
             certified: results.iter().all(|result| result.status == PathStatus::Reached) && !observer.cancelled(),
-            results: None,
         }
     }
 
@@ -102,7 +105,6 @@ impl LoadedStudy for PointStudy {
             files: stored.altered(made.iter().map(|(name, text)| (name.as_str(), text.as_bytes())), agreement),
             agreement,
             paths: [0, 0],
-            made: made.into_iter().map(|(name, _)| name).collect(),
             own: driven.len(),
             of: self.cases.len(),
             how: "checked: every number and word against driving the point again; tables and figures against those of the \

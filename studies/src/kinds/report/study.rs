@@ -11,8 +11,9 @@ use crate::config::check::Checker;
 use crate::config::diagnostic::{LocatedDiagnostic, sort};
 use crate::config::document::Node;
 use crate::config::origin::Origin;
-use crate::kinds::kind::{LoadedStudy, Part, RunOutput, RunRequest, StoredResults, Verification};
+use crate::kinds::kind::{LoadedStudy, Part, RunOutput, RunRequest, Verification};
 use crate::kinds::read::read_source;
+use crate::kinds::stored_results::StoredResults;
 use crate::results::{head, without_origin};
 use crate::solve::Observer;
 use crate::study::{DiagnosticList, Drawn, ReadFile, StudyError, StudySource};
@@ -98,7 +99,6 @@ impl ReportStudy {
             table: table(&answers, &parts),
             remarks: Vec::new(),
             certified: answers.iter().all(|answer| answer.verdict != Verdict::Undecided),
-            results: None,
         }
     }
 }
@@ -210,7 +210,6 @@ impl LoadedStudy for ReportStudy {
             files: stored.altered(made.files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())), agreement),
             agreement,
             paths: [0, 0],
-            made: made.files.into_iter().map(|(name, _)| name).collect(),
             own: self.contents.claims.len(),
             of: self.contents.claims.len(),
             how: "checked: verdicts, charts and page against the results of the parts, each of which is verified by itself",

@@ -1,0 +1,213 @@
+//! From finished cases to files: the cases are read twice, and no more of them are held than readers are shown.
+
+use super::kind::{OwnResults, RunRequest, kind};
+use super::stored_results::RESULTS;
+use crate::figures::format::{format_number, snap_words};
+use crate::results::{CaseResult, FinishedCases, Origin, StudyResults, Totals, words};
+use crate::side_by_side::side_by_side;
+use crate::study::{Case, Drawn, Study, SweptKeys};
+use crate::writers::comparison::comparison_table;
+use crate::writers::files::Files;
+use crate::writers::path_proofs::PathProofs;
+use crate::writers::results_json::add_cases;
+use crate::writers::results_text::{ResultsHead, ResultsText};
+use crate::writers::table::results_table;
+use crate::writers::{StudyOutput, drawn, tables, written};
+use serde_json::{Map, Value as Json};
+use std::borrow::Cow;
+use std::io;
+
+/// The files that were made of finished cases.
+#[derive(Debug, Clone)]
+pub struct Made {
+    /// Names of the files beside results.json, sorted.
+    pub names: Vec<String>,
+    /// The table for the terminal.
+    pub table: String,
+    /// Counts over all cases.
+    pub totals: Totals,
+}
+
+/// What is known of all cases after they were read once.
+struct Gathered {
+    totals: Totals,
+    own: OwnResults,
+}
+
+impl Study {
+    /// Results of the study from those of its cases.
+    pub fn results(&self, version: &str, cases: Vec<CaseResult>) -> StudyResults {
+        let own = self.own_results(&cases);
+        let totals = Totals::of(&cases);
+        StudyResults { cases, ..self.results_of(version, &Gathered { totals, own }) }
+    }
+
+    /// Results without their cases.
+    fn results_of(&self, version: &str, gathered: &Gathered) -> StudyResults {
+        let ids: Vec<usize> = gathered.totals.ids().filter(|id| *id < self.count()).collect();
+        StudyResults {
+            study: self.name.clone(),
+            version: version.into(),
+            origin: Origin::here(&words(&self.resolved)),
+            only_cases: (ids.len() < self.count()).then_some(ids),
+            comparison: gathered.own.comparison.clone(),
+            own: gathered.own.other.clone(),
+            ..StudyResults::default()
+        }
+    }
+
+    /// What the study's kind adds to the results of the cases.
+    pub(super) fn own_results(&self, cases: &[CaseResult]) -> OwnResults {
+        kind(&self.kind).map(|kind| kind.own_results(self, cases)).unwrap_or_default()
+    }
+
+    /// Reads all cases once.
+    fn gathered(&self, finished: &(impl FinishedCases + ?Sized)) -> io::Result<Gathered> {
+        let (mut totals, mut brief) = (Totals::default(), Vec::new());
+        // Kinds that add nothing need no list.
+        let adds = self.kind != "run";
+        finished.each(&mut |cases| {
+            cases.iter().for_each(|case| totals.add(case));
+            brief.extend(cases.iter().filter(|_| adds).map(CaseResult::brief));
+            Ok(())
+        })?;
+        let own = self.own_results(&brief);
+        Ok(Gathered { totals, own })
+    }
+
+    /// The results that readers are shown, with everything that is drawn of them.
+    fn shown(
+        &self,
+        request: &RunRequest,
+        gathered: &Gathered,
+        finished: &(impl FinishedCases + ?Sized),
+    ) -> io::Result<StudyResults> {
+        let ids = gathered.totals.shown();
+        let mut cases = Vec::with_capacity(ids.len());
+        finished.each_of(&ids, &mut |few| {
+            cases.extend(few.iter().map(CaseResult::without_drawings));
+            Ok(())
+        })?;
+        let mut results =
+            StudyResults { date: request.date.clone(), cases, ..self.results_of(&request.version, gathered) };
+        // Meshes and moving loads show every case, others those that are drawn.
+        let all = self.output.vtu || self.output.animation || self.output.figures == Drawn::All;
+        let whole = if all { ids } else { drawn(self.output.figures, &results).unwrap_or_default() };
+        finished.each_of(&whole, &mut |few| {
+            for case in few {
+                let place = results.cases.binary_search_by_key(&case.label.id, |own| own.label.id);
+                place.into_iter().for_each(|place| results.cases[place] = case.clone());
+            }
+            Ok(())
+        })?;
+        Ok(results)
+    }
+
+    /// Writes results.json and all other files of finished cases, which are in order of id. `names` is given the names of
+    /// the other files before any is written.
+    ///
+    /// # Errors
+    /// If cases cannot be read or files cannot be written, and those of `names`.
+    pub fn write_files(
+        &self,
+        request: &RunRequest,
+        finished: &(impl FinishedCases + ?Sized),
+        files: &dyn Files,
+        names: &mut dyn FnMut(&[String]) -> io::Result<()>,
+    ) -> io::Result<Made> {
+        let gathered = self.gathered(finished)?;
+        let results = self.shown(request, &gathered, finished)?;
+        let (names, table) = self.write_shown(request, (&gathered.totals, &results), finished, files, names)?;
+        Ok(Made { names, table, totals: gathered.totals })
+    }
+
+    /// Writes results.json and all other files. Returns the names of the others, sorted, and the table for the terminal.
+    fn write_shown(
+        &self,
+        request: &RunRequest,
+        (totals, results): (&Totals, &StudyResults),
+        finished: &(impl FinishedCases + ?Sized),
+        files: &dyn Files,
+        names: &mut dyn FnMut(&[String]) -> io::Result<()>,
+    ) -> io::Result<(Vec<String>, String)> {
+        let cases: Vec<Cow<Case>> = results.cases.iter().filter_map(|case| self.case_of(&case.label)).collect();
+        let output = StudyOutput::new(self, results, totals, &cases);
+        let made = side_by_side(request.jobs, || written(&output));
+        let mut tables = tables(&output);
+        if totals.stored_paths {
+            tables.push(Box::new(PathProofs));
+        }
+        let mut listed: Vec<String> = made.iter().map(|(name, _)| name.clone()).collect();
+        listed.extend(tables.iter().map(|table| table.name()));
+        listed.sort();
+        names(&listed)?;
+        let head = ResultsHead {
+            study: results.study.clone(),
+            version: results.version.clone(),
+            origin: results.origin.clone(),
+            date: results.date.clone(),
+            only_cases: results.only_cases.clone(),
+            files: listed.clone(),
+        };
+        // What is worth most comes first: a disk may be full.
+        let mut json = match files.begin(RESULTS)? {
+            Some(out) => Some(ResultsText::begin(out, &head)?),
+            None => None,
+        };
+        let mut begun = Vec::new();
+        for table in &mut tables {
+            if let Some(mut out) = files.begin(&table.name())? {
+                table.begin(&mut out)?;
+                begun.push((table, out));
+            }
+        }
+        if json.is_some() || !begun.is_empty() {
+            finished.each(&mut |cases| {
+                json.as_mut().map_or(Ok(()), |json| add_cases(json, cases))?;
+                let mut add = |case| begun.iter_mut().try_for_each(|(table, out)| table.add(case, out));
+                cases.iter().try_for_each(&mut add)
+            })?;
+        }
+        if let Some(json) = json {
+            json.finish(results.comparison.as_ref(), &results.own)?.done()?;
+        }
+        for (table, mut out) in begun {
+            table.end(&mut out)?;
+            out.done()?;
+        }
+        made.iter().try_for_each(|(name, bytes)| files.write(name, bytes))?;
+        let table = if request.quiet { String::new() } else { table(&output) };
+        Ok((listed, table))
+    }
+}
+
+/// The table on the terminal, with what the study's kind adds to it.
+fn table(output: &StudyOutput) -> String {
+    let mut table = results_table(output);
+    if let Some(comparison) = &output.results.comparison {
+        table += "\n";
+        table += &comparison_table(comparison, &output.keys);
+    }
+    table + &found(&output.results.own, &output.keys)
+}
+
+/// What a kind that searches has found, a line each.
+fn found(own: &Map<String, Json>, keys: &SweptKeys) -> String {
+    let entries = |name: &str| own.get(name).and_then(Json::as_array).into_iter().flatten();
+    let line = |entry: &Json| {
+        let words =
+            ["variant", "vehicle", "direction"].iter().filter_map(|key| Some(format!(", {}", entry[key].as_str()?)));
+        let number = |key: &str| entry[key].as_f64().map_or("-".to_string(), |x| format_number(x, 6));
+        let snaps = snap_words(entry["result"].as_f64(), entry["first_limit_point"].as_f64(), |x| format_number(x, 6));
+        let status = entry["status"].as_str().unwrap_or_default();
+        let (key, case) = (entry["parameter"].as_str().unwrap_or_default(), &entry["case"]);
+        format!(
+            "\nworst: {} ({status}) at {key} = {}{}{} (case {case})\n",
+            snaps.unwrap_or_else(|| number("result")),
+            number("value"),
+            keys.unit(key).map_or(String::new(), |unit| format!(" {unit}")),
+            words.collect::<String>()
+        )
+    };
+    entries("worsts").map(line).collect()
+}

@@ -1,0 +1,143 @@
+//! The files of a results folder as `verify` is given them, and their comparison with those that results give.
+
+use super::same_bytes::SameBytes;
+use crate::verify::Agreement;
+use crate::writers::files::{Files, OutputFile};
+use std::cell::RefCell;
+use std::io::{self, Read, Write};
+
+/// The file that everything else in a result folder is made from.
+pub(super) const RESULTS: &str = "results.json";
+
+/// What `verify` is given.
+pub struct StoredResults<'a> {
+    /// Cases side by side.
+    pub jobs: usize,
+    /// A file of the result folder from its beginning, results.json and others; `None` where there is none.
+    pub file: &'a dyn Fn(&str) -> Option<Box<dyn Read>>,
+}
+
+impl StoredResults<'_> {
+    /// results.json from its beginning.
+    pub fn results(&self) -> Result<Box<dyn Read>, String> {
+        (self.file)(RESULTS).ok_or(format!("there is no {RESULTS}"))
+    }
+
+    /// The text of a file.
+    pub fn text(&self, name: &str) -> Result<String, String> {
+        let mut text = String::new();
+        let mut file = (self.file)(name).ok_or(format!("there is no {name}"))?;
+        file.read_to_string(&mut text).map_err(|error| error.to_string())?;
+        Ok(text)
+    }
+
+    /// Findings about the files beside results.json: each that is there must be the one that is made from it.
+    pub fn altered<'a>(&self, made: impl Iterator<Item = (&'a str, &'a [u8])>, agreement: Agreement) -> Vec<String> {
+        let files = Comparison::new(self, agreement, None);
+        for (name, bytes) in made {
+            files.write(name, bytes).expect("a comparison has no errors");
+        }
+        files.altered()
+    }
+}
+
+/// What is said of a file that is not the one that results.json gives.
+pub(super) fn not_made(name: &str) -> String {
+    format!("{name} is not what {RESULTS} gives")
+}
+
+/// Compares the files of a folder with those that its results give.
+pub(super) struct Comparison<'a> {
+    stored: &'a StoredResults<'a>,
+    agreement: Agreement,
+    /// A file that is checked in another way.
+    apart: Option<&'static str>,
+    altered: RefCell<Vec<String>>,
+}
+
+impl<'a> Comparison<'a> {
+    /// A comparison with nothing found yet.
+    pub fn new(stored: &'a StoredResults<'a>, agreement: Agreement, apart: Option<&'static str>) -> Self {
+        Comparison { stored, agreement, apart, altered: RefCell::default() }
+    }
+
+    /// The findings.
+    pub fn altered(self) -> Vec<String> {
+        self.altered.into_inner()
+    }
+
+    /// Returns true if a file of another processor differs by rounding only.
+    fn same_claims(&self, name: &str, bytes: &[u8]) -> bool {
+        // A file much longer than the one that is made is another one: it is not read to its end.
+        let limit = 2 * bytes.len() as u64 + 1024;
+        let read = |file: Box<dyn Read>| {
+            let mut stored = Vec::new();
+            file.take(limit).read_to_end(&mut stored).is_ok() && self.agreement.same_file(&stored, bytes)
+        };
+        (self.stored.file)(name).is_some_and(read)
+    }
+}
+
+/// A file as it should be, against the one that is there.
+struct ComparedFile<'a> {
+    files: &'a Comparison<'a>,
+    name: String,
+    against: Against,
+}
+
+enum Against {
+    /// Byte by byte.
+    Bits(SameBytes<Box<dyn Read>>),
+    /// Numbers may differ by rounding: the whole file is held.
+    Rounding(Vec<u8>),
+    /// It is known to be another one.
+    Differs,
+}
+
+impl Write for ComparedFile<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let differs = match &mut self.against {
+            Against::Bits(same) => same.write_all(bytes).is_err(),
+            Against::Differs => true,
+            Against::Rounding(held) => {
+                held.extend_from_slice(bytes);
+                false
+            }
+        };
+        if differs {
+            self.against = Against::Differs;
+        }
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+impl OutputFile for ComparedFile<'_> {
+    fn done(self: Box<Self>) -> io::Result<()> {
+        let same = match self.against {
+            Against::Bits(same) => same.ended(),
+            Against::Rounding(held) => self.files.same_claims(&self.name, &held),
+            Against::Differs => false,
+        };
+        self.files.altered.borrow_mut().extend((!same).then(|| not_made(&self.name)));
+        Ok(())
+    }
+}
+
+impl Files for Comparison<'_> {
+    fn begin(&self, name: &str) -> io::Result<Option<Box<dyn OutputFile + '_>>> {
+        // Tables of another program are not compared.
+        if name == RESULTS || self.apart == Some(name) || self.agreement == Agreement::Program {
+            return Ok(None);
+        }
+        let Some(file) = (self.stored.file)(name) else { return Ok(None) };
+        let against = match self.agreement {
+            Agreement::Processor => Against::Rounding(Vec::new()),
+            _ => Against::Bits(SameBytes::new(file)),
+        };
+        Ok(Some(Box::new(ComparedFile { files: self, name: name.into(), against })))
+    }
+}
