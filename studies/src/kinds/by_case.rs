@@ -39,6 +39,17 @@ impl Study {
         take: &mut (dyn FnMut(CaseResult) + Send),
     ) {
         observer.begins(ids.len());
+        self.solve_quietly(ids, jobs, observer, take);
+    }
+
+    /// The same, without telling the observer how many cases there are.
+    pub(super) fn solve_quietly(
+        &self,
+        ids: &[usize],
+        jobs: usize,
+        observer: &dyn Observer,
+        take: &mut (dyn FnMut(CaseResult) + Send),
+    ) {
         let Some(kind) = kind(&self.kind) else { return };
         // A kind that makes cases works side by side on those of one case.
         let at_once = if kind.makes_cases() { 1 } else { AT_ONCE * jobs.max(1) };

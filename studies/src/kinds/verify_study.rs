@@ -168,7 +168,7 @@ impl Check<'_> {
             let one = |id: &usize| solve_followed(&*self.study.case(*id)?, self.observer);
             again = side_by_side(self.jobs, || in_order(ids, one)).into_iter().flatten().collect();
         } else {
-            self.study.solve(ids, self.jobs, self.observer, &mut |case| again.push(case));
+            self.study.solve_quietly(ids, self.jobs, self.observer, &mut |case| again.push(case));
         }
         let (own, made): (Vec<_>, Vec<_>) = again.into_iter().partition(|case| case.label.id < self.study.count());
         self.made.expected.extend(made);
@@ -218,7 +218,7 @@ impl Check<'_> {
             self.made.bases += 1;
             let (mut made, count) = (Vec::new(), self.study.count());
             let take = &mut |case: CaseResult| made.extend(Some(case).filter(|case| case.label.id >= count));
-            self.study.solve(&[base], self.jobs, self.observer, take);
+            self.study.solve_quietly(&[base], self.jobs, self.observer, take);
             made.sort_by_key(|case: &CaseResult| case.label.id);
             self.made.expected.extend(made);
         }

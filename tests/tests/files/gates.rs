@@ -16,7 +16,7 @@ fn cases(path: &Path) -> Vec<CaseResult> {
     let source = StudySource::parse_with(&text, &path.display().to_string(), &[], &beside(path));
     let study = source.and_then(|source| read_source_beside(source, &beside(path)));
     let study = study.unwrap_or_else(|wrong| panic!("{wrong}"));
-    if study.cases().is_none() {
+    if study.with_cases().is_none() {
         return Vec::new();
     }
     let request = RunRequest { wanted: (0..study.count()).collect(), jobs: 1, ..RunRequest::default() };

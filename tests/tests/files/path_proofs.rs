@@ -415,7 +415,7 @@ fn streamed_cases_have_their_lines() {
     let source = StudySource::parse(&changed(RINGS, "curve = true", "path_proofs = true"), "paths.toml", &[]);
     let sweep = StudyFile::read(source.expect("a study")).and_then(StudyFile::study_unchecked).expect("a sweep");
     let request = RunRequest { wanted: vec![0, 1], jobs: 1, ..RunRequest::default() };
-    let files: Files = sweep.run(&request, &Unobserved).files.into_iter().collect();
+    let files: Files = LoadedStudy::run(&sweep, &request, &Unobserved).files.into_iter().collect();
     let there = elsewhere(&files);
     assert_eq!(findings(&sweep, &there), Vec::<String>::new());
     let (found, solved) = verified(&sweep, &there);

@@ -42,7 +42,8 @@ fn findings_of(sweep: &Study, results: &[u8], table: Option<&[u8]>, parquet: Opt
 #[test]
 fn what_is_forged_is_found() {
     let sweep = sweep();
-    let output = sweep.run(&RunRequest { wanted: (0..5).collect(), jobs: 1, ..RunRequest::default() }, &Unobserved);
+    let request = RunRequest { wanted: (0..5).collect(), jobs: 1, ..RunRequest::default() };
+    let output = LoadedStudy::run(&sweep, &request, &Unobserved);
     let bytes = |name: &str| &output.files.iter().find(|(own, _)| own == name).expect("a file").1;
     let (results, table) = (bytes("results.json"), bytes("results.csv"));
     assert_eq!(findings(&sweep, results, Some(table)), Vec::<String>::new());

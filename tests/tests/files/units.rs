@@ -314,7 +314,7 @@ fn every_key_that_a_study_of_the_repository_varies_is_known() {
         if kind(kind_of(&source.root)).is_none_or(|kind| kind.file_keys().is_some()) {
             continue;
         }
-        let sweep = StudyFile::read(source).and_then(StudyFile::sweep_unchecked);
+        let sweep = StudyFile::read(source).and_then(StudyFile::study_unchecked);
         let sweep = sweep.unwrap_or_else(|wrong| panic!("{}: {wrong}", path.display()));
         let swept: SweptKeys = sweep.swept_keys();
         for key in sweep.keys() {
@@ -324,7 +324,7 @@ fn every_key_that_a_study_of_the_repository_varies_is_known() {
         let table = &sweep.outline.table;
         let one = table.get("parameter").and_then(Json::as_str).into_iter();
         let several = table.get("parameters").and_then(Json::as_array).into_iter().flatten().filter_map(Json::as_str);
-        let first = sweep.case(0).unwrap_or_else(|wrong| panic!("{}: {wrong}", path.display()));
+        let first = sweep.case(0).unwrap_or_else(|| panic!("{}: no case", path.display()));
         for key in one.chain(several) {
             assert!(meaning_in(&first.resolved, key).is_some(), "{}: {key}", path.display());
             keys += 1;
