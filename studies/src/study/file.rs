@@ -102,7 +102,9 @@ impl StudyFile {
                     notes.push(note.clone());
                 }
             }
-            if count <= MOST_WITH_PATH_PROOFS && case.output_fields && case.resolved.at("output.path_proofs").is_none_or(Json::is_null)
+            if count <= MOST_WITH_PATH_PROOFS
+                && case.output_fields
+                && case.resolved.at("output.path_proofs").is_none_or(Json::is_null)
             {
                 case.output_path_proofs = SMALL_PATH_PROOF;
             }
