@@ -9,22 +9,22 @@ use std::fmt;
 use voussoir_core::limit::{LowerProofKind, Status};
 use voussoir_core::plugin::{PluginKind, card};
 
-/// The extent to which the stored fields of a case prove it.
+/// The extent to which the stored fields prove a case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Backing {
     /// Forces and motion, or a ray, prove every claim.
     Proved,
-    /// The last state of a path, or one end of a bracket; the history of the path, or the search for the other end, is
-    /// taken on trust.
+    /// The last state of a path, or one end of a bracket, is proved. The history of the path, or the search for the other end, is
+    /// not checked.
     Partly,
-    /// No field is stored, so nothing proves it.
+    /// No field is stored, so nothing is proved.
     OnTrust,
     /// It claims nothing.
     Stalled,
 }
 
 impl Study {
-    /// Checks a stored case: it must belong to this study as it is now, and its stored fields must prove it.
+    /// Checks a stored case: it must belong to the current study, and its stored fields must prove it.
     ///
     /// # Errors
     ///
@@ -60,7 +60,7 @@ fn backing_of(case: &Case, result: &CaseResult) -> Backing {
     }
 }
 
-/// The number of stored cases that are proved, proved in part, or on trust.
+/// The number of stored cases that are proved, partly proved, or unproved.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct BackingCount {
     proved: usize,
@@ -95,7 +95,7 @@ impl fmt::Display for BackingCount {
     }
 }
 
-/// Lines about stored cases that are kept, and about stored cases that are refused.
+/// Returns lines about stored cases that are kept, and about stored cases that are refused.
 pub fn resumed(kept: usize, count: BackingCount, refused: usize) -> Vec<String> {
     let kept = (kept > 0).then(|| format!("{kept} finished cases are kept: {count}"));
     let refused = (refused > 0).then(|| {

@@ -11,7 +11,7 @@ use std::borrow::Cow;
 const AT_ONCE: usize = 64;
 
 impl Study {
-    /// The case that a result belongs to, as the study's kind finds it.
+    /// Returns the case of a result, found by the study's kind.
     pub fn case_of(&self, label: &CaseLabel) -> Option<Cow<'_, Case>> {
         kind(&self.kind)?.case(self, label)
     }
@@ -21,8 +21,8 @@ impl Study {
         kind(&self.kind).is_some_and(|kind| kind.makes_cases())
     }
 
-    /// Of `count` parts of the study the one, from 0, in which a case is solved: by the hash of the resolved case, so
-    /// that it depends on nothing else.
+    /// Returns the part, from 0, of `count` parts of the study in which a case is solved. It depends only on the hash of the
+    /// resolved case.
     pub fn part(&self, id: usize, count: usize) -> Option<usize> {
         let hash = u128::from_str_radix(&self.case(id)?.hash(), 16).ok()?;
         // The high bits of FNV-1a are mixed best.

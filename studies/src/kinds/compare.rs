@@ -35,7 +35,8 @@ voussoir_core::inventory::submit! {
     }
 }
 
-/// Mistakes that every kind that compares looks for: fewer variants than it needs, names (by key) of none.
+/// Returns the mistakes that every kind that compares looks for: too few variants, and names (by key) of variants that do not
+/// exist.
 pub(super) fn check_variants(
     kind: &str,
     outline: &Outline,
@@ -64,9 +65,9 @@ pub(super) fn check_variants(
     diagnostics
 }
 
-/// The variants beside each other; `reference` is the index of the one that others are divided by.
+/// Returns the comparison of the variants; `reference` is the index of the variant that the others are divided by.
 pub(super) fn beside_each_other(study: &Study, cases: &[CaseResult], reference: usize) -> Option<Comparison> {
-    // A study without variants is one by itself.
+    // A study without variants is a single variant.
     let alone = [study.name.clone()];
     let variants = if study.outline.variants.is_empty() { &alone[..] } else { &study.outline.variants };
     let rows = study.count().checked_div(variants.len())?;
@@ -103,7 +104,7 @@ pub(super) fn beside_each_other(study: &Study, cases: &[CaseResult], reference: 
     })
 }
 
-/// The load factor that a case ended at, by a mechanism or at a limit point.
+/// Returns the load factor at which a case ended, by a mechanism or at a limit point.
 fn factor(case: &CaseResult) -> Option<f64> {
     case.load_factor.filter(|_| matches!(case.status, Status::Collapse | Status::LimitPoint))
 }

@@ -1,4 +1,4 @@
-//! `envelope`: the worst place of a load that moves.
+//! `envelope`: the most onerous position of a moving load.
 #![doc = include_str!("envelope.md")]
 
 mod places;
@@ -16,7 +16,7 @@ use crate::study::{Case, Outline, Study, StudyError, StudySource};
 use std::borrow::Cow;
 use voussoir_core::plugin::{Card, Diagnostic, PluginKind};
 
-/// Cases of one run of one vehicle have ids from a multiple of this on, after those of the study.
+/// The ids of the cases of one run of one vehicle start at a multiple of this number, after the ids of the study.
 const STRIDE: usize = 1_000_000;
 
 struct Envelope;
@@ -36,7 +36,7 @@ voussoir_core::inventory::submit! {
 }
 
 impl Envelope {
-    /// All places of all runs of one case of the study, in order of id.
+    /// Returns the results at all positions of all runs of one case of the study, in order of id.
     fn of_case(&self, study: &Study, base: usize, request: &Request, observer: &dyn Observer) -> Vec<CaseResult> {
         let Some(case) = study.case(base) else { return Vec::new() };
         let case = case.as_ref();
@@ -58,7 +58,7 @@ impl StudyKind for Envelope {
     fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, StudyError> {
         let study = Study::from_source_in_turn(source)?;
         let Some(request) = study.outline.read::<Request>() else { return Ok(Box::new(study)) };
-        // Mistakes at one end of the range show before anything is solved.
+        // Checking both ends of the range finds mistakes before anything is solved.
         for case in (0..study.count()).filter_map(|id| study.case(id)) {
             for run in request.runs(&case) {
                 for value in request.range() {

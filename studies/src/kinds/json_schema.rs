@@ -5,7 +5,7 @@ use crate::config::json_schema::{definitions, table};
 use crate::study::study_keys;
 use serde_json::{Value as Json, json};
 
-/// The schema of study files: that of studies with a scene, unless their kind has keys of its own.
+/// Returns the schema of study files: the schema of studies with a scene, unless their kind has its own keys.
 pub fn json_schema() -> Json {
     let mut definitions = definitions();
     definitions.insert("study".into(), table(study_keys(), None));

@@ -1,4 +1,4 @@
-//! What a study kind is: how its files are read, what it does with cases, and what it adds to results.
+//! The trait of a study kind: how its files are read, how its cases are solved, and what it adds to results.
 
 use super::stored_results::{RESULTS, StoredResults};
 use crate::results::{CaseLabel, CaseResult, Comparison};
@@ -10,102 +10,101 @@ use std::borrow::Cow;
 use std::io::{Cursor, Read};
 use voussoir_core::plugin::{Diagnostic, Parameter};
 
-/// A kind of study, chosen by `kind = …`. Instances register with
-/// `inventory::submit! { KindEntry { … } }` beside their card. The card's parameters are the keys of the
-/// table that is called like the kind.
+/// A kind of study, chosen by `kind = …`. Instances register with `inventory::submit! { KindEntry { … } }` beside their card.
+/// The parameters of the card are the keys of the table with the name of the kind.
 pub trait StudyKind: Sync {
     /// Reads a study file of this kind.
     fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, StudyError>;
 
-    /// The same where files that the study names can be read: relative to its own, by `read`.
+    /// Like [`read`](Self::read), if the study may name other files: `read` opens them, with paths relative to the study file.
     fn read_beside(&self, source: StudySource, read: ReadFile) -> Result<Box<dyn LoadedStudy>, StudyError> {
         let _ = read;
         self.read(source)
     }
 
-    /// All keys of its study files, where they are not those of studies with a scene.
+    /// Returns all keys of its study files; `None` if they are the keys of studies with a scene.
     fn file_keys(&self) -> Option<&'static [Parameter]> {
         None
     }
 
-    /// Mistakes in a study's axes and in the table of this kind, beyond those of single keys.
+    /// Returns the mistakes in a study's axes and in the table of this kind, beyond mistakes of single keys.
     fn check(&self, outline: &Outline) -> Vec<Diagnostic> {
         let _ = outline;
         Vec::new()
     }
 
-    /// Solves the cases of a study whose ids are in `wanted`, in order of id. `jobs` cases side by
-    /// side; the results do not depend on it. A kind that chooses values itself makes further cases
-    /// by [`Study::at`], gives them ids after those of the study, and finds them again by [`StudyKind::case`].
+    /// Solves the cases of a study whose ids are in `wanted`, in order of id, with `jobs` cases in parallel. The results do not
+    /// depend on `jobs`. A kind that chooses values itself makes further cases by [`Study::at`]. Their ids come after the ids of
+    /// the study, and [`StudyKind::case`] finds them again.
     fn solve(&self, study: &Study, wanted: &[usize], jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {
         solve_cases(study, wanted, jobs, observer)
     }
 
-    /// Whether [`StudyKind::solve`] makes cases besides those of the study.
+    /// Returns true if [`StudyKind::solve`] makes cases besides the cases of the study.
     fn makes_cases(&self) -> bool {
         false
     }
 
-    /// The case that a result belongs to: one of the study's, or one that this kind has made, which the result's
-    /// parameters describe. Without the solver, so that `verify` and writers can ask.
+    /// Returns the case of a result: a case of the study, or a case that this kind has made, from the parameters of the result.
+    /// It needs no solver, so that `verify` and writers can call it.
     fn case<'a>(&self, study: &'a Study, label: &CaseLabel) -> Option<Cow<'a, Case>> {
         study.case(label.id)
     }
 
-    /// What this kind adds to the results of the cases; a pure function of its arguments, so that
-    /// `verify` can repeat it.
+    /// Returns the additions of this kind to the results of the cases. It is a pure function of its arguments, so that `verify`
+    /// can repeat it.
     fn own_results(&self, study: &Study, cases: &[CaseResult]) -> OwnResults {
         let _ = (study, cases);
         OwnResults::default()
     }
 }
 
-/// What a study kind adds to the results of the cases.
+/// The additions of a study kind to the results of the cases.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct OwnResults {
-    /// The cases beside each other.
+    /// Comparison of the cases.
     pub comparison: Option<Comparison>,
     /// Other entries of results.json, by name.
     pub other: Map<String, Json>,
 }
 
-/// A study of any kind, free of mistakes, as commands see it.
+/// A study of any kind without mistakes, as commands use it.
 pub trait LoadedStudy: Send + Sync {
-    /// Its name.
+    /// Returns the name of the study.
     fn name(&self) -> &str;
 
-    /// Number of its cases.
+    /// Returns the number of its cases.
     fn count(&self) -> usize;
 
-    /// The file with `--set` applied.
+    /// Returns the file with `--set` applied.
     fn resolved(&self) -> &toml::Value;
 
-    /// The same as text; an error where TOML cannot hold it.
+    /// Returns the file with `--set` applied as text; an error if TOML cannot represent it.
     fn resolved_text(&self) -> Result<String, String> {
         toml::to_string(self.resolved()).map_err(|error| error.to_string())
     }
 
-    /// What a user should know before it is run: each note of its cases once.
+    /// Returns notes for the user before the run; each note of its cases appears once.
     fn notes(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// What will be solved, in words.
+    /// Describes the problem that will be solved.
     fn explain(&self) -> String;
 
-    /// Studies that are run before it, each into a folder of its own inside this study's.
+    /// Returns the studies that are run before it, each into its own folder inside the folder of this study.
     fn parts(&self) -> &[Part] {
         &[]
     }
 
-    /// A piece of a page about the results whose results.json is given, as HTML or SVG; `None` where there is no such
+    /// Returns a piece of a page about results as HTML or SVG; `results` is the text of results.json. `None` if there is no such
     /// piece.
     fn piece(&self, results: &str, piece: Piece) -> Option<String> {
         let _ = (results, piece);
         None
     }
 
-    /// Its first case as a study of the scene `blocks`; an error says why there is none.
+    /// Returns its first case as a study of the scene `blocks`. The error gives the reason if this is not possible.
     fn as_blocks(&self) -> Result<String, String> {
         Err("this study has no scene".into())
     }
@@ -118,7 +117,7 @@ pub trait LoadedStudy: Send + Sync {
     /// Solves what is wanted and turns it into files, all of them held.
     fn run(&self, request: &RunRequest, observer: &dyn Observer) -> RunOutput;
 
-    /// Checks stored results; an error where they cannot be read.
+    /// Checks stored results; an error if they cannot be read.
     fn verify_stored(&self, stored: &StoredResults, observer: &dyn Observer) -> Result<Verification, String>;
 
     /// Checks the text of a results.json alone.
@@ -128,7 +127,7 @@ pub trait LoadedStudy: Send + Sync {
     }
 }
 
-/// A study that is run for another one, which reports on it.
+/// A study that is run for another study, which reports on it.
 pub struct Part {
     /// Name of its folder.
     pub folder: String,
@@ -138,27 +137,27 @@ pub struct Part {
     pub study: Box<dyn LoadedStudy>,
 }
 
-/// What a page can show of a study.
+/// A piece of a page about a study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Piece {
-    /// What was given: geometry, materials, joints, loads, solver.
+    /// The input: geometry, materials, joints, loads, solver.
     Record,
     /// The chart of all its cases.
     Chart,
     /// The scene of a case.
     Scene(usize),
-    /// Its mechanism.
+    /// The mechanism of a case.
     Mechanism(usize),
-    /// Its load-displacement curve.
+    /// The load-displacement curve of a case.
     Curve(usize),
 }
 
-/// What is asked of a run.
+/// The request of a run.
 #[derive(Debug, Clone, Default)]
 pub struct RunRequest {
     /// Ids of the cases, in order.
     pub wanted: Vec<usize>,
-    /// Cases side by side.
+    /// Number of cases in parallel.
     pub jobs: usize,
     /// The results.json that is there, if stored cases that are not wanted stay in the results.
     pub kept: Option<String>,
@@ -168,43 +167,44 @@ pub struct RunRequest {
     pub date: Option<String>,
     /// The results.json of each of the study's parts, in order.
     pub parts: Vec<String>,
-    /// Whether nobody reads the table: it stays empty.
+    /// True if no table is needed: it stays empty.
     pub quiet: bool,
 }
 
-/// What a run has made.
+/// The output of a run.
 #[derive(Debug, Clone, Default)]
 pub struct RunOutput {
     /// (file name relative to the result folder, bytes), in a fixed order.
     pub files: Vec<(String, Vec<u8>)>,
     /// The table for the terminal.
     pub table: String,
-    /// What a user should know of the run, line by line.
+    /// Remarks for the user, line by line.
     pub remarks: Vec<String>,
-    /// Whether every case is answered and certified.
+    /// True if every case is answered and certified.
     pub certified: bool,
 }
 
-/// What a check of results has found.
+/// The findings of a check of results.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Verification {
     /// Number of cases in the results.
     pub cases: usize,
-    /// How many of them are stalled.
+    /// Number of stalled cases.
     pub stalled: usize,
-    /// What is wrong, by case.
+    /// Mistakes by case.
     pub findings: Vec<(usize, String)>,
-    /// What is wrong with the other files.
+    /// Mistakes in the other files.
     pub files: Vec<String>,
-    /// Number of the study's own cases that are in the results.
+    /// Number of the study's own cases in the results.
     pub own: usize,
     /// Number of cases of the study.
     pub of: usize,
-    /// Number of cases whose ends are proved by stored paths, and of those that were not solved again for that.
+    /// Number of cases whose ends are proved by stored paths, and number of these cases that were not solved again for this
+    /// reason.
     pub paths: [usize; 2],
     /// The comparison with a second run.
     pub agreement: Agreement,
-    /// What was checked how.
+    /// Description of the checks.
     pub how: &'static str,
 }
 
@@ -212,20 +212,20 @@ pub struct Verification {
 pub struct KindEntry {
     /// The tag of its card.
     pub tag: &'static str,
-    /// What answers.
+    /// The study kind.
     pub kind: &'static dyn StudyKind,
 }
 
 voussoir_core::inventory::collect!(KindEntry);
 
-/// All study kinds, sorted by tag.
+/// Returns all study kinds, sorted by tag.
 pub fn kinds() -> Vec<&'static KindEntry> {
     let mut all: Vec<_> = voussoir_core::inventory::iter::<KindEntry>.into_iter().collect();
     all.sort_by_key(|entry| entry.tag);
     all
 }
 
-/// The study kind with this tag.
+/// Returns the study kind with this tag.
 pub fn kind(tag: &str) -> Option<&'static dyn StudyKind> {
     kinds().into_iter().find(|entry| entry.tag == tag).map(|entry| entry.kind)
 }

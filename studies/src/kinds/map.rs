@@ -42,7 +42,7 @@ voussoir_core::inventory::submit! {
     }
 }
 
-/// The different values of a key in the order of the cases; `None` unless all are numbers.
+/// Returns the different values of a key in the order of the cases; `None` unless all are numbers.
 fn values(study: &Study, key: &str) -> Option<Vec<f64>> {
     let mut found: Vec<f64> = Vec::new();
     for value in study.values(key) {
@@ -83,12 +83,12 @@ impl StudyKind for Map {
     }
 }
 
-/// The variants beside each other over the two axes.
+/// Returns the comparison of the variants over the two axes.
 fn map_of(study: &Study, cases: &[CaseResult]) -> Option<Comparison> {
     let outline = &study.outline;
     let table = outline.read().unwrap_or_else(MapTable::defaults);
     let reference = outline.variant(table.reference.as_ref()).unwrap_or(0);
-    // Of one law alone loads are drawn, not ratios.
+    // For a single law, loads are drawn instead of ratios.
     let other = if outline.variants.len() < 2 { 0 } else { usize::from(reference == 0) };
     let mut comparison = beside_each_other(study, cases, reference)?;
     let [x, y] = [0, 1].map(|axis| outline.axes.get(axis).and_then(|(keys, _)| keys.first()).cloned());

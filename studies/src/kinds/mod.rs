@@ -1,4 +1,4 @@
-//! Study kinds: what is done with the cases of a study. One file each; file = tag.
+//! Study kinds: each defines how the cases of a study are used. One file each; file = tag.
 
 mod backing;
 mod by_case;

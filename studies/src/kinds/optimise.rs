@@ -1,4 +1,4 @@
-//! `optimise`: the value of a key at which a result is best.
+//! `optimise`: the best value of a key.
 #![doc = include_str!("optimise.md")]
 
 mod optima;
@@ -36,7 +36,7 @@ impl StudyKind for Optimise {
     fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, StudyError> {
         let study = Study::from_source_in_turn(source)?;
         if let Some(request) = study.outline.read::<Request>() {
-            // A key that does not exist, or that takes no number, shows at both ends.
+            // Checking both ends finds a key that does not exist or that does not accept numbers.
             let at = |value: f64| study.at(0, &request.values(value));
             let middle = 0.5 * (request.range()[0] + request.range()[1]);
             if let (Err(wrong), Err(_), Err(_)) = (at(request.range()[0]), at(request.range()[1]), at(middle)) {

@@ -20,7 +20,7 @@ use std::io;
 /// The files that were made of finished cases.
 #[derive(Debug, Clone)]
 pub struct Made {
-    /// Names of the files beside results.json, sorted.
+    /// Returns the names of the files beside results.json, sorted.
     pub names: Vec<String>,
     /// The table for the terminal.
     pub table: String,
@@ -35,7 +35,7 @@ struct Gathered {
 }
 
 impl Study {
-    /// Results of the study from those of its cases.
+    /// Returns the results of the study from the results of its cases.
     pub fn results(&self, version: &str, cases: Vec<CaseResult>) -> StudyResults {
         let own = self.own_results(&cases);
         let totals = Totals::of(&cases);
@@ -181,7 +181,7 @@ impl Study {
     }
 }
 
-/// The table on the terminal, with what the study's kind adds to it.
+/// Returns the table for the terminal, with the additions of the study's kind.
 fn table(output: &StudyOutput) -> String {
     let mut table = results_table(output);
     if let Some(comparison) = &output.results.comparison {
@@ -191,7 +191,7 @@ fn table(output: &StudyOutput) -> String {
     table + &found(&output.results.own, &output.keys)
 }
 
-/// What a kind that searches has found, a line each.
+/// Returns the results of a kind that searches, one line each.
 fn found(own: &Map<String, Json>, keys: &SweptKeys) -> String {
     let entries = |name: &str| own.get(name).and_then(Json::as_array).into_iter().flatten();
     let line = |entry: &Json| {

@@ -1,7 +1,7 @@
-//! `point`: one law, bulk or interface, at one point, through a path of strains and stresses.
+//! `point`: one law, of a material or an interface, at one point, along a path of strains and stresses.
 //!
-//! Such a study has no scene: `[point]` says which material or joint is driven and how. Sweeps and
-//! variants work as everywhere.
+//! Such a study has no scene: `[point]` names the material or joint and defines its path. Sweeps and variants work as in other
+//! studies.
 
 pub mod drive;
 pub mod output;

@@ -1,10 +1,10 @@
-//! Reading a study of any kind.
+//! Reads a study of any kind.
 
 use super::kind::{LoadedStudy, kind, kinds};
 use crate::config::diagnostic::{LocatedDiagnostic, suggest};
 use crate::study::{ReadFile, StudyError, StudySource, no_files};
 
-/// Reads a study of any kind; every mistake at once. Arguments as of [`crate::study::load`].
+/// Reads a study of any kind. The error contains all mistakes. Arguments as for [`crate::study::load`].
 pub fn read_study(text: &str, file: &str, sets: &[(String, String)]) -> Result<Box<dyn LoadedStudy>, StudyError> {
     read_source(StudySource::parse(text, file, sets)?)
 }
@@ -14,9 +14,9 @@ pub fn read_source(source: StudySource) -> Result<Box<dyn LoadedStudy>, StudyErr
     read_source_beside(source, &no_files)
 }
 
-/// The same where the study may name other files, which are read by `read`.
+/// Reads a study of any kind that may name other files; `read` opens them.
 pub fn read_source_beside(source: StudySource, read: ReadFile) -> Result<Box<dyn LoadedStudy>, StudyError> {
-    // A kind that does not exist is one mistake among others of a file with a scene.
+    // An unknown kind is reported together with the other mistakes of a file with a scene.
     let kind = kind(source.kind()).or_else(|| kind("run"));
     match kind {
         Some(kind) => kind.read_beside(source, read),

@@ -1,4 +1,4 @@
-//! `report`: several studies on one page, with what is said of them and whether the numbers bear it out.
+//! `report`: several studies on one page, with claims about them that the numbers confirm or refute.
 #![doc = include_str!("report.md")]
 
 mod claims;

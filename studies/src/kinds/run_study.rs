@@ -1,17 +1,17 @@
-//! Running a study from a program: typed results, an observer, nothing written.
+//! Runs a study from a program: typed results, an observer, no files.
 
 use crate::results::{CaseResult, StudyResults};
 use crate::solve::{Observer, Unobserved};
 use crate::study::Study;
 
-/// How a study is run.
+/// Options of a run.
 #[derive(Clone, Copy)]
 pub struct RunOptions<'a> {
-    /// Ids of the cases; all where there is no list.
+    /// Ids of the cases; `None` for all.
     pub cases: Option<&'a [usize]>,
-    /// Cases side by side; results do not depend on it.
+    /// Number of cases in parallel; results do not depend on it.
     pub jobs: usize,
-    /// Who looks on, and may cancel.
+    /// Observer, which may cancel.
     pub observer: &'a dyn Observer,
 }
 
@@ -22,13 +22,13 @@ impl Default for RunOptions<'_> {
 }
 
 impl Study {
-    /// Solves every case, one after the other. What a case comes to is its [status](crate::results::CaseResult::status),
-    /// never an error.
+    /// Solves every case, one after the other. The outcome of a case is its [status](crate::results::CaseResult::status), never
+    /// an error.
     pub fn run(&self) -> StudyResults {
         self.run_with(&RunOptions::default())
     }
 
-    /// Solves the cases that are asked for; ids that the study does not have are left out.
+    /// Solves the requested cases; ids that the study does not have are ignored.
     ///
     /// ```
     /// use voussoir::prelude::*;

@@ -1,20 +1,20 @@
-//! Whether what is written is what a file holds, without holding either.
+//! Compares a stream with a file without loading either into memory.
 
 use std::io::{self, BufReader, ErrorKind, Read, Write};
 
-/// Takes bytes as a file would, and refuses those that another file does not have at that place.
+/// A writer that accepts the bytes of a file and refuses others.
 pub(super) struct SameBytes<R: Read> {
     stored: BufReader<R>,
     buffer: Vec<u8>,
 }
 
 impl<R: Read> SameBytes<R> {
-    /// Against what is read from here on.
+    /// Compares with the bytes that `stored` returns from now on.
     pub fn new(stored: R) -> Self {
         SameBytes { stored: BufReader::with_capacity(1 << 16, stored), buffer: Vec::new() }
     }
 
-    /// Whether the file has nothing more; false where it cannot be read.
+    /// Returns true if the file has ended; false if it cannot be read.
     pub fn ended(mut self) -> bool {
         matches!(self.stored.read(&mut [0]), Ok(0))
     }

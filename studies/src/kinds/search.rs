@@ -1,4 +1,4 @@
-//! What kinds share that search a range of values: golden sections, and stretches of one status.
+//! Shared code of kinds that search a range of values: golden sections, and intervals of one status.
 
 use crate::study::{Case, Outline, Study};
 use serde_json::{Value as Json, json};
@@ -7,8 +7,8 @@ use voussoir_core::plugin::Diagnostic;
 /// Golden section: (√5 − 1)/2.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-/// Narrows a bracket of the greatest merit to a width by golden sections (Kiefer 1953); what has no merit is worse than
-/// all. Equal merits, as of two mirrored scenes, leave the left part.
+/// Narrows a bracket of the greatest merit to a width by golden sections (Kiefer 1953). A value without merit is worse than
+/// all others. If merits are equal, as for two mirrored scenes, the left part is kept.
 pub(super) fn golden_section([mut low, mut high]: [f64; 2], width: f64, mut merit: impl FnMut(f64) -> Option<f64>) {
     let mut at = |x: f64| merit(x).unwrap_or(f64::NEG_INFINITY);
     let (mut a, mut b) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
@@ -26,16 +26,16 @@ pub(super) fn golden_section([mut low, mut high]: [f64; 2], width: f64, mut meri
     }
 }
 
-/// Stretches of one status from the first of their values to the last, of (value, status) in growing order.
+/// Returns the intervals of one status, from their first value to their last, of (value, status) in ascending order.
 pub(super) fn intervals(tried: &[(f64, Json)]) -> Vec<Json> {
     let stretches = tried.chunk_by(|a, b| a.1 == b.1);
     let ends = stretches.filter_map(|stretch| Some((stretch.first()?, stretch.last()?)));
     ends.map(|(a, b)| json!({ "from": a.0, "to": b.0, "status": a.1 })).collect()
 }
 
-/// A case of a study at other values, without figures of its own, under the id that it has among all.
+/// Returns a case of a study at other values, without its own figures, with its id among all cases.
 pub(super) fn case_at(study: &Study, base: usize, id: usize, values: &[(String, Json)]) -> Option<Case> {
-    // A stored id may name any case.
+    // A stored id may be out of range.
     if base >= study.count() {
         return None;
     }
@@ -45,7 +45,7 @@ pub(super) fn case_at(study: &Study, base: usize, id: usize, values: &[(String, 
     Some(case)
 }
 
-/// What is wrong with a search over a range: its ends in the wrong order, and keys that the study sweeps besides.
+/// Returns the mistakes in a search over a range: ends in the wrong order, and keys that the study also sweeps.
 pub(super) fn range_mistakes(table: &str, range: [f64; 2], keys: &[String], outline: &Outline) -> Vec<Diagnostic> {
     let [from, to] = range;
     let reversed =

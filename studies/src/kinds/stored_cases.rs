@@ -1,12 +1,12 @@
-//! results.json read from its beginning to its end, one case at a time: what is held does not grow with their number.
+//! Reads results.json from its beginning to its end, one case at a time: the memory does not grow with the number of cases.
 
 use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Value as Json};
 use std::fmt;
 use std::io::{BufReader, Read};
 
-/// Passes on each case with the entries that come before all cases, and returns the entries beside the cases. An error if it
-/// is not a results file.
+/// Passes on each case with the entries that come before all cases. Returns the entries beside the cases; an error if it is
+/// not a results file.
 pub fn read_stored_cases(file: impl Read, take: Take) -> Result<Map<String, Json>, String> {
     let mut text = serde_json::Deserializer::from_reader(BufReader::with_capacity(1 << 16, file));
     let whole = Whole(take).deserialize(&mut text).map_err(|error| error.to_string())?;

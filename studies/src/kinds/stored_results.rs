@@ -6,24 +6,24 @@ use crate::writers::files::{Files, OutputFile};
 use std::cell::RefCell;
 use std::io::{self, Read, Write};
 
-/// The file that everything else in a result folder is made from.
+/// The file from which all other files of a results folder are made.
 pub(super) const RESULTS: &str = "results.json";
 
-/// What `verify` is given.
+/// The input of `verify`.
 pub struct StoredResults<'a> {
-    /// Cases side by side.
+    /// Number of cases in parallel.
     pub jobs: usize,
-    /// A file of the result folder from its beginning, results.json and others; `None` where there is none.
+    /// Opens a file of the results folder, results.json or another; `None` if it does not exist.
     pub file: &'a dyn Fn(&str) -> Option<Box<dyn Read>>,
 }
 
 impl StoredResults<'_> {
-    /// results.json from its beginning.
+    /// Opens results.json.
     pub fn results(&self) -> Result<Box<dyn Read>, String> {
         (self.file)(RESULTS).ok_or(format!("there is no {RESULTS}"))
     }
 
-    /// The text of a file.
+    /// Returns the text of a file.
     pub fn text(&self, name: &str) -> Result<String, String> {
         let mut text = String::new();
         let mut file = (self.file)(name).ok_or(format!("there is no {name}"))?;
@@ -41,7 +41,7 @@ impl StoredResults<'_> {
     }
 }
 
-/// What is said of a file that is not the one that results.json gives.
+/// Returns the message for a file that differs from the file made from results.json.
 pub(super) fn not_made(name: &str) -> String {
     format!("{name} is not what {RESULTS} gives")
 }
@@ -68,7 +68,7 @@ impl<'a> Comparison<'a> {
 
     /// Returns true if a file of another processor differs by rounding only.
     fn same_claims(&self, name: &str, bytes: &[u8]) -> bool {
-        // A file much longer than the one that is made is another one: it is not read to its end.
+        // A file that is much longer than the expected one is different: it is not read to its end.
         let limit = 2 * bytes.len() as u64 + 1024;
         let read = |file: Box<dyn Read>| {
             let mut stored = Vec::new();

@@ -18,10 +18,10 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::io;
 use voussoir_core::limit::Status;
 
-/// Cases that are checked at once, for each of those side by side.
+/// Number of cases, for each parallel job, that are checked at once.
 const AT_ONCE: usize = 16;
 
-/// What `verify` has done with each case.
+/// Describes how `verify` has checked each case.
 const HOW: &str = "checked: what the stored forces and motions prove, from the scene and without a solver (nothing where [output] fields = false has left them out); then every number \
 and word against solving the case again, unless the states in path_proofs.jsonl prove its path; tables and figures against results.json. \
 Not checked: counters, seconds, version";
@@ -93,7 +93,7 @@ pub(super) fn verify_study(
     if observer.cancelled() {
         return Err("the check was cancelled".into());
     }
-    // Stored results are drawn only if they are confirmed: then each number was solved again.
+    // Stored results are drawn only if they are confirmed: every number was then solved again.
     if found.findings.is_empty() {
         compare_files(study, stored, &beside, &mut found);
     }
@@ -109,7 +109,7 @@ impl Check<'_> {
         }
     }
 
-    /// Checks the cases that wait.
+    /// Checks the collected cases.
     fn checked(&mut self) -> Result<(), String> {
         let entries = std::mem::take(&mut self.waiting);
         let read = |entry: &Json| CaseResult::deserialize(entry).map_err(|error| error.to_string());

@@ -85,7 +85,7 @@ fn record_stages(
         let name = stages[index].name.clone();
         StageResult { name, status, factor, hinges, stability: Default::default() }
     };
-    // The immobility of supports is no evidence against the loads.
+    // Supports that cannot move as requested prove nothing against the loads.
     let carried = result.supports_cannot_move() || !matches!(result.status, Status::NoEquilibrium | Status::Stalled);
     let status = if carried { Status::Stands } else { result.status };
     for (earlier, covered) in stages.iter().enumerate().take(index).skip(done.len()) {

@@ -1,4 +1,5 @@
-//! Places that are tried: even ones, those where axles enter the bridge, and those where edges of their patches meet joints.
+//! The positions to try: evenly spaced ones, those at which an axle enters the bridge, and those at which an edge of its
+//! patch meets a joint.
 
 use super::request::{Request, Run};
 use crate::loads::dispersion::{Dispersion, Patch};
@@ -6,19 +7,19 @@ use crate::loads::{LoadSite, LoadTables, Track, VehicleAxles, fill_layers, footp
 use crate::study::Case;
 use voussoir_core::model::Chord;
 
-/// Places nearer than this share of the range are one.
+/// Positions closer than this share of the range are equal.
 const SAME: f64 = 1e-9;
 
 /// Values of the parameter.
 #[derive(Debug, Default)]
 pub(super) struct Places {
-    /// The scan: even places, and where axles enter or leave; growing.
+    /// Positions of the scan in ascending order: evenly spaced ones, and those at which an axle enters or leaves.
     pub scan: Vec<f64>,
-    /// Where edges of patches meet joints; growing. Tried where the scan is low.
+    /// Positions at which an edge of a patch meets a joint, in ascending order. They are tried if the scan is low there.
     pub joints: Vec<f64>,
 }
 
-/// The places of a run.
+/// Returns the positions of a run.
 pub(super) fn places(case: &Case, request: &Request, run: &Run) -> Places {
     let [from, to] = request.range();
     let last = (request.scan - 1) as f64;
@@ -37,7 +38,7 @@ pub(super) fn places(case: &Case, request: &Request, run: &Run) -> Places {
     places
 }
 
-/// Where an axle enters or leaves, and where an edge of its patch on the extrados meets a joint.
+/// Returns the positions at which an axle enters or leaves, and at which an edge of its patch on the extrados meets a joint.
 fn events(case: &Case, run: &Run, track: Option<&Track>) -> Places {
     let name = run.vehicle.as_deref().unwrap_or_default();
     let vehicle = case.resolved.get("vehicles").and_then(|all| all.get(name));
@@ -53,7 +54,7 @@ fn events(case: &Case, run: &Run, track: Option<&Track>) -> Places {
     joints.dedup();
     let (Some(&first), Some(&last)) = (joints.first(), joints.last()) else { return Places::default() };
     let sense = if run.direction.as_deref() == Some("backward") { -1.0 } else { 1.0 };
-    // A hair inside: beyond the ends the axle counts nothing.
+    // Slightly inside: beyond the ends the axle is ignored.
     let hair = 1e-9 * (last - first);
     let mut places = Places::default();
     for axle in &vehicle.axles {
@@ -63,7 +64,7 @@ fn events(case: &Case, run: &Run, track: Option<&Track>) -> Places {
             for joint in &joints {
                 for side in [-1.0, 1.0] {
                     let centre = centre_of(&site, &chords, *joint, side, (to - from) / 2.0);
-                    // A patch without length jumps from one block to the next.
+                    // A patch without length moves abruptly from one block to the next.
                     let apart = if to == from { hair } else { 0.0 };
                     places.joints.push(origin(centre + side * apart));
                 }
@@ -73,8 +74,8 @@ fn events(case: &Case, run: &Run, track: Option<&Track>) -> Places {
     places
 }
 
-/// Where the centre of a patch is when the edge on its `side` meets a joint: the reach depends on the depth under the
-/// centre, so it is found by iteration.
+/// Returns the centre of a patch whose edge on its `side` meets a joint. The spread depends on the depth under the centre, so
+/// the centre is found by iteration.
 fn centre_of(site: &LoadSite, chords: &[Chord], joint: f64, side: f64, half: f64) -> f64 {
     let mut centre = joint - side * half;
     for _ in 0..8 {
@@ -87,7 +88,7 @@ fn centre_of(site: &LoadSite, chords: &[Chord], joint: f64, side: f64, half: f64
     centre
 }
 
-/// How far the fill spreads a patch to one side.
+/// Returns the distance by which the fill spreads a patch on one side.
 fn reach(site: &LoadSite, chords: &[Chord], centre: f64, half: f64) -> f64 {
     let law: Option<&dyn Dispersion> = site.tables.dispersion.as_deref();
     let above = chords.iter().filter(|chord| chord.left() <= centre && centre <= chord.right());

@@ -1,10 +1,10 @@
-//! What an envelope is asked: the table of its study, and what is tried on a case.
+//! The request of an envelope: the table of its study, and the runs of a case.
 
 use crate::study::Case;
 use serde_json::Value as Json;
 use voussoir_core::plugin::Keys;
 
-/// Greatest number of places on the even scan.
+/// Greatest number of evenly spaced positions of the scan.
 const MAX_SCAN: usize = 100_000;
 
 /// The directions of vehicles that are tried.
@@ -19,7 +19,7 @@ pub enum Directions {
 }
 
 impl Directions {
-    /// Values of the key `direction` of a load.
+    /// Returns the values of the key `direction` of a load.
     fn words(self) -> &'static [&'static str] {
         match self {
             Directions::Both => &["forward", "backward"],
@@ -55,23 +55,23 @@ pub(super) struct Request {
 }
 
 impl Request {
-    /// Least and greatest value.
+    /// Returns the least and greatest value.
     pub fn range(&self) -> [f64; 2] {
         [self.from, self.to]
     }
 
-    /// A key beside the parameter, in the same table.
+    /// Returns a key in the same table as the parameter.
     pub fn beside(&self, key: &str) -> String {
         let table = self.parameter.rsplit_once('.').map_or("", |(table, _)| table);
         format!("{table}.{key}")
     }
 
-    /// The keys that the envelope sets: the parameter, vehicle and direction.
+    /// Returns the keys that the envelope sets: the parameter, vehicle and direction.
     pub fn keys(&self) -> Vec<String> {
         vec![self.parameter.clone(), self.beside("vehicle"), self.beside("direction")]
     }
 
-    /// What is tried on a case: vehicle and direction, each where there is one.
+    /// Returns the runs of a case: vehicles and directions, if the load has these keys.
     pub fn runs(&self, case: &Case) -> Vec<Run> {
         let load = self.parameter.rsplit_once('.').and_then(|(table, _)| case.resolved.at(table));
         let own = load.and_then(|load| Some(load.get("vehicle")?.as_str()?.to_string()));
@@ -85,7 +85,7 @@ impl Request {
         vehicles.iter().flat_map(each).collect()
     }
 
-    /// The values of a run at a place, by key.
+    /// Returns the values of a run at a position, by key.
     pub fn values(&self, run: &Run, value: f64) -> Vec<(String, Json)> {
         let mut values = vec![(self.parameter.clone(), Json::from(value))];
         values.extend(run.vehicle.iter().map(|vehicle| (self.beside("vehicle"), vehicle.clone().into())));
@@ -94,11 +94,11 @@ impl Request {
     }
 }
 
-/// A vehicle that moves one way.
+/// A vehicle that moves in one direction.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Run {
     /// Entry of `[vehicles]`.
     pub vehicle: Option<String>,
-    /// Which way it stands.
+    /// Direction of the vehicle.
     pub direction: Option<String>,
 }

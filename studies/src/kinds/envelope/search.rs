@@ -1,4 +1,4 @@
-//! The search for the worst place of one run: a scan, then golden sections between its neighbours where it is least.
+//! The search for the most onerous position of one run: a scan, then golden sections between the neighbours of its minima.
 
 use super::places::Places;
 use super::request::Request;
@@ -6,10 +6,10 @@ use crate::kinds::search::golden_section;
 use crate::results::{CaseResult, load_rank};
 use rayon::prelude::*;
 
-/// Local minima of the scan above the least by more than this share are not searched further.
+/// Local minima of the scan that exceed the least value by more than this share are not searched.
 const WORTHWHILE: f64 = 0.05;
 
-/// Results at all places that were tried, in order of id.
+/// Returns the results at all positions that were tried, in order of id.
 pub(super) fn worst_place(
     places: &Places,
     request: &Request,
@@ -18,7 +18,7 @@ pub(super) fn worst_place(
     let ranked = |(x, result): &(f64, CaseResult)| Some((*x, load_rank(result)?));
     let mut tried = solve_all(0, &places.scan, solve);
     let mut values: Vec<(f64, f64)> = tried.iter().filter_map(ranked).collect();
-    // Where the scan is low, edges of patches at joints are tried too.
+    // In the minima of the scan, positions of patch edges at joints are tried too.
     let within = |x: &&f64| valleys(&values).iter().any(|[low, high]| *low < **x && **x < *high);
     let joints: Vec<f64> = places.joints.iter().filter(within).copied().collect();
     let more = solve_all(places.scan.len(), &joints, solve);
@@ -40,7 +40,7 @@ pub(super) fn worst_place(
     tried.into_iter().map(|(_, result)| result).chain(found).collect()
 }
 
-/// Brackets of the places that are lower than their neighbours and near the lowest of all.
+/// Returns brackets of the positions that are lower than their neighbours and near the least value.
 fn valleys(values: &[(f64, f64)]) -> Vec<[f64; 2]> {
     let least = values.iter().map(|(_, value)| *value).fold(f64::INFINITY, f64::min);
     let valley = |i: usize| {
@@ -52,7 +52,7 @@ fn valleys(values: &[(f64, f64)]) -> Vec<[f64; 2]> {
     (0..values.len()).filter_map(valley).collect()
 }
 
-/// Solves places side by side, in order; those that make no case are left out.
+/// Solves positions in parallel and returns them in order; positions that give no case are omitted.
 fn solve_all(
     first: usize,
     places: &[f64],
@@ -80,7 +80,7 @@ mod tests {
         Request { parameter, from: 0.0, to: 10.0, tolerance, scan: 11, directions: None, vehicles: None }
     }
 
-    /// Two valleys of nearly the same depth, one smooth and one with a kink: the deeper is found to the tolerance.
+    /// Two minima with nearly the same value, one smooth and one with a kink: the lower one is found within the tolerance.
     #[test]
     fn the_deeper_of_two_valleys_is_found() {
         let f = |x: f64| (1.0 + (x - 2.3_f64).powi(2)).min(0.99 + 0.05 * (x - 7.777).abs());
@@ -93,7 +93,7 @@ mod tests {
         assert!(ids.windows(2).all(|pair| pair[0] < pair[1]), "{ids:?}");
     }
 
-    /// Where every place carries any load there is nothing to search.
+    /// If every position carries any load, there is nothing to search.
     #[test]
     fn what_stands_everywhere_is_only_scanned() {
         let solve = |id: usize, _: f64| {

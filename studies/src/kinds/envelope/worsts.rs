@@ -1,4 +1,4 @@
-//! What an envelope adds to the results: the worst place of each case of the study, and the factor at all places.
+//! The results of an envelope: the most onerous position of each case of the study, and the factor at all positions.
 
 use super::request::Request;
 use crate::kinds::search::intervals;
@@ -6,7 +6,7 @@ use crate::results::{CaseResult, least_of};
 use crate::study::Study;
 use serde_json::{Map, Value as Json, json};
 
-/// A place that was tried.
+/// A position that was tried.
 struct Place<'a> {
     value: f64,
     vehicle: Option<&'a str>,
@@ -14,7 +14,7 @@ struct Place<'a> {
     result: &'a CaseResult,
 }
 
-/// `worsts` and `curve` of results.json.
+/// Returns `worsts` and `curve` for results.json.
 pub(super) fn entries(study: &Study, request: &Request, cases: &[CaseResult]) -> Map<String, Json> {
     let (mut worsts, mut curve) = (Vec::new(), Vec::new());
     for base in (0..study.count()).filter_map(|id| study.case(id)) {
@@ -49,7 +49,7 @@ pub(super) fn entries(study: &Study, request: &Request, cases: &[CaseResult]) ->
     own
 }
 
-/// Whether a result is one of a case of the study, or made from it.
+/// Returns true if a result belongs to a case of the study, or to a case made from it.
 fn belongs(base: &crate::study::Case, result: &CaseResult) -> bool {
     let label = &result.label;
     label.variant == base.variant
@@ -57,7 +57,7 @@ fn belongs(base: &crate::study::Case, result: &CaseResult) -> bool {
         && base.parameters.iter().all(|(key, value)| label.parameters.get(key) == Some(value))
 }
 
-/// The entry of the least factor.
+/// Returns the entry with the least factor.
 fn worst(request: &Request, base: &crate::study::Case, places: &[Place]) -> Option<Json> {
     let least = least_of(places.iter().map(|place| place.result))?;
     let place = places.iter().find(|place| place.result.label.id == least.label.id)?;

@@ -1,4 +1,4 @@
-//! What `optimise` adds to the results: the best value of each case of the study, and where there is none.
+//! The results of `optimise`: the best value of each case of the study, and the ranges without an optimum.
 
 use super::request::{Request, STRIDE};
 use crate::kinds::search::intervals;
@@ -9,7 +9,7 @@ use serde_json::{Map, Value as Json, json};
 /// A value that was tried.
 struct Tried<'a> {
     value: f64,
-    /// What was found there; `None` where it makes no scene.
+    /// The result; `None` if the value gives no valid scene.
     found: Option<(&'a CaseResult, Option<f64>)>,
 }
 
@@ -19,7 +19,7 @@ impl Tried<'_> {
     }
 }
 
-/// `optima` of results.json.
+/// Returns `optima` for results.json.
 pub(super) fn entries(study: &Study, request: &Request, cases: &[CaseResult]) -> Map<String, Json> {
     let optimum = |base: &Case| {
         let first = study.count() + base.id * STRIDE;
@@ -39,7 +39,7 @@ fn of_case<'a>(request: &Request, base: &Case, result: &'a CaseResult) -> Option
     Some(Tried { value, found: Some((result, request.result_of(base, result))) })
 }
 
-/// Adds the values of the scan that make no scene, and sorts.
+/// Adds the values of the scan that give no valid scene, and sorts.
 fn add_impossible(request: &Request, tried: &mut Vec<Tried>) {
     let [from, to] = request.range();
     let spacing = (to - from) / (request.scan - 1) as f64;
@@ -52,7 +52,7 @@ fn add_impossible(request: &Request, tried: &mut Vec<Tried>) {
 
 fn entry(request: &Request, base: &Case, tried: &[Tried]) -> Json {
     let finite = tried.iter().filter_map(|t| t.found.and_then(|(result, own)| Some((t.value, result, own?))));
-    // Of equal results the first: as many as there are mirrored scenes.
+    // Of equal results the first one is the best: mirrored scenes have equal results.
     let better = |a: f64, b: f64| request.sense() * a > request.sense() * b;
     let best = finite.reduce(|best, other| if better(other.2, best.2) { other } else { best });
     let best_finite =

@@ -1,4 +1,4 @@
-//! What `[optimise]` asks for.
+//! The request of `[optimise]`.
 
 use crate::results::CaseResult;
 use crate::study::Case;
@@ -6,7 +6,7 @@ use serde_json::Value as Json;
 use voussoir_core::limit::Status;
 use voussoir_core::plugin::Keys;
 
-/// Cases made from one case of the study have ids from a multiple of this on, after those of the study.
+/// The ids of cases made from one case of the study start at a multiple of this number, after the ids of the study.
 pub(super) const STRIDE: usize = 1_000_000;
 
 /// Greatest number of values on the scan.
@@ -60,44 +60,44 @@ pub(super) struct Request {
 }
 
 impl Request {
-    /// Least and greatest value.
+    /// Returns the least and greatest value.
     pub fn range(&self) -> [f64; 2] {
         [self.from, self.to]
     }
 
-    /// The keys that vary.
+    /// Returns the keys that vary.
     pub fn keys(&self) -> Vec<String> {
         self.parameters.iter().flatten().chain(&self.parameter).cloned().collect()
     }
 
-    /// 1 to maximise, −1 to minimise.
+    /// Returns 1 to maximise, −1 to minimise.
     pub fn sense(&self) -> f64 {
         if self.goal == Goal::Minimise { -1.0 } else { 1.0 }
     }
 
-    /// The keys, all at one value.
+    /// Returns the keys, all with one value.
     pub fn values(&self, value: f64) -> Vec<(String, Json)> {
         self.keys().into_iter().map(|key| (key, value.into())).collect()
     }
 
-    /// What an answer counts in the sense of the goal: better is greater. `None` where there is no finite result.
+    /// Returns the merit of a result in the sense of the goal: greater is better. `None` if there is no finite result.
     pub fn merit(&self, case: &Case, result: &CaseResult) -> Option<f64> {
         Some(self.sense() * self.result_of(case, result)?)
     }
 
-    /// The result that is optimised; `None` where it is not finite.
+    /// Returns the result that is optimised; `None` if it is not finite.
     pub fn result_of(&self, case: &Case, result: &CaseResult) -> Option<f64> {
         let first = match self.result {
             Some(result) => result == Optimised::FirstLimitPoint,
             None => case.solver.settings.finite,
         };
         let answer = result.load_factor.filter(|_| matches!(result.status, Status::Collapse | Status::LimitPoint));
-        // A proved limit point is an answer, whatever lies beyond it.
+        // A proved limit point is an answer, for any continuation of the path.
         let limit_point = result.path.first_limit_point.filter(|_| answer.is_some() || result.status == Status::Open);
         limit_point.filter(|_| first).or(answer)
     }
 
-    /// The statuses for which there is no optimum.
+    /// Returns true if a case with this status has no bound, so that there is no optimum.
     pub fn without_bound(&self, status: Status) -> bool {
         match self.sense() > 0.0 {
             true => matches!(status, Status::Unbounded | Status::Stands),

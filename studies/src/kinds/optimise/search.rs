@@ -1,12 +1,12 @@
-//! The search: a scan, bisection of the borders between finite results and none, golden sections around the best.
+//! The search: a scan, bisection of the borders of ranges without a finite result, and golden sections around the best value.
 
 use super::request::Request;
 use crate::kinds::search::golden_section;
 use crate::results::CaseResult;
 use rayon::prelude::*;
 
-/// What a value gives: its merit (greater is better, `None` where there is no finite result) and the result; `None`
-/// where it makes no scene.
+/// The merit of a value (greater is better, `None` if there is no finite result) and its result; `None` if the value gives no
+/// valid scene.
 pub(super) type Answer = Option<(Option<f64>, CaseResult)>;
 
 struct Search<'a> {
@@ -18,7 +18,7 @@ struct Search<'a> {
 /// A value that was tried, with its merit.
 type Tried = (f64, Option<f64>);
 
-/// Results at all values that were tried, in order of id.
+/// Returns the results at all values that were tried, in order of id.
 pub(super) fn best_value(request: &Request, solve: &(dyn Fn(usize, f64) -> Answer + Sync)) -> Vec<CaseResult> {
     let [from, to] = request.range();
     let last = request.scan - 1;
@@ -45,7 +45,8 @@ pub(super) fn best_value(request: &Request, solve: &(dyn Fn(usize, f64) -> Answe
     search.results
 }
 
-/// Brackets of the finite values that are better than their neighbours; what has no finite result ends a bracket.
+/// Returns brackets of the finite values that are better than their neighbours. A value without a finite result ends a
+/// bracket.
 fn peaks(tried: &[Tried]) -> Vec<[f64; 2]> {
     let mut brackets = Vec::new();
     for stretch in tried.chunk_by(|a, b| a.1.is_some() == b.1.is_some()) {
@@ -71,7 +72,7 @@ impl Search<'_> {
         merit
     }
 
-    /// Bisects between a value with a finite result and one without, down to a width.
+    /// Bisects between a value with a finite result and one without, until the interval is narrow enough.
     fn border(&mut self, mut ends: [Tried; 2], width: f64) -> Vec<Tried> {
         let mut tried = Vec::new();
         while (ends[1].0 - ends[0].0).abs() > width {
@@ -117,7 +118,7 @@ mod tests {
         (finite.max_by(|a, b| a.1.total_cmp(&b.1)).expect("a value").0, ids)
     }
 
-    /// Two optima, one smooth and one with a kink: the better is found to the tolerance.
+    /// Two optima, one smooth and one with a kink: the better one is found within the tolerance.
     #[test]
     fn the_better_of_two_optima_is_found() {
         let (x, ids) = best(|x| Some((-(x - 2.3_f64).powi(2)).max(0.01 - 3.0 * (x - 7.777).abs())));

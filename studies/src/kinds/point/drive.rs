@@ -1,4 +1,4 @@
-//! Driving a point along its path, step by step.
+//! Drives a point along its path, step by step.
 
 use super::result::{PathStatus, PointResult, columns};
 use super::study::PointCase;
@@ -33,7 +33,7 @@ pub fn drive_point(case: &PointCase) -> PointResult {
     record(&mut result, &point, 0, dissipated);
     let mut controls = vec![Control::Strain(0.0); case.law.components()];
     'path: for (number, segment) in case.path.iter().enumerate() {
-        // From where each component is, in the quantity that is controlled now.
+        // Start value of each component, in the quantity that is controlled now.
         let from: Vec<f64> = (0..controls.len())
             .map(|i| match segment.targets[i].unwrap_or(controls[i]) {
                 Control::Strain(_) => point.response.strain[i],
@@ -93,7 +93,7 @@ fn record(result: &mut PointResult, point: &DrivenPoint, segment: usize, dissipa
     }
     row.push(dissipated);
     row.extend(point.state());
-    // Minus zero is zero.
+    // Converts minus zero into zero.
     row.iter_mut().for_each(|entry| *entry += 0.0);
     result.rows.push(row);
     result.regions.push(response.region);

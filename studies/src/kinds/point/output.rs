@@ -1,4 +1,4 @@
-//! What a study of driven points writes: results.json, results.csv, the figure, the table on the terminal.
+//! The files of a study of driven points: results.json, results.csv, the figure, and the table for the terminal.
 
 use super::drive::drive_point;
 use super::result::{PathStatus, PointResult};
@@ -52,7 +52,7 @@ impl LoadedStudy for PointStudy {
             None => Vec::new(),
         };
         let others: Vec<usize> = stored.into_iter().filter(|id| !request.wanted.contains(id)).collect();
-        // Driving a point costs little: those that stay are driven again, so that they are of this study.
+        // Driving a point is cheap: cases that stay in the results are driven again, so that they belong to the current study.
         let chosen = self.cases.iter().filter(|case| request.wanted.contains(&case.id) || others.contains(&case.id));
         let chosen = chosen.take_while(|_| !observer.cancelled());
         let results: Vec<PointResult> = chosen.map(drive_point).collect();
@@ -113,13 +113,13 @@ impl LoadedStudy for PointStudy {
     }
 }
 
-/// Ids of the cases in a results.json.
+/// Returns the ids of the cases in a results.json.
 fn stored_ids(results: &Json) -> Vec<usize> {
     let cases = results["cases"].as_array().into_iter().flatten();
     cases.filter_map(|case| Some(case["id"].as_u64()? as usize)).collect()
 }
 
-/// results.json.
+/// Returns the content of results.json.
 fn results_json(study: &PointStudy, results: &[PointResult], version: &str) -> Json {
     let mut whole = Json::Object(head((&study.name, &study.resolved), version, &file_names(study)));
     whole["kind"] = "point".into();
@@ -130,7 +130,7 @@ fn results_json(study: &PointStudy, results: &[PointResult], version: &str) -> J
     whole
 }
 
-/// Names of the files beside results.json, sorted.
+/// Returns the names of the files beside results.json, sorted.
 fn file_names(study: &PointStudy) -> Vec<String> {
     let figure = study.figures.then(|| FIGURE.to_string());
     figure.into_iter().chain(["results.csv".into()]).collect()
@@ -139,7 +139,7 @@ fn file_names(study: &PointStudy) -> Vec<String> {
 /// The figure of all paths.
 const FIGURE: &str = "figures/path.svg";
 
-/// (name, text) of every file.
+/// Returns (name, text) of every file.
 pub fn files(study: &PointStudy, results: &[PointResult], version: &str) -> Vec<(String, String)> {
     let whole = results_json(study, results, version);
     let mut out =
@@ -150,12 +150,12 @@ pub fn files(study: &PointStudy, results: &[PointResult], version: &str) -> Vec<
     out
 }
 
-/// Swept keys, in order.
+/// Returns the swept keys in order.
 fn keys(results: &[PointResult]) -> Vec<String> {
     results.first().map(|result| result.parameters.keys().cloned().collect()).unwrap_or_default()
 }
 
-/// One row per step of every case; columns that a case's law does not have are empty.
+/// Returns one row per step of every case; columns that a case's law does not have are empty.
 pub fn csv(study: &PointStudy, results: &[PointResult]) -> String {
     let mut columns: Vec<&String> = Vec::new();
     for column in results.iter().flat_map(|result| &result.columns) {
@@ -181,7 +181,7 @@ pub fn csv(study: &PointStudy, results: &[PointResult]) -> String {
     csv_table(header.collect(), rows.into_iter())
 }
 
-/// The name of a case: its swept values, keys with the same value together.
+/// Returns the name of a case: its swept values; keys with the same value are joined.
 fn name(study: &PointStudy, result: &PointResult) -> String {
     let mut parameters: Vec<(String, String)> = Vec::new();
     for (key, value) in &result.parameters {
@@ -196,7 +196,7 @@ fn name(study: &PointStudy, result: &PointResult) -> String {
     if words.is_empty() { result.law.clone() } else { words.join(", ") }
 }
 
-/// The short name of a swept key and its value for the legend: stresses in MPa.
+/// Returns the short name of a swept key and its value for the legend, with stresses in MPa.
 fn parameter(keys: &SweptKeys, key: &str, value: &Json) -> (String, String) {
     let name = match keys.first(key).map(|meaning| (meaning.table, meaning.name)) {
         Some((Some("stress"), component)) => format!("σ_{component}"),
@@ -213,7 +213,7 @@ fn column(result: &PointResult, word: &str) -> Option<usize> {
     result.columns.iter().position(|column| column.split(' ').next() == Some(word))
 }
 
-/// Stresses in MPa, lengths in mm, everything else as it is.
+/// Converts stresses to MPa and lengths to mm; other quantities are unchanged.
 fn scaled(label: &str) -> (String, f64) {
     if let Some(word) = label.strip_suffix(" [Pa]") {
         (format!("{} [MPa]", word.replace('_', " ")), 1e-6)
@@ -224,7 +224,7 @@ fn scaled(label: &str) -> (String, f64) {
     }
 }
 
-/// The curve of every case, as SVG.
+/// Draws the curve of every case as SVG.
 pub fn figure(study: &PointStudy, results: &[PointResult]) -> String {
     let mut labels = [String::new(), String::new()];
     let mut notes = Vec::new();
@@ -250,7 +250,7 @@ pub fn figure(study: &PointStudy, results: &[PointResult]) -> String {
     chart_svg(&title, &labels[0], &labels[1], &series, &notes)
 }
 
-/// In the plane of p and q: the yield surface of each variant's law.
+/// Returns the yield surface of each variant's law, if the figure shows p and q.
 fn surfaces(study: &PointStudy, results: &[PointResult]) -> Vec<Series> {
     let in_plane = |result: &&PointResult| study.cases[result.id].plot == ["p", "q"];
     let greatest = |word: &str| {
@@ -278,7 +278,7 @@ fn surfaces(study: &PointStudy, results: &[PointResult]) -> Vec<Series> {
         .collect()
 }
 
-/// One row per case: how it ended, and the plotted quantity's least, greatest and last value.
+/// Returns one row per case: its end, and the least, greatest and last value of the plotted quantity.
 pub fn table(study: &PointStudy, results: &[PointResult]) -> String {
     let mut table = Table::new();
     let keys = keys(results);

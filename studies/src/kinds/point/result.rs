@@ -5,13 +5,13 @@ use serde_json::{Map, Value as Json};
 use std::collections::BTreeMap;
 use voussoir_solvers::point::PointLaw;
 
-/// How a path ended.
+/// The end of a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PathStatus {
-    /// At its end.
+    /// The path was followed to its end.
     Reached,
-    /// Before it; the notes say why.
+    /// The path ended early; the notes give the reason.
     Stalled,
 }
 
@@ -26,13 +26,13 @@ pub struct PointResult {
     pub parameters: Map<String, Json>,
     /// Tag of the law.
     pub law: String,
-    /// How it ended.
+    /// End of the path.
     pub status: PathStatus,
-    /// What a user should know.
+    /// Notes for the user.
     pub notes: Vec<String>,
     /// Names of the numbers in a row, with units.
     pub columns: Vec<String>,
-    /// One row per step, the first before any.
+    /// One row per step; the first row is the state before the first step.
     pub rows: Vec<Vec<f64>>,
     /// Region or regime of each row.
     pub regions: Vec<&'static str>,
@@ -40,11 +40,11 @@ pub struct PointResult {
     pub segments: Vec<usize>,
     /// Greatest error of a controlled stress \[Pa\].
     pub largest_control_error: f64,
-    /// Work done.
+    /// Counters of the work.
     pub counters: BTreeMap<&'static str, u64>,
 }
 
-/// Names of a row's numbers.
+/// Returns the names of the numbers in a row.
 pub fn columns(law: &PointLaw) -> Vec<String> {
     let names = law.names();
     let (strain, stress, energy) = match law {

@@ -1,4 +1,4 @@
-//! The study file of a driven point: its keys, and the cases it becomes.
+//! The study file of a driven point: its keys and its cases.
 
 use super::result::columns;
 use crate::config::check::Checker;
@@ -188,7 +188,7 @@ pub struct PointCase {
     pub path: Vec<Segment>,
     /// Columns of the figure.
     pub plot: [String; 2],
-    /// Keys that have no influence.
+    /// Notes about unused keys.
     pub notes: Vec<String>,
 }
 
@@ -197,23 +197,23 @@ pub struct PointCase {
 pub struct PointStudy {
     /// Its name.
     pub name: String,
-    /// Whether figures are wanted.
+    /// True if figures are requested.
     pub figures: bool,
     /// Its cases.
     pub cases: Vec<PointCase>,
-    /// Units and words of the swept keys.
+    /// Units and descriptions of the swept keys.
     pub keys: SweptKeys,
-    /// The file with `--set` applied.
+    /// Returns the file with `--set` applied.
     pub resolved: toml::Value,
 }
 
 impl PointStudy {
-    /// Reads a study from TOML; every mistake at once. Arguments as of [`crate::study::load`].
+    /// Reads a study from TOML. The error contains all mistakes. Arguments as for [`crate::study::load`].
     pub fn load(text: &str, file: &str, sets: &[(String, String)]) -> Result<Self, StudyError> {
         PointStudy::from_source(StudySource::parse(text, file, sets)?)
     }
 
-    /// The study that a source describes.
+    /// Returns the study of a source.
     pub fn from_source(source: StudySource) -> Result<Self, StudyError> {
         let StudySource { root, mut diagnostics, .. } = source;
         let expansion = match Expansion::new(&root, &[], PointFile::PARAMETERS) {
@@ -281,7 +281,7 @@ fn build(id: usize, expanded: Expanded) -> Result<(PointCase, bool), Vec<Located
     Ok((PointCase { id, variant, parameters, tag, law, path, plot, notes }, drawn))
 }
 
-/// The tag of the law that is driven, and the law.
+/// Returns the tag of the driven law, and the law.
 fn read_law(diagnostics: &mut DiagnosticList<'_>, file: &PointFile) -> Option<(String, PointLaw)> {
     let PointFile { point, materials, joints, .. } = file;
     let tag = |table: &Json| tag_of(PluginKind::InterfaceLaw, table).to_string();
@@ -306,7 +306,7 @@ fn read_law(diagnostics: &mut DiagnosticList<'_>, file: &PointFile) -> Option<(S
     }
 }
 
-/// A material, driven in space or in a plane.
+/// Returns a material, driven in space or in a plane.
 fn material_law(
     diagnostics: &mut DiagnosticList<'_>,
     material: Box<dyn BulkMaterial>,
@@ -338,7 +338,7 @@ fn material_law(
     }
 }
 
-/// A joint law that gives tractions from gaps, by itself or by its facets with a stiffness.
+/// Returns a joint law that gives tractions from gaps, directly or by its facets with a stiffness.
 fn joint_law(diagnostics: &mut DiagnosticList<'_>, law: Box<dyn InterfaceLaw>, tag: &str) -> Option<PointLaw> {
     if let Some(response) = law.response() {
         return Some(PointLaw::Joint(response));
@@ -348,7 +348,7 @@ fn joint_law(diagnostics: &mut DiagnosticList<'_>, law: Box<dyn InterfaceLaw>, t
     None
 }
 
-/// The numbers of a table by their keys.
+/// Returns the numbers of a table by their keys.
 fn numbers(table: &impl Serialize) -> BTreeMap<String, f64> {
     serde_json::to_value(table).and_then(serde_json::from_value).unwrap_or_default()
 }

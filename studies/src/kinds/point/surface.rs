@@ -1,14 +1,14 @@
-//! The yield surface of a law in the plane of pressure p and deviatoric stress q, found by asking the law: along rays of
-//! triaxial compression the greatest stress at which it is still elastic.
+//! The yield surface of a law in the plane of pressure p and deviatoric stress q. The law is evaluated along rays of triaxial
+//! compression to find the greatest stress at which it is still elastic.
 
 use voussoir_solvers::point::{Control, DrivenPoint, PointLaw};
 
-/// Rays towards each of the two far edges of the picture.
+/// Number of rays towards each of the two far edges of the figure.
 const RAYS: usize = 40;
-/// Halvings of the interval in which the law yields.
+/// Number of bisections of the interval in which the law yields.
 const HALVINGS: usize = 40;
 
-/// Whether the untouched law stays elastic under σ_xx = −p − 2q/3, σ_yy = σ_zz = −p + q/3.
+/// Returns true if the untouched law stays elastic under σ_xx = −p − 2q/3, σ_yy = σ_zz = −p + q/3.
 fn is_elastic(law: &PointLaw, p: f64, q: f64) -> bool {
     let Ok(mut point) = DrivenPoint::new(law.clone()) else { return false };
     let across = -p + q / 3.0;
@@ -17,8 +17,8 @@ fn is_elastic(law: &PointLaw, p: f64, q: f64) -> bool {
     point.step(&controls[..law.components()]).is_ok() && point.response.region == "elastic"
 }
 
-/// Points (p, q) of the surface within p ≤ `far[0]`, q ≤ `far[1]` \[Pa\], along it from the axis of p; none where the law
-/// yields under no stress in there, or has no stresses in space.
+/// Returns points (p, q) of the surface within p ≤ `far[0]`, q ≤ `far[1]` \[Pa\], in order from the axis of p. Empty if the
+/// law does not yield in this range, or has no stresses in space.
 pub(super) fn yield_surface(law: &PointLaw, far: [f64; 2]) -> Vec<(f64, f64)> {
     if !matches!(law, PointLaw::Space(..)) || !is_elastic(law, 1e-6 * far[0], 0.0) {
         return Vec::new();
@@ -45,7 +45,7 @@ mod tests {
     use super::*;
     use voussoir_core::law::BulkMaterial;
 
-    /// The cap of the paper against its own equation: (p − p_a)² + (R q / k)² = (R (d + p_a tan β))², k = 1 + α − α/cos β.
+    /// Compares the cap with the equation of the paper: (p − p_a)² + (R q / k)² = (R (d + p_a tan β))², k = 1 + α − α/cos β.
     #[test]
     fn the_surface_of_a_cap_is_its_equation() {
         let table = serde_json::json!({

@@ -1,4 +1,4 @@
-//! Claims: what is said, what tests it, and what the numbers answer.
+//! Claims, their tests, and the verdicts from the numbers.
 
 use super::evaluate::evaluate;
 use super::expression::Expression;
@@ -42,7 +42,7 @@ pub struct Test {
     pub holds: String,
 }
 
-/// What the numbers say of a claim.
+/// The verdict of a claim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
@@ -52,12 +52,12 @@ pub enum Verdict {
     Refuted,
     /// Some tests hold.
     DependsOn,
-    /// A number is missing that a test needs.
+    /// A number that a test needs is missing.
     Undecided,
 }
 
 impl Verdict {
-    /// In words.
+    /// Returns the verdict in words.
     pub fn words(self) -> &'static str {
         match self {
             Verdict::Reproduced => "reproduced",
@@ -68,28 +68,28 @@ impl Verdict {
     }
 }
 
-/// What a test came to.
+/// The result of a test.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tested {
-    /// The number behind it.
+    /// The number of the test.
     pub value: Value,
-    /// Whether it holds; `None` where a number is missing.
+    /// True if the test holds; `None` if a number is missing.
     pub holds: Option<bool>,
 }
 
-/// A claim with its answer.
+/// A claim with its verdict.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answer<'a> {
-    /// What was claimed.
+    /// The claim.
     pub claim: &'a Claim,
-    /// What the numbers say.
+    /// The verdict from the numbers.
     pub verdict: Verdict,
-    /// Test by test.
+    /// Results of the tests.
     pub tests: Vec<Tested>,
 }
 
 impl Claim {
-    /// What the numbers say; `series` knows the named series.
+    /// Returns the verdict of the claim; `series` returns a series by its name.
     pub fn answer(&self, series: &dyn Fn(&str) -> Option<Value>) -> Answer<'_> {
         let tests: Vec<Tested> = self.tests.iter().map(|test| test.run(series)).collect();
         let all = |holds: bool| tests.iter().all(|test| test.holds == Some(holds));
@@ -120,7 +120,7 @@ impl Test {
 }
 
 impl Answer<'_> {
-    /// In one line: `depends on the strength`.
+    /// Returns the verdict in one line: `depends on the strength`.
     pub fn words(&self) -> String {
         match (self.verdict, &self.claim.depends_on) {
             (Verdict::DependsOn, Some(parameter)) => format!("depends on {parameter}"),
@@ -128,7 +128,7 @@ impl Answer<'_> {
         }
     }
 
-    /// The entry of results.json.
+    /// Returns the entry for results.json.
     pub fn entry(&self) -> Json {
         let test = |(test, tested): (&Test, &Tested)| {
             let value = match &tested.value {

@@ -1,4 +1,4 @@
-//! What a report says of its studies, and the mistakes in it.
+//! The content of a report about its studies, and the mistakes in it.
 
 use super::claims::{Claim, Test};
 use super::evaluate::FUNCTIONS;
@@ -44,7 +44,7 @@ pub struct Contents {
 }
 
 impl Contents {
-    /// Mistakes in what is said of the studies.
+    /// Adds the mistakes in the content of the report.
     pub fn check(&self, diagnostics: &mut DiagnosticList<'_>, parts: &[Part]) {
         let studies: Vec<&str> = parts.iter().map(|part| part.folder.as_str()).collect();
         let names: Vec<&str> = self.series.keys().map(String::as_str).collect();
@@ -91,7 +91,7 @@ impl Contents {
         self.check_images(diagnostics, &studies, &names);
     }
 
-    /// Mistakes in a test: `value` may be of any type, `holds` is true or false.
+    /// Adds the mistakes in a test: `value` may be of any type, `holds` is true or false.
     fn check_test(&self, diagnostics: &mut DiagnosticList<'_>, key: &str, test: &Test, names: &[&str]) {
         let of_series = |name: &str| self.series.get(name).map_or(Type::Unknown, Selection::element_type);
         let series = Names { known: names, type_of: &of_series };
@@ -139,8 +139,8 @@ struct Names<'a> {
     type_of: &'a dyn Fn(&str) -> Type,
 }
 
-/// The type of an expression. Mistakes are its form, names that do not exist, functions with too few or many arguments, and
-/// wrong types; the whole must be of the type `wanted`.
+/// Returns the type of an expression. Reports syntax errors, unknown names, functions with too few or many arguments, and
+/// wrong types; the whole expression must be of the type `wanted`.
 fn check_expression(
     diagnostics: &mut DiagnosticList<'_>,
     key: &str,
@@ -169,7 +169,7 @@ fn check_expression(
     found
 }
 
-/// Names and functions that do not exist.
+/// Reports names and functions that do not exist.
 fn check_names(diagnostics: &mut DiagnosticList<'_>, key: &str, expression: &Expression, names: &[&str]) {
     let functions: Vec<&str> = FUNCTIONS.iter().map(|function| function.name).collect();
     expression.names(&mut |name, arguments| match arguments {

@@ -1,18 +1,18 @@
-//! What expressions come to: operators element by element, and the functions of series.
+//! Evaluates expressions: operators element by element, and the functions of series.
 
 use super::expression::{Expression, Operator};
 use super::types::Type::{self, Number, Truth, Word};
 use super::value::Value;
 
-/// A function with what its page says of it.
+/// A function with its documentation.
 pub struct Function {
     /// Its name.
     pub name: &'static str,
     /// Types of its arguments.
     pub takes: &'static [Type],
-    /// Type of its result; `None` if that is the type of the first argument.
+    /// Type of its result; `None` if it is the type of the first argument.
     pub gives: Option<Type>,
-    /// What it gives.
+    /// Description of the result.
     pub doc: &'static str,
     run: fn(&mut dyn Iterator<Item = Value>) -> Value,
 }
@@ -31,7 +31,7 @@ const fn one(
     Function { name, takes, gives, doc, run }
 }
 
-/// The next argument; there are as many as the function asks for, since that is checked when the file is read.
+/// Returns the next argument. It always exists, because the number of arguments is checked when the file is read.
 fn next(arguments: &mut dyn Iterator<Item = Value>) -> Value {
     arguments.next().unwrap_or_else(|| Value::unknown("an argument is missing"))
 }
@@ -96,7 +96,7 @@ pub const FUNCTIONS: &[Function] = &[
     },
 ];
 
-/// The value of an expression; `names` knows the series.
+/// Returns the value of an expression; `names` returns a series by its name.
 pub fn evaluate(expression: &Expression, names: &dyn Fn(&str) -> Option<Value>) -> Value {
     match expression {
         Expression::Number(number) => Value::Number(*number),
@@ -129,7 +129,7 @@ fn number(value: Value, f: impl Fn(f64) -> f64) -> Value {
 
 fn binary(operator: Operator, a: Value, b: Value) -> Value {
     use Operator::*;
-    // What is false whatever the other is, and true whatever the other is.
+    // One false operand of `and`, or one true operand of `or`, decides alone.
     match (operator, &a, &b) {
         (And, Value::Truth(false), _) | (And, _, Value::Truth(false)) => return Value::Truth(false),
         (Or, Value::Truth(true), _) | (Or, _, Value::Truth(true)) => return Value::Truth(true),
@@ -180,7 +180,7 @@ fn arithmetic(operator: Operator, a: f64, b: f64) -> Value {
     Value::Truth(truth)
 }
 
-/// The points of a series, or why there are none.
+/// Returns the points of a series. The error gives the reason if this is not possible.
 fn points(value: Value) -> Result<Vec<(f64, Value)>, Value> {
     match value {
         Value::Series(points) if points.is_empty() => Err(Value::unknown("the series is empty")),
@@ -191,7 +191,7 @@ fn points(value: Value) -> Result<Vec<(f64, Value)>, Value> {
     }
 }
 
-/// The numbers of a series; what is proven to be missing is left out, anything else that is missing is an error.
+/// Returns the numbers of a series. A number that is proved not to exist is omitted; any other missing number is an error.
 fn numbers(value: Value) -> Result<Vec<(f64, f64)>, Value> {
     let mut out = Vec::new();
     for (x, value) in points(value)? {
@@ -221,7 +221,7 @@ fn extreme(value: Value, sense: f64, place: bool) -> Value {
     }
 }
 
-/// Three-valued: one element decides, else what is missing leaves it open.
+/// Three-valued logic: one element can decide; otherwise a missing element leaves the result open.
 fn all(value: Value, every: bool) -> Value {
     let points = match points(value) {
         Ok(points) => points,
@@ -323,7 +323,7 @@ fn at(series: Value, place: Value) -> Value {
 }
 
 fn has(value: Value, item: Value) -> Value {
-    // What is proven not to exist holds nothing.
+    // A condition on a value that is proved not to exist is false.
     if matches!(value, Value::Missing { proven: true, .. }) {
         return Value::Truth(false);
     }
@@ -348,8 +348,8 @@ fn within(series: Value, from: Value, to: Value) -> Value {
     }
 }
 
-/// Before the peak of a curve: how many times the slope falls below half of the greatest slope after it, each time
-/// counted once.
+/// Returns the number of times that the slope of a curve before its peak falls below half of the greatest slope after it. Each
+/// fall counts once.
 fn recoveries(curve: Value) -> Value {
     let numbers = match numbers(curve) {
         Ok(numbers) => numbers,
@@ -409,7 +409,7 @@ mod tests {
         }
     }
 
-    /// What is proven not to exist compares false; what is not known leaves the comparison open.
+    /// A value that is proved not to exist compares false; an unknown value leaves the comparison open.
     #[test]
     fn missing_values_are_no_numbers() {
         assert_eq!(value("argmax(open) < 5"), Value::Truth(false));

@@ -13,18 +13,18 @@ pub enum Expression {
     Call(String, Vec<Expression>),
     /// Two values joined by an operator.
     Binary(Operator, Box<Expression>, Box<Expression>),
-    /// The contrary of a truth.
+    /// Negation of a truth value.
     Not(Box<Expression>),
-    /// A number with the other sign.
+    /// Negative of a number.
     Negative(Box<Expression>),
 }
 
-/// What joins two values.
+/// A binary operator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Operator {
-    /// Both.
+    /// Logical and.
     And,
-    /// Either.
+    /// Logical or.
     Or,
     /// Sum.
     Add,
@@ -49,7 +49,7 @@ pub enum Operator {
 }
 
 impl Operator {
-    /// As it is written.
+    /// Returns the sign of the operator in expressions.
     pub fn sign(self) -> &'static str {
         LEVELS.iter().copied().flatten().find(|(_, operator)| *operator == self).map_or("", |(sign, _)| *sign)
     }
@@ -57,7 +57,7 @@ impl Operator {
 
 use Operator::*;
 
-/// Operators by how strongly they bind, weakest first; longer words before shorter ones.
+/// Operators by precedence, lowest first; longer signs before shorter ones.
 const LEVELS: [&[(&str, Operator)]; 5] = [
     &[("or", Or)],
     &[("and", And)],
@@ -66,7 +66,7 @@ const LEVELS: [&[(&str, Operator)]; 5] = [
     &[("*", Multiply), ("/", Divide)],
 ];
 
-/// Deepest nesting that is read.
+/// Greatest nesting of an expression.
 const DEPTH: usize = 60;
 /// Greatest number of numbers, words, names and functions. A long sum is a deep tree, and every walk over it recurses.
 const MAX_TERMS: usize = 250;
@@ -78,7 +78,7 @@ struct Parser<'a> {
 }
 
 impl Expression {
-    /// Reads an expression; an error says what was expected where.
+    /// Reads an expression. The error gives the position and the expected text.
     pub fn parse(text: &str) -> Result<Expression, String> {
         let mut parser = Parser { rest: text, depth: 0, terms: 0 };
         let expression = parser.level(0)?;
@@ -111,7 +111,7 @@ fn is_name(c: char) -> bool {
 }
 
 impl Parser<'_> {
-    /// Takes a word or sign if it comes next.
+    /// Consumes a word or sign if it comes next.
     fn take(&mut self, sign: &str) -> bool {
         let Some(rest) = self.rest.trim_start().strip_prefix(sign) else { return false };
         if sign.chars().all(is_name) && rest.starts_with(is_name) {

@@ -52,7 +52,7 @@ pub struct Table {
     pub series: Vec<String>,
 }
 
-/// What an image of a text shows.
+/// The content of an image in a text.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Image {
     /// A chart by name.
@@ -66,7 +66,7 @@ pub enum Image {
 }
 
 impl Image {
-    /// Reads the place of an image: `chart:NAME`, `table:NAME`, `study:NAME`, `mechanism:SERIES@x`.
+    /// Parses the address of an image: `chart:NAME`, `table:NAME`, `study:NAME`, `mechanism:SERIES@x`.
     pub fn parse(place: &str) -> Option<Image> {
         let (what, name) = place.split_once(':')?;
         match what {
@@ -103,7 +103,7 @@ fn line(selection: &Selection, parts: &Parts) -> Line {
 }
 
 impl Chart {
-    /// The chart as SVG.
+    /// Returns the chart as SVG.
     pub fn svg(&self, all: &BTreeMap<String, Selection>, parts: &Parts) -> String {
         let series = self.series.iter().filter_map(|name| Some((name, all.get(name)?)));
         let drawn: Vec<Series> = series.map(|(name, selection)| self.series(name, selection, parts)).collect();
@@ -122,7 +122,7 @@ impl Chart {
             open_points.sort_by(|a, b| a.0.total_cmp(&b.0));
         }
         let mut spots = Vec::new();
-        // Where loads are unbounded there is no greatest.
+        // If loads are unbounded, there is no greatest load.
         if self.peaks
             && open_points.is_empty()
             && let Some(&top) = points.iter().max_by(|a, b| a.1.total_cmp(&b.1))
@@ -139,7 +139,7 @@ impl Chart {
         Series { name, points, open_points, spots, dots, unjoined: all_points, ..Series::default() }
     }
 
-    /// Where the kind of mechanism changes along a line: the first point of the new kind.
+    /// Returns the changes of the kind of mechanism along a line: the first point of each new kind.
     fn changes(&self, selection: &Selection, parts: &Parts, points: &[(f64, f64)]) -> Vec<Spot> {
         let kinds = line(&Selection { result: "mechanism.kind".into(), y: "y".into(), ..selection.clone() }, parts);
         let mut kinds: Vec<(f64, String)> = kinds.points.iter().map(|(x, kind)| (*x, kind.describe())).collect();
@@ -154,7 +154,7 @@ impl Chart {
 }
 
 impl Table {
-    /// The table as HTML.
+    /// Returns the table as HTML.
     pub fn html(&self, all: &BTreeMap<String, Selection>, parts: &Parts) -> String {
         let columns: Vec<(String, Line)> = self
             .series

@@ -1,4 +1,4 @@
-//! The page of a study of studies: verdicts first, then each study with its text, inputs and answers.
+//! The page of a study of studies: verdicts first, then each study with its text, inputs and results.
 
 use super::claims::{Answer, Verdict};
 use super::contents::Contents;
@@ -9,7 +9,7 @@ use crate::kinds::kind::{Part, Piece};
 use crate::writers::markdown::markdown;
 use crate::writers::page;
 
-/// The page.
+/// Returns the page as HTML.
 pub fn results_page(
     name: &str,
     contents: &Contents,
@@ -50,13 +50,13 @@ pub fn results_page(
     page::whole(title, &body, &[])
 }
 
-/// The heading of a part: its text's own, or else the name of its study; none where nothing stands under it but what
-/// was answered.
+/// Returns the heading of a part: the heading in its text, otherwise the name of its study; empty if the part has no content
+/// below it except its results.
 fn heading(words: &str, study: &str) -> String {
     if words.is_empty() || words.starts_with('#') { String::new() } else { format!("<h2>{}</h2>\n", escape(study)) }
 }
 
-/// What the numbers say of the claims, the verdict first, the tests behind it to open.
+/// Returns the claims with their verdicts first; the tests are in a section that opens.
 fn claims(answers: &[Answer], text: &dyn Fn(&str) -> String) -> String {
     if answers.is_empty() {
         return String::new();
@@ -124,7 +124,7 @@ fn claim(answer: &Answer, text: &dyn Fn(&str) -> String) -> String {
     )
 }
 
-/// What a part was given and came to.
+/// Returns the input and the results of a part.
 fn answered(parts: &Parts, place: usize, part: &Part) -> String {
     let statuses = parts.statuses(place);
     let words: Vec<String> =
@@ -147,7 +147,7 @@ fn answered(parts: &Parts, place: usize, part: &Part) -> String {
     body
 }
 
-/// What stands at the place of an image.
+/// Returns the content of an image.
 fn image(contents: &Contents, parts: &Parts, place: &str) -> Option<String> {
     match Image::parse(place)? {
         Image::Table(name) => {

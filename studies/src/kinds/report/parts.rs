@@ -15,29 +15,29 @@ pub struct Parts<'a> {
 }
 
 impl<'a> Parts<'a> {
-    /// Parts with the text of the results.json of each.
+    /// Combines the parts with the texts of their results.json.
     pub fn new(parts: &'a [Part], texts: &'a [String], figures: bool) -> Self {
         let json = texts.iter().map(|text| serde_json::from_str(text).unwrap_or_default()).collect();
         Parts { parts, texts, json, figures }
     }
 
-    /// The parts, in order.
+    /// Returns the parts in order.
     pub fn list(&self) -> &'a [Part] {
         self.parts
     }
 
-    /// The results of a study by its name.
+    /// Returns the results of a study by its name.
     pub fn json(&self, study: &str) -> Option<&Json> {
         let place = self.parts.iter().position(|part| part.folder == study)?;
         self.json.get(place)
     }
 
-    /// The cases of a part.
+    /// Returns the cases of a part.
     pub fn cases(&self, place: usize) -> &[Json] {
         self.json.get(place).and_then(|json| json["cases"].as_array()).map_or(&[], Vec::as_slice)
     }
 
-    /// How many cases came to which status.
+    /// Returns the number of cases by status.
     pub fn statuses(&self, place: usize) -> BTreeMap<String, usize> {
         let mut counts = BTreeMap::new();
         for case in self.cases(place) {
@@ -46,18 +46,19 @@ impl<'a> Parts<'a> {
         counts
     }
 
-    /// Cases that passed no certificate; driven points have none and end by reaching their path's end.
+    /// Returns the number of cases without a passed certificate. Driven points have no certificate; they pass if they reach the
+    /// end of their path.
     pub fn uncertified(&self, place: usize) -> usize {
         let failed = |case: &&Json| case["certificate"]["passed"] != true && case["status"] != "reached";
         self.cases(place).iter().filter(failed).count()
     }
 
-    /// Time of all cases of a part \[s\].
+    /// Returns the time of all cases of a part \[s\].
     pub fn seconds(&self, place: usize) -> f64 {
         self.cases(place).iter().filter_map(|case| case["seconds"].as_f64()).sum()
     }
 
-    /// `parts` of results.json; times are left out, because they stand in the parts' own results.
+    /// Returns `parts` for results.json. Times are omitted, because they are in the results of the parts.
     pub fn entries(&self) -> Json {
         let entry = |(place, part): (usize, &Part)| {
             json!({
@@ -70,7 +71,7 @@ impl<'a> Parts<'a> {
         self.parts.iter().enumerate().map(entry).collect()
     }
 
-    /// A line for each part: cases, statuses, time.
+    /// Returns a line for each part: cases, statuses, time.
     pub fn times(&self) -> String {
         let line = |(place, part): (usize, &Part)| {
             let statuses = self.statuses(place);
@@ -82,7 +83,7 @@ impl<'a> Parts<'a> {
         self.parts.iter().enumerate().map(line).collect()
     }
 
-    /// A piece of a part.
+    /// Returns a piece of a part.
     pub fn piece(&self, study: &str, piece: Piece) -> Option<String> {
         let place = self.parts.iter().position(|part| part.folder == study)?;
         self.parts[place].study.piece(self.texts.get(place)?, piece)

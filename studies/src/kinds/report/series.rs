@@ -1,4 +1,4 @@
-//! Series: which results of which study they are made of.
+//! Series: the study and the results from which they are made.
 
 use super::types::Type;
 use super::value::Value;
@@ -58,7 +58,7 @@ pub struct Chosen<'a> {
     pub entry: &'a Json,
 }
 
-/// Whether a whole key is meant by a name: itself, or its last names.
+/// Returns true if a name means a whole key: it is the key itself, or its last segments.
 fn meant(key: &str, name: &str) -> bool {
     key == name || key.strip_suffix(name).is_some_and(|before| before.ends_with('.'))
 }
@@ -70,7 +70,7 @@ fn same(a: &Json, b: &Json) -> bool {
     }
 }
 
-/// A named value of an entry: a swept key, or an entry of its own.
+/// Returns a named value of an entry: a swept key, or an entry in the table itself.
 fn named<'a>(entry: &'a Json, name: &str) -> Option<&'a Json> {
     let swept = entry["parameters"].as_object();
     let swept = swept.and_then(|swept| swept.iter().find(|(key, _)| meant(key, name)).map(|(_, value)| value));
@@ -78,7 +78,7 @@ fn named<'a>(entry: &'a Json, name: &str) -> Option<&'a Json> {
 }
 
 impl Selection {
-    /// The entries that are meant, by growing abscissa; `results` is the results.json of the study.
+    /// Returns the selected entries by ascending abscissa; `results` is the results.json of the study.
     pub fn choose<'a>(&self, results: &'a Json) -> Vec<Chosen<'a>> {
         let entries = results[self.entries.as_str()].as_array().into_iter().flatten();
         let of_variant = |entry: &&Json| match &self.variant {
@@ -113,7 +113,7 @@ impl Selection {
         Some(numbers.next().unwrap_or(0.0))
     }
 
-    /// The type of each element, if the path of the result determines it.
+    /// Returns the type of each element, if the path of the result determines it.
     pub fn element_type(&self) -> Type {
         match self.result.as_str() {
             _ if self.points.is_some() => Type::Number,
@@ -123,7 +123,7 @@ impl Selection {
         }
     }
 
-    /// The series; `results` gives the results.json of a study by its name.
+    /// Returns the series; `results` returns the results.json of a study by its name.
     pub fn value<'a>(&self, results: &dyn Fn(&str) -> Option<&'a Json>) -> Value {
         if let Some(points) = &self.points {
             return Value::Series(points.iter().map(|[x, y]| (*x, Value::Number(*y))).collect());
@@ -144,7 +144,7 @@ impl Selection {
     }
 }
 
-/// Displacement in millimetres and factor along the path of a case.
+/// Returns displacement in millimetres and factor along the path of a case.
 fn curve(case: &Json) -> Value {
     let points = case["curve"].as_array().into_iter().flatten();
     let point = |point: &Json| Some((point[0].as_f64()? * 1e3, Value::Number(point[1].as_f64()?)));
@@ -156,14 +156,14 @@ fn curve(case: &Json) -> Value {
     }
 }
 
-/// What stands at a path of an entry; a load factor also where it is infinite.
+/// Returns the value at a path of an entry; a load factor also if it is infinite.
 fn result(entry: &Json, path: &str) -> Value {
     let status = entry["status"].as_str().unwrap_or_default();
     if ["load_factor", "first_limit_point", "result", "value"].contains(&path) {
         match (status, entry[path].as_f64()) {
             ("unbounded", _) if path != "value" => return Value::Number(f64::INFINITY),
             ("unbounded", _) => return Value::none("unbounded"),
-            // A proved limit point is an answer, whatever lies beyond it.
+            // A proved limit point is an answer, for any continuation of the path.
             ("open", Some(number)) if path == "first_limit_point" => return Value::Number(number),
             ("open", _) => return Value::unknown("a case is open"),
             (_, Some(number)) => return Value::Number(number),
@@ -185,7 +185,7 @@ fn result(entry: &Json, path: &str) -> Value {
     follow(entry, &names)
 }
 
-/// The last value of a column of a driven point.
+/// Returns the last value of a column of a driven point.
 fn last(entry: &Json, column: &str) -> Value {
     let columns = entry["columns"].as_array().into_iter().flatten();
     let named = |name: &Json| name.as_str().and_then(|name| name.split(' ').next()) == Some(column);
@@ -197,7 +197,7 @@ fn last(entry: &Json, column: &str) -> Value {
     }
 }
 
-/// Sides of hinges as an engineer draws them, in order.
+/// Returns the sides of hinges in engineering notation, in order.
 fn sides(hinges: &[Json]) -> Value {
     let hinges: Vec<Hinge> = hinges.iter().filter_map(|hinge| Hinge::deserialize(hinge).ok()).collect();
     let side = |hinge: &DrawnHinge| match hinge.main().side {
@@ -208,7 +208,7 @@ fn sides(hinges: &[Json]) -> Value {
     Value::List(named_hinges(&hinges).iter().map(|hinge| Value::Word(side(hinge).into())).collect())
 }
 
-/// Number of places of hinges along the ring: hinges that touch on one side, one after the other, are at one place.
+/// Returns the number of places of hinges along the ring: consecutive hinges at neighbouring joints on one side are one place.
 fn places(hinges: &[Json]) -> Value {
     let mut sides: Vec<&Json> = hinges.iter().map(|hinge| &hinge["side"]).collect();
     sides.dedup();

@@ -1,4 +1,4 @@
-//! A study of studies as commands see it: its parts are run first, then the page is made from their results.
+//! A study of studies, as commands use it: its parts are run first, then the page is made from their results.
 
 use super::claims::{Answer, Verdict};
 use super::contents::{Contents, ReportFile};
@@ -28,7 +28,7 @@ use voussoir_core::plugin::KeyValue;
 pub struct ReportStudy {
     /// Its name.
     pub name: String,
-    /// What it says.
+    /// Its content.
     pub contents: Contents,
     /// True if figures are drawn.
     figures: bool,
@@ -37,7 +37,7 @@ pub struct ReportStudy {
 }
 
 impl ReportStudy {
-    /// Reads a study of studies and its parts; every mistake at once.
+    /// Reads a study of studies and its parts. The error contains all mistakes.
     pub fn read(source: StudySource, read: ReadFile) -> Result<Self, StudyError> {
         let StudySource { root, diagnostics, .. } = source;
         let mut checker = Checker::new(&root);
@@ -58,14 +58,14 @@ impl ReportStudy {
         let mut resolved = root.to_toml();
         let own = parts.iter().map(|part| toml::Value::from(format!("{}/resolved.toml", part.folder)));
         if let Some(report) = resolved.get_mut("report").and_then(toml::Value::as_table_mut) {
-            // In the result folder each part's own file stands in its folder.
+            // In the results folder, the file of each part is in its own folder.
             report.insert("studies".into(), own.collect::<Vec<_>>().into());
         }
         let figures = Drawn::of(output.figures, 1).anything();
         Ok(ReportStudy { name, contents, figures, parts, resolved })
     }
 
-    /// The page and everything else that follows from the results of the parts.
+    /// Returns the page and all other output made from the results of the parts.
     fn output(&self, results: &[String], version: &str, date: Option<&str>) -> RunOutput {
         let parts = Parts::new(&self.parts, results, self.figures);
         let series: BTreeMap<&str, Value> = self
@@ -103,7 +103,7 @@ impl ReportStudy {
     }
 }
 
-/// The studies that a report names, each of another name.
+/// Reads the studies that a report names; their names must differ.
 fn read_parts(diagnostics: &mut DiagnosticList<'_>, contents: &Contents, root: &Node, read: ReadFile) -> Vec<Part> {
     let own = match &root.origin {
         Origin::File { file, .. } => Path::new(&**file).with_file_name(""),
@@ -120,7 +120,7 @@ fn read_parts(diagnostics: &mut DiagnosticList<'_>, contents: &Contents, root: &
             }
         };
         let file = own.join(name).display().to_string();
-        // What a part names stands beside the part.
+        // Files that a part names are in the folder of the part.
         let beside = |inner: &str| read(&Path::new(name).with_file_name(inner).display().to_string());
         match StudySource::parse_with(&text, &file, &[], &beside).and_then(read_source) {
             Ok(study) if !study.parts().is_empty() => {
@@ -137,7 +137,7 @@ fn read_parts(diagnostics: &mut DiagnosticList<'_>, contents: &Contents, root: &
     parts
 }
 
-/// The table on the terminal: verdicts, then how long each part took.
+/// Returns the table for the terminal: verdicts, then the time of each part.
 fn table(answers: &[Answer], parts: &Parts) -> String {
     let mut text = String::new();
     for answer in answers {
@@ -184,7 +184,7 @@ impl LoadedStudy for ReportStudy {
         self.output(&request.parts, &request.version, request.date.as_deref())
     }
 
-    /// The page and the verdicts must be those that the results of the parts give; the parts are verified apart.
+    /// The page and the verdicts must be equal to those made from the results of the parts; the parts are verified separately.
     fn verify_stored(&self, stored: &StoredResults, _observer: &dyn Observer) -> Result<Verification, String> {
         let json: Json = serde_json::from_reader(stored.results()?).map_err(|error| error.to_string())?;
         let text = |part: &Part| stored.text(&format!("{}/results.json", part.folder)).unwrap_or_default();

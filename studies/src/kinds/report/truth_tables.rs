@@ -115,7 +115,7 @@ fn numbers_are_added_and_compared() {
     ]);
 }
 
-/// Truths and words: every operator; the numbers' operators have no answer for them.
+/// Truths and words: every operator; operators of numbers have no answer for them.
 #[test]
 fn truths_and_words_are_joined_and_compared() {
     for (a, b) in [(true, true), (true, false), (false, true), (false, false)] {
@@ -312,7 +312,7 @@ fn order_of_series() {
     ]);
 }
 
-/// Functions of lists; a value that is no list is a list of one.
+/// Functions of lists; a value that is not a list is a list of one.
 #[test]
 fn functions_of_lists() {
     table(&[
@@ -390,7 +390,7 @@ fn recoveries_of_a_curve() {
     assert_eq!(curve(&[(0.0, 0.0), (1.0, 0.25), (2.0, 1.25), (3.0, 1.5), (4.0, 2.5)]), "2");
     assert_eq!(curve(&[(0.0, 0.0), (1.0, 1.0), (2.0, 0.0), (3.0, 0.9)]), "0");
     assert_eq!(curve(&[(0.0, 0.0), (2.0, 2.0), (4.0, 3.0), (5.0, 3.0)]), "0");
-    // The slope counts, not the rise of a step; and a curve in metres has as many as one in millimetres.
+    // The slope is used, not the rise of a step; a curve in metres has the same number as one in millimetres.
     let uneven = [(0.0, 0.0), (2.0, 2.0), (4.0, 2.5), (4.5, 3.5)];
     assert_eq!(curve(&uneven), "1");
     assert_eq!(curve(&uneven.map(|(x, y)| (1e-3 * x, y))), "1");

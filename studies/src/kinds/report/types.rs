@@ -9,12 +9,12 @@ pub enum Type {
     Word,
     /// True or false.
     Truth,
-    /// Known only when there are results.
+    /// Known only after the run.
     Unknown,
 }
 
 impl Type {
-    /// In words.
+    /// Returns the type in words.
     pub fn describe(self) -> &'static str {
         match self {
             Type::Number => "a number",

@@ -4,7 +4,7 @@ use super::evaluate::FUNCTIONS;
 use super::expression::{Expression, Operator};
 use super::types::Type;
 
-/// The type of an expression. `names` knows the types of series; every mistake is added to `mistakes`.
+/// Returns the type of an expression. `names` returns the types of series; every mistake is added to `mistakes`.
 pub fn type_of(expression: &Expression, names: &dyn Fn(&str) -> Type, mistakes: &mut Vec<String>) -> Type {
     let mut of = |part: &Expression| type_of(part, names, mistakes);
     match expression {

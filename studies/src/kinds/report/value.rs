@@ -2,18 +2,18 @@
 
 use crate::figures::format::format_short;
 
-/// What an expression comes to.
+/// The value of an expression.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
-    /// No value, and why. Where it is `proven` that there is none (no equilibrium, no greatest load) a comparison
-    /// with it is false; otherwise a comparison has no answer either.
+    /// No value, with the reason. If it is `proven` that no value exists (no equilibrium, no greatest load), a comparison with it
+    /// is false. Otherwise a comparison is open too.
     Missing {
         /// The reason.
         why: String,
-        /// Whether the result that is missing cannot exist.
+        /// True if the missing result cannot exist.
         proven: bool,
     },
-    /// A number; infinite for the load of what carries any load.
+    /// A number; infinite for the load factor of a structure that carries any load.
     Number(f64),
     /// A word.
     Word(String),
@@ -21,22 +21,22 @@ pub enum Value {
     Truth(bool),
     /// Several values.
     List(Vec<Value>),
-    /// Values over a number, by growing abscissa unless they are a path.
+    /// Values over a number, by ascending abscissa unless they are a path.
     Series(Vec<(f64, Value)>),
 }
 
 impl Value {
-    /// No value, for a reason that is no proof.
+    /// Returns a missing value that may exist.
     pub fn unknown(why: impl Into<String>) -> Self {
         Value::Missing { why: why.into(), proven: false }
     }
 
-    /// No value, because none exists.
+    /// Returns a missing value that cannot exist.
     pub fn none(why: impl Into<String>) -> Self {
         Value::Missing { why: why.into(), proven: true }
     }
 
-    /// The number, where it is one.
+    /// Returns the number, if it is one.
     pub fn number(&self) -> Option<f64> {
         match self {
             Value::Number(number) => Some(*number),
@@ -44,7 +44,7 @@ impl Value {
         }
     }
 
-    /// In words.
+    /// Describes the value in words.
     pub fn describe(&self) -> String {
         match self {
             Value::Missing { why, .. } => why.clone(),
@@ -60,7 +60,7 @@ impl Value {
         }
     }
 
-    /// The same to every element of a series.
+    /// Applies a function to the value, or to every element of a series.
     pub fn map(self, f: &dyn Fn(Value) -> Value) -> Value {
         match self {
             Value::Series(points) => Value::Series(points.into_iter().map(|(x, value)| (x, f(value))).collect()),
@@ -69,7 +69,8 @@ impl Value {
         }
     }
 
-    /// The same to two values, element by element where one is a series; of two series where both have an element.
+    /// Applies a function to two values, element by element if one is a series. Two series are combined at abscissas that both
+    /// have.
     pub fn zip(self, other: Value, f: &dyn Fn(Value, Value) -> Value) -> Value {
         match (self, other) {
             (Value::Series(a), Value::Series(b)) => {

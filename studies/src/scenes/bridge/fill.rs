@@ -260,8 +260,8 @@ impl Ground<'_> {
             .max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// Returns the shares of a segment, from 0 to 1, between which the mass above it is linear. It is cut at corners of the road,
-    /// at levels of strata, and at levels of strata in the road above it.
+    /// Returns the shares of a segment, from 0 to 1, between which the mass above it is linear. It is cut at corners of the
+    /// road, where it crosses the level of a stratum, and where the road above it crosses one.
     fn cuts(&self, a: Vec2, b: Vec2) -> Vec<f64> {
         let mut cuts = vec![0.0, 1.0];
         let mut cross = |from: f64, to: f64, value: f64| {
