@@ -1,9 +1,9 @@
-//! One point of a material or of a joint, driven through a path of mixed control.
+//! One point of a material or of a joint on a path of mixed control.
 //!
-//! For each component either the strain (the gap of a joint) or the stress (its traction) is given.
-//! Newton with the law's own tangent finds the free strains; a step that does not converge is
-//! halved. Stresses beyond what the law can carry end in [`Stop`], never in a number. A controlled stress
-//! that falls unloads the point; the falling branch of a law that softens is followed by controlled strains.
+//! For each component, either the strain (the gap of a joint) or the stress (its traction) is prescribed. Newton's
+//! method with the tangent of the law finds the free strains; a step that does not converge is halved. Stresses beyond
+//! the strength of the law end in [`Stop`], never in a result. A controlled stress that falls unloads the point; use
+//! controlled strains to follow the falling branch of a law that softens.
 
 use crate::settings::SETTINGS;
 use std::fmt;
@@ -13,7 +13,7 @@ use voussoir_core::law::{InterfaceResponse, PlanarUpdate, StressUpdate, UpdateCo
 /// Greatest number of components.
 pub const COMPONENTS: usize = 6;
 const ITERATIONS: usize = 50;
-/// Halvings of a step before it is given up.
+/// Greatest number of halvings of a step.
 const HALVINGS: u32 = 14;
 
 /// The law at the point.
@@ -27,7 +27,7 @@ pub enum PointLaw {
     Joint(Arc<dyn InterfaceResponse>),
 }
 
-/// What the law says at the end of a step.
+/// The response of the law at the end of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointResponse {
     /// Strains or gaps; unused components are 0.
@@ -44,27 +44,26 @@ pub struct PointResponse {
     pub dissipated: f64,
 }
 
-/// What is given for one component.
+/// The prescribed quantity of one component.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Control {
-    /// Its strain or gap.
+    /// Strain or gap.
     Strain(f64),
-    /// Its stress or traction \[Pa\].
+    /// Stress or traction \[Pa\].
     Stress(f64),
 }
 
-/// Why a path ends early.
+/// The reason why a path ends early.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Stop {
-    /// The law has no answer.
+    /// The update of the law failed.
     Law(UpdateFailure),
-    /// The controlled stresses could not be reached: beyond the strength, or beyond a peak that only
-    /// a controlled strain can pass. The part of the step that was done, and the greatest error of a
-    /// controlled stress at the last attempt \[Pa\].
+    /// The controlled stresses could not be reached: they are beyond the strength, or beyond a peak that only a
+    /// controlled strain can pass.
     Unreachable {
-        /// Share of the step from 0 to 1.
+        /// Completed share of the step, from 0 to 1.
         done: f64,
-        /// \[Pa\].
+        /// Greatest error of a controlled stress at the last attempt \[Pa\].
         error: f64,
     },
 }
@@ -84,7 +83,7 @@ impl fmt::Display for Stop {
 }
 
 impl PointLaw {
-    /// Number of components.
+    /// Returns the number of components.
     pub fn components(&self) -> usize {
         match self {
             PointLaw::Space(..) => 6,
@@ -93,7 +92,7 @@ impl PointLaw {
         }
     }
 
-    /// Names of the components.
+    /// Returns the names of the components.
     pub fn names(&self) -> &'static [&'static str] {
         match self {
             PointLaw::Space(..) => &["xx", "yy", "zz", "xy", "yz", "zx"],
@@ -102,7 +101,7 @@ impl PointLaw {
         }
     }
 
-    /// The state of the untouched point.
+    /// Returns the state of the undeformed point.
     pub fn initial_state(&self) -> Vec<f64> {
         let size = match self {
             PointLaw::Space(law, _) => law.state_size(),
@@ -118,7 +117,7 @@ impl PointLaw {
         state
     }
 
-    /// Names of the numbers in the state, with units.
+    /// Returns the names of the state variables, with units.
     pub fn state_names(&self) -> Vec<&'static str> {
         match self {
             PointLaw::Space(law, _) => law.state_names().to_vec(),
@@ -131,7 +130,7 @@ impl PointLaw {
         }
     }
 
-    /// One update.
+    /// Computes one update.
     pub fn update(
         &self,
         strain: &[f64; COMPONENTS],
@@ -181,20 +180,20 @@ pub struct DrivenPoint {
     law: PointLaw,
     state: Vec<f64>,
     scratch: Vec<f64>,
-    /// The untouched point's tangent.
+    /// Tangent of the undeformed point.
     elastic: [[f64; COMPONENTS]; COMPONENTS],
-    /// Its greatest entry \[Pa\]: what rounding of strains is worth.
+    /// Greatest entry of that tangent \[Pa\]; it converts rounding errors of strains into stresses.
     stiffness: f64,
-    /// Where it is.
+    /// Present response.
     pub response: PointResponse,
-    /// Law evaluations so far.
+    /// Number of evaluations of the law.
     pub evaluations: u64,
-    /// Steps that were halved so far.
+    /// Number of halved steps.
     pub halvings: u64,
 }
 
 impl DrivenPoint {
-    /// The untouched point.
+    /// Creates an undeformed point.
     pub fn new(law: PointLaw) -> Result<Self, UpdateFailure> {
         let state = law.initial_state();
         let mut scratch = state.clone();
@@ -204,18 +203,18 @@ impl DrivenPoint {
         Ok(DrivenPoint { law, state, scratch, elastic, stiffness, response, evaluations: 1, halvings: 0 })
     }
 
-    /// The law.
+    /// Returns the law.
     pub fn law(&self) -> &PointLaw {
         &self.law
     }
 
-    /// The state.
+    /// Returns the state variables.
     pub fn state(&self) -> &[f64] {
         &self.state
     }
 
-    /// Goes to these controls, one per component, in a straight line from where it is; the step's
-    /// dissipation is the sum over its parts. On failure the point stays at the last part that was done.
+    /// Moves to these controls, one per component, in a straight line from the present ones; the dissipation of the
+    /// step is the sum over its parts. After a failure the point stays at the end of the last completed part.
     pub fn step(&mut self, controls: &[Control]) -> Result<(), Stop> {
         let count = self.law.components();
         let start: [f64; COMPONENTS] = std::array::from_fn(|i| match controls.get(i) {
@@ -230,7 +229,7 @@ impl DrivenPoint {
                 .iter()
                 .zip(start)
                 .map(|(control, from)| {
-                    // The end of a step is met exactly.
+                    // // The end of a step is reached exactly, without rounding.
                     let between = |target: f64| if to == 1.0 { target } else { from + to * (target - from) };
                     match control {
                         Control::Strain(target) => Control::Strain(between(*target)),
@@ -263,13 +262,14 @@ impl DrivenPoint {
         Ok(())
     }
 
-    /// The greatest error of a controlled stress \[Pa\].
+    /// Returns the greatest error of a controlled stress \[Pa\].
     pub fn error(&self, controls: &[Control]) -> f64 {
         residual(controls, &self.response).iter().fold(0.0, |a, b| a.max(b.abs()))
     }
 
-    /// Where stresses are controlled, unloading comes first: beyond a peak a stress that falls has two answers, unloading
-    /// and more softening, and only the first is stable (its second-order work Δσ·Δε is positive, Hill 1958).
+    /// Solves one part of a step. If stresses are controlled, unloading is tried first: beyond a peak a falling stress
+    /// has two solutions, unloading and more softening. Only the first is stable (its second-order work Δσ·Δε is
+    /// positive, Hill 1958).
     fn solve(&mut self, controls: &[Control]) -> Result<PointResponse, Stop> {
         if controls.iter().any(|control| matches!(control, Control::Stress(_))) {
             let unloading = self.unloading_tangent()?;
@@ -282,7 +282,8 @@ impl DrivenPoint {
         self.solve_from(controls, &self.response.tangent.clone())
     }
 
-    /// Materials unload as they were loaded first, joints as the law says a little before the present gap.
+    /// Returns the tangent for unloading: the initial tangent for materials; for joints the tangent of the law slightly
+    /// before the present gap.
     fn unloading_tangent(&mut self) -> Result<[[f64; COMPONENTS]; COMPONENTS], Stop> {
         if !matches!(self.law, PointLaw::Joint(_)) {
             return Ok(self.elastic);
@@ -291,7 +292,7 @@ impl DrivenPoint {
         self.evaluate(&before).map(|found| found.tangent)
     }
 
-    /// Newton's method from a predictor by this tangent.
+    /// Solves by Newton's method from a predictor with this tangent.
     fn solve_from(
         &mut self,
         controls: &[Control],
@@ -304,7 +305,7 @@ impl DrivenPoint {
             }
         }
         let free: Vec<usize> = (0..controls.len()).filter(|&i| matches!(controls[i], Control::Stress(_))).collect();
-        // The predictor carries the change of the given strains to the free ones.
+        // // The predictor applies the change of the given strains to the free ones.
         let change: [f64; COMPONENTS] = std::array::from_fn(|i| strain[i] - self.response.strain[i]);
         let mut right = residual(controls, &self.response);
         for &i in &free {
@@ -354,7 +355,7 @@ impl DrivenPoint {
     }
 }
 
-/// Stress minus target for controlled stresses, 0 elsewhere.
+/// Returns stress minus target for controlled stresses, 0 for other components.
 fn residual(controls: &[Control], response: &PointResponse) -> [f64; COMPONENTS] {
     std::array::from_fn(|i| match controls.get(i) {
         Some(Control::Stress(target)) => response.stress[i] - target,
@@ -362,7 +363,7 @@ fn residual(controls: &[Control], response: &PointResponse) -> [f64; COMPONENTS]
     })
 }
 
-/// Solves for the free components by elimination with full pivoting; `None` where singular.
+/// Solves for the free components by elimination with full pivoting; `None` if the matrix is singular.
 fn solve_free(
     tangent: &[[f64; COMPONENTS]; COMPONENTS],
     right: &[f64; COMPONENTS],

@@ -1,64 +1,68 @@
-//! The numbers that paths, rate problems and contact laws share: tolerances, and what steers the length of steps.
+//! The numbers that paths, rate problems and contact laws share: tolerances, and parameters of the length of steps.
 //!
-//! Tolerances derive from three: rounding, admissibility and activity. Each is relative to the size of the judged quantity in
-//! the units of the problem, so that neither the size of a scene nor its units matter. Limit analysis has its own
-//! (`limit/settings.rs`).
+//! Tolerances derive from three: rounding, admissibility and activity. Each is relative to the size of the judged
+//! quantity in the units of the problem, so that results depend neither on the size of a scene nor on its units. Limit
+//! analysis has separate tolerances (`limit/settings.rs`).
 
 /// Numbers of paths, rate problems and contact laws.
 #[derive(Debug, Clone, Copy)]
 pub struct Settings {
-    /// Residual of a solution that is rounding: some hundred times the precision of a number.
+    /// Relative residual that is rounding: some hundred times machine precision.
     pub rounding: f64,
-    /// Residual or difference with which a solution, a state or a law still holds.
+    /// Relative error up to which a solution, a state or a law is accepted.
     pub admissible: f64,
     /// Slack up to which a facet takes part in an event, and rate up to which nothing moves.
     pub active: f64,
-    /// Residual up to which a solution needs no refinement: ten times the precision of a number.
+    /// Residual up to which a solution needs no refinement: ten times machine precision.
     pub refined: f64,
     /// Tolerance of a mode relative to the greatest force. A certificate allows 1e-8.
     pub mode: f64,
-    /// Share that is small but no rounding: strength of a pivot, rotation of a step, least motion before an event.
+    /// Share that is small but not rounding: strength of a pivot, rotation of a step, least motion before an event.
     pub small: f64,
-    /// Share below which two effects can be distinguished with refinement only, such as a mechanism and a soft structure; energy that a
-    /// step may leave over.
+    /// Share below which two effects can be distinguished only with refinement, such as a mechanism and a soft
+    /// structure; also the energy error that a step may have.
     pub fine: f64,
-    /// Change of the factor in a step of blocks that flow, relative to its motion. In an elastic step it is about 1.
+    /// Change of the factor in a step with plastic flow of blocks, relative to its motion. In an elastic step it is
+    /// about 1.
     pub flat: f64,
-    /// Energy of a stage, relative to it, that its steps may leave over: half of the tolerance of a certificate.
+    /// Accepted energy error of a stage, relative to its energy: half of the tolerance of a certificate.
     pub energy_of_stage: f64,
-    /// Motion, as a share of the size of the scene, that can be seen: over it a mechanism is followed.
+    /// Visible motion, relative to the size of the scene: a mechanism is followed up to it.
     pub visible: f64,
-    /// Motion, as a share of the size of the scene, with which a structure has fallen.
+    /// Motion, relative to the size of the scene, after which a structure counts as fallen.
     pub fallen: f64,
-    /// Movement in a step with finite displacements if the strategy sets no bound, as a share of the size of the scene.
+    /// Greatest movement in a step with finite displacements if the strategy sets no bound, relative to the size of the
+    /// scene.
     pub largest_finite_step: f64,
-    /// Load, relative to its unit, whose state has the modes with which a path begins.
+    /// Load, relative to its unit, at which the modes of the start of a path are determined.
     pub first_load: f64,
-    /// Distance of a state from its predictor, relative to the step, at which the next step is as long.
+    /// Distance of a state from its predictor, relative to the step, at which the next step has the same length.
     pub wanted_error: f64,
-    /// The same above which a step is repeated.
+    /// Distance of a state from its predictor, relative to the step, above which a step is repeated.
     pub most_error: f64,
-    /// Length of a step, relative to the wanted one, from which on its error determines the length of the next one.
+    /// Length of a step, relative to the wanted one, above which its error determines the length of the next step.
     pub telling: f64,
-    /// Length of a step, relative to the way to the first event: the event is then in it.
+    /// Length of a step, relative to the distance to the first event, that makes it contain the event.
     pub beyond: f64,
-    /// Share of the greatest limit point to which the load falls by default.
+    /// Load at the end of a falling path, relative to the greatest limit point, by default.
     pub half: f64,
-    /// Share of a residual that an iteration with factors of a near state may leave.
+    /// Reduction of the residual per iteration that is required of factors of a nearby state.
     pub contraction: f64,
-    /// Share of a residual above which an iteration has not lowered it.
+    /// Share of a residual above which an iteration counts as without progress.
     pub stays: f64,
     /// Greatest rotation of an iteration with finite displacements \[rad\].
     pub largest_rotation: f64,
     /// Value of a monitor, relative to its tolerance, up to which it takes part in an event.
     pub together: f64,
-    /// Residual of rates of a chain, relative to one that needs no refinement, above which the next correction is examined too.
+    /// Residual of the rates of a chain, relative to one that needs no refinement, above which the next correction is
+    /// examined too.
     pub calm: f64,
-    /// Fall of rates of a chain by a change of modes from which on they are summed up anew: rounding would stay in them.
+    /// Decrease of the rates of a chain by a change of modes after which they are summed again, because rounding errors
+    /// would remain in them.
     pub cancels: f64,
     /// Stiffness of the spring of a weak joint of a chain, relative to the joint with all points stuck.
     pub spring: f64,
-    /// Share of the forces of closed points on a moving support below which forces are not compared with themselves.
+    /// Share of the forces of closed points on a moving support below which forces are not compared with each other.
     pub cancelled: f64,
 }
 
@@ -94,10 +98,10 @@ pub const SETTINGS: Settings = Settings {
 .validated();
 
 impl Settings {
-    /// The same settings if they are consistent.
+    /// Returns the same settings if they are consistent.
     ///
     /// # Panics
-    /// If tolerances are not in their order, or a share is not between 0 and 1: when the crate is compiled.
+    /// Panics, when the crate is compiled, if tolerances are not in their order, or a share is not between 0 and 1.
     const fn validated(self) -> Settings {
         assert!(0.0 < self.refined && self.refined < self.rounding, "refined solutions are better than rounding");
         assert!(self.rounding < self.admissible && self.admissible < self.active, "rounding < admissible < active");
@@ -120,62 +124,62 @@ impl Settings {
         self
     }
 
-    /// The precision of a residual.
+    /// Returns the precision of a residual.
     pub const fn ulps(&self) -> f64 {
         0.01 * self.rounding
     }
 
-    /// Share of its first size at which an update has died away.
+    /// Returns the share of its first size below which an update is negligible.
     pub const fn negligible(&self) -> f64 {
         0.1 * self.rounding
     }
 
-    /// Residual of gaps beside the rates of forces: the error of the forces.
+    /// Returns the residual of gaps compared with the rates of forces: the error of the forces.
     pub const fn error_of_forces(&self) -> f64 {
         2.0 * self.rounding
     }
 
-    /// Residual of a direction above which it is solved anew.
+    /// Returns the residual of a direction above which it is solved again.
     pub const fn residual(&self) -> f64 {
         10.0 * self.rounding
     }
 
-    /// Shift of a factorised matrix, which refinement removes. Smaller pivots count as zero.
+    /// Returns the shift of a factorised matrix, which refinement removes. Smaller pivots count as zero.
     pub const fn shift(&self) -> f64 {
         100.0 * self.rounding
     }
 
-    /// Tolerance of inequalities and of equilibrium: a tenth of what certificates allow.
+    /// Returns the tolerance of inequalities and of equilibrium: a tenth of the tolerance of certificates.
     pub const fn inequality(&self) -> f64 {
         0.1 * self.admissible
     }
 
-    /// Difference up to which two rates are the same.
+    /// Returns the difference up to which two rates are the same.
     pub const fn same_rate(&self) -> f64 {
         10.0 * self.active
     }
 
-    /// Difference above which two loads, motions or works are distinct.
+    /// Returns the difference above which two loads, motions or works are distinct.
     pub const fn distinct(&self) -> f64 {
         100.0 * self.active
     }
 
-    /// Share of a step beyond which its corner is its end.
+    /// Returns the share of a step after which its corner counts as its end.
     pub const fn nearly(&self) -> f64 {
         1.0 - self.admissible
     }
 
-    /// Rates above this have no bound.
+    /// Returns the rate above which a rate has no bound.
     pub const fn unbounded(&self) -> f64 {
         1.0 / self.inequality()
     }
 
-    /// Flexibility above which a motion has no stiffness.
+    /// Returns the flexibility above which a motion has no stiffness.
     pub const fn soft(&self) -> f64 {
         1.0 / self.active
     }
 
-    /// Greatest entry of an inverse, relative to 1: more loses too many digits.
+    /// Returns the greatest entry of an inverse, relative to 1: greater entries lose too many digits.
     pub const fn largest_inverse(&self) -> f64 {
         1.0 / self.distinct()
     }

@@ -1,11 +1,11 @@
-//! A contact point with facets without slack: the modes it may take in a rate, and how a rate violates one.
+//! A contact point with facets without slack: its possible modes in a rate, and the violation of a mode by a rate.
 //!
-//! - stick: ġ = 0, and no active facet is left (ṡ ≥ 0);
+//! - stick: ġ = 0, and the force rate leaves no active facet (ṡ ≥ 0);
 //! - facet i: ṡ_i = 0, ġ = −γ d_i, γ ≥ 0 (any sign for an opening facet that is open);
 //! - corner of facets i and j: ṙ = 0, ġ = −γ_i d_i − γ_j d_j;
 //! - open (the apex of dry friction): ṙ = 0, ġ_n ≥ tan ψ |ġ_t|.
 //!
-//! Source: the modes are those of Alart and Curnier (1991).
+//! Source of the modes: Alart and Curnier (1991).
 
 use super::facet::{dilatancy, dot, norm};
 use super::mode::ContactMode;
@@ -14,30 +14,30 @@ use voussoir_core::law::{Facet, FacetMode};
 /// A contact point of the active set.
 #[derive(Debug, Clone)]
 pub struct ActivePoint<'a> {
-    /// Its facets.
+    /// Facets of the law.
     pub facets: &'a [Facet],
-    /// Which of them have no slack.
+    /// Facets without slack.
     pub active: Vec<usize>,
-    /// The opening facet, where the point is open without being at the apex.
+    /// The opening facet, if the point is open and not at the apex.
     pub open: Option<usize>,
-    /// Whether it is at the apex, where it may open freely.
+    /// True if it is at the apex, where it may open freely.
     pub apex: bool,
-    /// Its present mode, or that of the facet where it has just arrived.
+    /// Its present mode; for a point that has just reached a facet, the mode of that facet.
     pub guess: ContactMode,
     /// Unit of its stiffness.
     pub stiffness: f64,
 }
 
 impl ActivePoint<'_> {
-    /// Whether the active facets of a law without strength meet at the apex of dry friction: opening, and slip in
-    /// both senses.
+    /// Returns true if the active facets of a law without strength meet at the apex of dry friction: opening and slip
+    /// in both senses.
     pub fn is_apex(facets: &[Facet], active: &[usize]) -> bool {
         let bare = |own: &dyn Fn(&Facet) -> bool| active.iter().any(|i| facets[*i].bound <= 0.0 && own(&facets[*i]));
         let slides = |sense: f64| bare(&|f| f.mode == FacetMode::Sliding && sense * f.normal[1] > 0.0);
         bare(&|f| f.mode == FacetMode::Opening) && slides(1.0) && slides(-1.0)
     }
 
-    /// The modes it may take.
+    /// Returns the possible modes.
     pub fn candidates(&self) -> Vec<ContactMode> {
         if let Some(open) = self.open {
             let others = self.active.iter().filter(|f| **f != open);
@@ -63,8 +63,8 @@ impl ActivePoint<'_> {
         (a[0] * b[1] - a[1] * b[0]).abs() > 1e-9 * (norm(a) * norm(b))
     }
 
-    /// How far a rate leaves its mode: the worst violation, relative to the given sizes of force and gap rates,
-    /// and the mode that mends it. `v`: the unknowns of the mode.
+    /// Returns the worst violation of a mode by a rate, relative to the given sizes of force and gap rates, and the
+    /// mode that repairs it. `v`: the unknowns of the mode.
     pub fn violation(
         &self,
         mode: ContactMode,
@@ -106,7 +106,7 @@ impl ActivePoint<'_> {
         worst
     }
 
-    /// The mode after one in which a further facet would be left outwards.
+    /// Returns the next mode if the force rate would leave another facet.
     fn successor(&self, mode: ContactMode, facet: usize) -> ContactMode {
         let is = |f: usize, what: FacetMode| self.facets[f].mode == what;
         match mode {

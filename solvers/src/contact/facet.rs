@@ -2,34 +2,34 @@
 
 use voussoir_core::law::{Facet, FacetMode};
 
-/// Scalar product.
+/// Returns the scalar product.
 pub fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 
-/// Length.
+/// Returns the length.
 pub fn norm(a: [f64; 2]) -> f64 {
     a[0].hypot(a[1])
 }
 
-/// Unit vector across a flow d.
+/// Returns the unit vector normal to a flow d.
 pub fn across(flow: [f64; 2]) -> [f64; 2] {
     let l = norm(flow);
     [-flow[1] / l, flow[0] / l]
 }
 
-/// b A − a·r.
+/// Returns the slack b A − a·r.
 pub fn slack(facet: &Facet, force: [f64; 2], area: f64) -> f64 {
     facet.bound * area - dot(facet.normal, force)
 }
 
-/// Multipliers (γ_i, γ_j) of two flows: g = −γ_i d_i − γ_j d_j.
+/// Returns the multipliers (γ_i, γ_j) of two flows: g = −γ_i d_i − γ_j d_j.
 pub fn multipliers(a: [f64; 2], b: [f64; 2], gap: [f64; 2]) -> [f64; 2] {
     let determinant = a[0] * b[1] - a[1] * b[0];
     [-(gap[0] * b[1] - gap[1] * b[0]) / determinant, -(a[0] * gap[1] - a[1] * gap[0]) / determinant]
 }
 
-/// tan ψ of the dilatant slip of a law: how much it opens per unit of slip.
+/// Returns tan ψ of a law: opening per unit of slip.
 pub fn dilatancy(facets: &[Facet]) -> f64 {
     facets
         .iter()

@@ -1,5 +1,5 @@
-//! One contact point: the facets of its law, its mode, its yield polygon with return map, the normal fan of that
-//! polygon and piecewise linear paths through its cells.
+//! One contact point: the facets of its law, its mode, its yield polygon with return map, the normal fan of the polygon
+//! and piecewise linear paths through its cells.
 
 pub(crate) mod active_point;
 pub(crate) mod facet;

@@ -1,4 +1,4 @@
-//! The mode of a contact point: which facets of its law flow, and the two equations that this makes.
+//! The mode of a contact point: the facets of its law that flow, and the two resulting equations.
 //!
 //! ```text
 //! stick   ġ = 0                         facet i      a_i·ṙ = 0,  ġ = −γ d_i
@@ -8,7 +8,7 @@
 use super::facet::{across, dilatancy, dot, multipliers};
 use voussoir_core::law::{Facet, FacetMode};
 
-/// What a contact point does.
+/// The mode of a contact point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum ContactMode {
     /// No facet flows.
@@ -23,7 +23,7 @@ pub enum ContactMode {
 }
 
 impl ContactMode {
-    /// Whether a facet flows.
+    /// Returns true if a facet flows.
     pub fn flows_on(self, facet: usize) -> bool {
         match self {
             ContactMode::Facet(i) => i as usize == facet,
@@ -32,12 +32,12 @@ impl ContactMode {
         }
     }
 
-    /// Directions of ġ, one per unknown.
+    /// Returns the directions of ġ, one per unknown.
     pub fn flows(self, facets: &[Facet]) -> Vec<[f64; 2]> {
         self.by_facet(|f| facets[f].flow.map(|d| -d))
     }
 
-    /// Functionals of ṙ that vanish, as many as unknowns.
+    /// Returns the functionals of ṙ that vanish, as many as unknowns.
     pub fn force_rows(self, facets: &[Facet]) -> Vec<[f64; 2]> {
         self.by_facet(|f| facets[f].normal.map(|a| -a))
     }
@@ -51,7 +51,7 @@ impl ContactMode {
         }
     }
 
-    /// Unknowns (multipliers, or the gap rate of an open point) of a gap rate.
+    /// Returns the unknowns (multipliers, or the gap rate of an open point) of a gap rate.
     pub fn unknowns(self, facets: &[Facet], gap: [f64; 2]) -> Vec<f64> {
         match self {
             ContactMode::Stick => Vec::new(),
@@ -64,7 +64,7 @@ impl ContactMode {
         }
     }
 
-    /// The two equations as rows over (ṙ_n, ṙ_t, ġ_n, ġ_t). `None` where there is no such facet.
+    /// Returns the two equations as rows over (ṙ_n, ṙ_t, ġ_n, ġ_t). `None` if a facet of the mode does not exist.
     pub fn rows(self, facets: &[Facet]) -> Option<[[f64; 4]; 2]> {
         Some(match self {
             ContactMode::Stick => [[0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]],
@@ -77,8 +77,8 @@ impl ContactMode {
         })
     }
 
-    /// Opening above the dilated surface per unit of the gap of a point that flows or is open; open points slip in a
-    /// `sense`, −1 or 1.
+    /// Returns the opening above the dilated surface per unit gap of a point that flows or is open. Open points slip in
+    /// a `sense`, −1 or 1.
     pub fn opening(self, facets: &[Facet], sense: f64) -> [f64; 2] {
         let by_corner = |i: u8, j: u8, which: usize| {
             let of = |gap| multipliers(facets[i as usize].flow, facets[j as usize].flow, gap)[which];
@@ -124,7 +124,7 @@ mod tests {
         assert_eq!(ContactMode::Facet(7).rows(&facets), None);
     }
 
-    /// What lies above the dilated surface opens: a slip along the flow of a facet does not.
+    /// Only the gap above the dilated surface counts as opening: slip along the flow of a facet does not.
     #[test]
     fn dilatant_slip_does_not_open() {
         let facets = dry(0.3);

@@ -1,30 +1,29 @@
 //! The yield polygon of a law, its return map and the modes of a step.
 //!
-//! With Δg = g − s, s the irreversible gap at the last converged state, facets a·r ≤ b A and flow d,
-//! the law of a step is Δg = −Σ γ d, 0 ≤ γ ⟂ b A − a·r ≥ 0: the return of z = r − ρ Δg to the polygon
-//! along ρ d. The mode of z is that of the return: inside (stuck), on one facet, or at a corner.
-//! Opening is reversible: its multiplier is the total one, since s leaves opening out.
-//! Sources: Alart & Curnier 1991 (the return as a projection, ρ); Simo & Hughes 1998, ch. 5 (several
-//! facets, flow not along the normal); De Saxcé & Feng 1998 (the same law as a bi-potential).
+//! With Δg = g − s, s the irreversible gap at the last converged state, facets a·r ≤ b A and flow d, the law of a step
+//! is Δg = −Σ γ d, 0 ≤ γ ⟂ b A − a·r ≥ 0: the return of z = r − ρ Δg to the polygon along ρ d. The return gives the
+//! mode: inside (stuck), on one facet, or at a corner. Opening is reversible: s does not contain opening, so its
+//! multiplier is the total one. Sources: Alart & Curnier 1991 (the return as a projection, ρ); Simo & Hughes 1998, ch.
+//! 5 (several facets, non-associated flow); De Saxcé & Feng 1998 (the same law as a bi-potential).
 
 use super::facet::{dot, multipliers, norm, slack};
 use super::mode::ContactMode;
 use voussoir_core::law::{Facet, FacetMode};
 
-/// Facets of a law and the corners at which two of them meet, for one unit of area.
+/// Facets of a law and the corners of two facets, for unit area.
 #[derive(Debug, Clone, Default)]
 pub struct YieldPolygon {
     /// Its half planes.
     pub facets: Vec<Facet>,
-    /// Place \[Pa\] and the pairs of facets that may be active there.
+    /// Position \[Pa\] of each corner and its possible pairs of active facets.
     corners: Vec<Corner>,
 }
 
-/// Place and pairs of facets.
+/// Position and pairs of facets.
 type Corner = ([f64; 2], Vec<[usize; 2]>);
 
 impl YieldPolygon {
-    /// Of the facets of a law.
+    /// Creates the polygon of the facets of a law.
     pub fn new(facets: &[Facet]) -> Self {
         let mut corners: Vec<Corner> = Vec::new();
         let scale = facets.iter().map(|f| f.bound).fold(0.0, f64::max);
@@ -50,7 +49,7 @@ impl YieldPolygon {
                 }
             }
         }
-        // Where opening takes part, it takes as much of the gap as it can.
+        // // At corners with opening, opening covers as much of the gap as possible.
         for (_, pairs) in &mut corners {
             let opening = |p: &[usize; 2]| p.iter().any(|&i| facets[i].mode == FacetMode::Opening);
             if pairs.iter().any(opening) {
@@ -60,7 +59,7 @@ impl YieldPolygon {
         YieldPolygon { facets: facets.to_vec(), corners }
     }
 
-    /// Place \[Pa\] of the corner of a mode; `None` where it is none.
+    /// Returns the position \[Pa\] of the corner of a mode; `None` if the mode is not a corner.
     pub fn corner(&self, mode: ContactMode) -> Option<[f64; 2]> {
         self.at(mode).map(|corner| corner.0)
     }
@@ -74,7 +73,7 @@ impl YieldPolygon {
         self.corners.iter().find(|(_, pairs)| pairs.contains(&pair))
     }
 
-    /// Whether opening and both senses of slip meet without strength: the apex of dry friction.
+    /// Returns true if opening and both senses of slip meet without strength: the apex of dry friction.
     fn is_apex(&self, (place, pairs): &Corner) -> bool {
         *place == [0.0; 2] && pairs.len() > 1 && self.opening_in(&pairs[0]).is_some()
     }
@@ -83,20 +82,20 @@ impl YieldPolygon {
         pair.iter().copied().find(|i| self.facets[*i].mode == FacetMode::Opening)
     }
 
-    /// The one mode of a corner, whichever pair of its facets is active.
+    /// Returns the mode of a corner, which is the same for all pairs of its facets.
     fn mode_at(&self, corner: &Corner) -> ContactMode {
         let [i, j] = corner.1[0];
         if self.is_apex(corner) { ContactMode::Open } else { ContactMode::Corner(i as u8, j as u8) }
     }
 
-    /// The mode of the corner where two facets meet, or of the apex where they meet nowhere else.
+    /// Returns the mode of the corner of two facets, or of the apex if they meet only there.
     pub fn mode_of_pair(&self, i: usize, j: usize) -> Option<ContactMode> {
         let pair = |p: &[usize; 2]| p.contains(&i) && p.contains(&j);
         let own = self.corners.iter().find(|(_, pairs)| pairs.iter().any(pair));
         own.or_else(|| self.corners.iter().find(|c| c.0 == [0.0; 2])).map(|corner| self.mode_at(corner))
     }
 
-    /// The force r to which z = r − ρ Δg returns.
+    /// Returns the force r to which z = r − ρ Δg returns.
     pub fn return_map(&self, z: [f64; 2], rho: [f64; 2], area: f64) -> [f64; 2] {
         let mode = self.mode(ContactMode::Stick, z, rho, area, 0.0);
         match mode {
@@ -106,7 +105,7 @@ impl YieldPolygon {
         }
     }
 
-    /// The return of z to a facet along ρ d, and its multiplier times ρ.
+    /// Returns the projection of z onto a facet along ρ d, and its multiplier times ρ.
     fn return_to_facet(&self, i: usize, z: [f64; 2], rho: [f64; 2], area: f64) -> ([f64; 2], f64) {
         let f = &self.facets[i];
         let d = [rho[0] * f.flow[0], rho[1] * f.flow[1]];
@@ -114,8 +113,8 @@ impl YieldPolygon {
         ([z[0] - gamma * d[0], z[1] - gamma * d[1]], gamma)
     }
 
-    /// The pair of facets of a corner whose multipliers for Δg are least negative, with them. `None` where the mode
-    /// is no corner.
+    /// Returns the pair of facets of a corner with the least negative multipliers for Δg, and these multipliers. `None`
+    /// if the mode is not a corner.
     pub fn pair(&self, mode: ContactMode, gap: [f64; 2]) -> Option<([usize; 2], [f64; 2])> {
         self.at(mode).map(|corner| self.pair_of(corner, gap))
     }
@@ -132,7 +131,7 @@ impl YieldPolygon {
         best
     }
 
-    /// How far a mode is from being the return of z = r − ρ Δg, as a force \[N\]; 0 where it is.
+    /// Returns the distance of a mode from the return of z = r − ρ Δg, as a force \[N\]; 0 if the mode is right.
     pub fn violation(&self, mode: ContactMode, z: [f64; 2], rho: [f64; 2], area: f64) -> f64 {
         match (mode, self.at(mode)) {
             (ContactMode::Facet(i), _) => {
@@ -145,12 +144,12 @@ impl YieldPolygon {
         }
     }
 
-    /// How far a force is outside the polygon \[N\]; 0 inside.
+    /// Returns the distance of a force outside the polygon \[N\]; 0 inside.
     pub fn excess(&self, r: [f64; 2], area: f64) -> f64 {
         self.outside(r, area, None)
     }
 
-    /// How far a force is outside the polygon, one facet apart.
+    /// Returns the distance of a force outside the polygon without one facet.
     fn outside(&self, r: [f64; 2], area: f64, except: Option<usize>) -> f64 {
         let others = self.facets.iter().enumerate().filter(|(i, _)| Some(*i) != except);
         others.map(|(_, f)| -slack(f, r, area) / norm(f.normal)).fold(0.0, f64::max)
@@ -167,7 +166,7 @@ impl YieldPolygon {
         force(0).max(force(1)).max(0.0)
     }
 
-    /// The mode of z = r − ρ Δg: `present` where it is one, else the one that is least violated.
+    /// Returns the mode of z = r − ρ Δg: `present` if it is right, otherwise the least violated mode.
     pub fn mode(&self, present: ContactMode, z: [f64; 2], rho: [f64; 2], area: f64, tolerance: f64) -> ContactMode {
         if self.violation(present, z, rho, area) <= tolerance {
             return present;
@@ -188,8 +187,8 @@ impl YieldPolygon {
         best.0
     }
 
-    /// Irreversible gap after Δg in a mode, opening left out, and the opening's own multiplier. It lies along the flow: what
-    /// of Δg does not is the error of a solution, and would add up from step to step.
+    /// Returns the irreversible gap after Δg in a mode, without opening, and the multiplier of the opening. The gap
+    /// lies along the flow: other parts of Δg are errors of the solution, which would accumulate from step to step.
     pub fn irreversible(&self, mode: ContactMode, gap: [f64; 2]) -> ([f64; 2], f64) {
         if let ContactMode::Facet(i) = mode {
             let f = &self.facets[i as usize];
@@ -213,7 +212,7 @@ impl YieldPolygon {
         (kept, opening)
     }
 
-    /// Whether the point is open in a mode: a facet of opening is active.
+    /// Returns true if the point is open in a mode: an opening facet is active.
     pub fn opens(&self, mode: ContactMode) -> bool {
         match mode {
             ContactMode::Facet(i) => self.facets[i as usize].mode == FacetMode::Opening,
@@ -221,8 +220,8 @@ impl YieldPolygon {
         }
     }
 
-    /// How much a rate (ṙ, ġ), scaled to forces and gaps of size one, violates the mode if it goes
-    /// on for ever: ṙ in the recession cone, multipliers growing.
+    /// Returns the violation of a mode by a rate (ṙ, ġ) of unit size that continues without end: ṙ must be in the
+    /// recession cone and multipliers must grow.
     pub fn ray_violation(&self, mode: ContactMode, force: [f64; 2], gap: [f64; 2]) -> f64 {
         let outwards = self.facets.iter().map(|f| dot(f.normal, force) / norm(f.normal)).fold(0.0, f64::max);
         let backwards = match mode {
@@ -246,7 +245,7 @@ mod tests {
         YieldPolygon::new(&[Facet::opening(0.0), left, right])
     }
 
-    /// The return of z is Alart and Curnier's projection where slip does not dilate.
+    /// Without dilatancy the return of z is the projection of Alart and Curnier.
     #[test]
     fn modes_of_coulomb_are_those_of_alart_and_curnier() {
         let p = coulomb(0.5, 0.0);
@@ -260,7 +259,7 @@ mod tests {
         assert_eq!(p.corners.len(), 1);
     }
 
-    /// While a dilatant joint is open its opening is what lies above the dilated surface.
+    /// The opening of an open dilatant joint is its gap above the dilated surface.
     #[test]
     fn opening_is_measured_from_the_dilated_surface() {
         let p = coulomb(0.5, 0.3);

@@ -1,4 +1,4 @@
-//! Fields and mechanisms to rounding from the rows that are known to yield and to move.
+//! Fields and mechanisms to rounding from the known yielding and moving rows.
 
 use super::equilibrium::Row;
 use super::scale::with_unit_power;
@@ -7,7 +7,7 @@ use crate::limit::settings::SETTINGS;
 use voussoir_core::limit::{JointForce, LimitProblem, Velocity};
 use voussoir_core::linear::{Entries, SparseLdlt};
 
-/// The solution of J z = h nearest to `start`, and its greatest residual.
+/// Returns the solution of J z = h nearest to `start`, and its greatest residual.
 fn nearest(rows: &[Row], right: &[f64], start: Vec<f64>) -> Option<(Vec<f64>, f64)> {
     let (n, m) = (start.len(), rows.len());
     let mut entries: Entries = (0..n).map(|j| (j, j, 1.0)).collect();
@@ -40,8 +40,8 @@ fn nearest(rows: &[Row], right: &[f64], start: Vec<f64>) -> Option<(Vec<f64>, f6
 }
 
 impl Systems {
-    /// Force variables and θ in equilibrium with these pairs on their yield surface, nearest to
-    /// `start`; with the greatest residual and violation of any pair.
+    /// Returns the force variables and θ nearest to `start` in equilibrium with these pairs on their yield surface, and
+    /// the greatest residual or violation of any pair.
     pub fn field(&self, yielding: &[usize], start: Vec<f64>) -> Option<(Vec<f64>, f64)> {
         let theta = self.forces;
         let mut rows: Vec<Row> = self.equilibrium.clone();
@@ -56,8 +56,8 @@ impl Systems {
         Some((z, violation))
     }
 
-    /// Force variables and θ in equilibrium with these slacks s_i of all pairs; with the greatest
-    /// residual and violation.
+    /// Returns the force variables and θ in equilibrium with these slacks s_i of all pairs, and the greatest residual
+    /// or violation.
     pub fn field_with(&self, slacks: &[f64]) -> Option<(Vec<f64>, f64)> {
         let mut rows: Vec<Row> = self.equilibrium.clone();
         rows.iter_mut().zip(&self.varying).for_each(|(row, &p)| row.push((self.forces, p)));
@@ -71,14 +71,14 @@ impl Systems {
         Some((z, violation))
     }
 
-    /// s_i at force variables.
+    /// Returns s_i at force variables.
     pub fn slack(&self, pair: usize, z: &[f64]) -> f64 {
         let pair = &self.pairs[pair];
         pair.bound - pair.normal.iter().map(|&(j, v)| v * z[j]).sum::<f64>()
     }
 
-    /// The motion with multipliers nearest to γ_i of the pairs `moving`, scaled to p·q̇ = 1; with
-    /// the greatest residual and violation of γ ≥ 0, relative to the greatest multiplier.
+    /// Returns the motion with multipliers nearest to γ_i of the pairs `moving`, scaled to p·q̇ = 1, and the greatest
+    /// residual or violation of γ ≥ 0, relative to the greatest multiplier.
     pub fn motion(&self, problem: &LimitProblem, moving: &[(usize, f64)]) -> Option<(Vec<Velocity>, f64)> {
         let bodies = self.equilibrium.len();
         let mut rows: Vec<Row> = vec![Vec::new(); self.forces + 1];
@@ -102,12 +102,12 @@ impl Systems {
         Some((with_unit_power(&problem.varying, motion), violation / greatest))
     }
 
-    /// Joint forces \[N\] of force variables.
+    /// Returns the joint forces \[N\] of force variables.
     pub fn joint_forces(&self, z: &[f64]) -> Vec<JointForce> {
         self.variables.joint_forces(z, self.force)
     }
 
-    /// Force variables of joint forces \[N\].
+    /// Returns the force variables of joint forces \[N\].
     pub fn force_variables(&self, forces: &[JointForce]) -> Vec<f64> {
         let mut z = Vec::with_capacity(self.forces + 1);
         for (force, &(_, own)) in forces.iter().zip(&self.variables.joints) {
@@ -117,8 +117,8 @@ impl Systems {
         z
     }
 
-    /// Multipliers of a motion read with the pairs' own flow: slip gives those of sliding, the rest
-    /// of the opening those of opening.
+    /// Returns the multipliers of a motion with the pairs' own flow: slip gives the multipliers of sliding, the rest of
+    /// the opening gives the multipliers of opening.
     pub fn multipliers(&self, problem: &LimitProblem, motion: &[Velocity]) -> Vec<f64> {
         let mut jumps = vec![0.0; self.forces];
         for (group, q) in motion.iter().enumerate().take(problem.groups) {
@@ -144,7 +144,7 @@ impl Systems {
 mod tests {
     use super::*;
 
-    /// The nearest solution of x + y = 2 to the origin is (1, 1); of equations that contradict each other a residual stays.
+    /// The solution of x + y = 2 nearest to the origin is (1, 1); contradictory equations leave a residual.
     #[test]
     fn the_nearest_solution_is_found() {
         let row: Row = vec![(0, 1.0), (1, 1.0)];

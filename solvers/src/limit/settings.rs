@@ -1,14 +1,14 @@
 //! The tolerances of limit analysis.
 
-/// Tolerances of limit analysis. Forces are in units of the loads, factors in the unit in which both loads are as great,
-/// multipliers and motions in units of their greatest entry.
+/// Tolerances of limit analysis. Forces are in units of the loads, factors in the unit in which both loads have the
+/// same size, multipliers and motions in units of their greatest entry.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LimitSettings {
     /// Error of sums over a scene: a residual below it is rounding.
     pub rounding: f64,
-    /// Error of fields and motions up to which they are admissible: a tenth of what certificates allow.
+    /// Accepted error of fields and motions: a tenth of the tolerance of certificates.
     pub admissible: f64,
-    /// Multipliers, slacks and singular values that are greater act; smaller ones do not.
+    /// Size above which multipliers, slacks and singular values count as non-zero.
     pub active: f64,
     /// Residual below which a correction gains nothing.
     pub exhausted: f64,
@@ -16,61 +16,61 @@ pub struct LimitSettings {
     pub zero: f64,
     /// Share of a sum that is rounding of its terms; also the error of a field on the yield surface.
     pub balanced: f64,
-    /// Share of the greatest below which an entry does not count, and rank ends.
+    /// Share of the greatest entry below which an entry is negligible and rank ends.
     pub negligible: f64,
-    /// Error of a field that shows only that loads are carried: half of what certificates allow.
+    /// Accepted error of a field that only shows that loads are carried: half of the tolerance of certificates.
     pub carried: f64,
     /// Error of an iterate of the interior point method that ends it.
     pub settled: f64,
-    /// Gap of the interior point method below which only rounding of the motion is left.
+    /// Gap of the interior point method below which only rounding errors of the motion remain.
     pub exhausted_gap: f64,
-    /// Residuals of the interior point method above which nothing is polished.
+    /// Residuals of the interior point method above which no polish is tried.
     pub unpolished: f64,
-    /// Gap from which a polish is tried.
+    /// Gap below which a polish is tried.
     pub close_gap: f64,
     /// Ratio of a multiplier to its slack, or the reverse, that decides which of them is zero.
     pub clear: f64,
-    /// Factor in its unit that is as good as zero.
+    /// Factor in its unit below which it counts as zero.
     pub least_factor: f64,
-    /// Factor in its unit beyond which there may be no bound.
+    /// Factor in its unit above which it may have no bound.
     pub greatest_factor: f64,
-    /// Share of the gap that the equilibrium of a direction may miss.
+    /// Accepted error of the equilibrium of a direction, relative to the gap.
     pub missed: f64,
     /// Addition to each pivot, relative to it.
     pub pivot: f64,
-    /// Weight of a force that no row bounds.
+    /// Weight of a force without a bound.
     pub unbounded: f64,
     /// Part of a row that is independent of others, relative to the row.
     pub independent: f64,
     /// Shift of singular systems.
     pub shift: f64,
-    /// Shift that is tried if the lesser one leaves no pivot.
+    /// Shift that is tried if the smaller one leaves no pivot.
     pub great_shift: f64,
-    /// Share of the greatest jump, slack or multiplier below which a joint of a mechanism does not move.
+    /// Share of the greatest jump, slack or multiplier below which a joint of a mechanism counts as not moving.
     pub moves: f64,
-    /// Relative width of a bracket that is closed, and error of a sequence that has converged.
+    /// Relative width of a closed bracket, and error of a converged sequence.
     pub closed: f64,
     /// Relative distance below a known state at which a search ends.
     pub below_state: f64,
     /// Relative distance above a known state at which the program of all products ends.
     pub above_state: f64,
-    /// Second difference of data, relative to the greatest of their kind, that is a jump.
+    /// Second difference of data, relative to the greatest of their kind, above which data jump.
     pub jump: f64,
-    /// Relative distance at which two solutions are two.
+    /// Relative distance above which two solutions are distinct.
     pub apart: f64,
-    /// Change of forces from which the end of a sequence is solved for.
+    /// Change of forces below which the end of a sequence is solved directly.
     pub close_forces: f64,
-    /// Strength in units of the loads from which its tangents are as good as a stress block.
+    /// Strength in units of the loads above which tangents replace a stress block.
     pub flat: f64,
-    /// Strength in units of the loads from which programs are tried in the unit of the strength.
+    /// Strength in units of the loads above which programs are also tried in the unit of the strength.
     pub strong: f64,
-    /// Growth of the error beyond the least, after which tangents do not close.
+    /// Growth of the error beyond the least one after which the tangents count as divergent.
     pub diverged: f64,
     /// Loss of a bound by products per residual.
     pub product_margin: f64,
-    /// Negative multipliers of products up to which they are corrected.
+    /// Size of negative multipliers of products up to which they are corrected.
     pub nearly: f64,
-    /// Share of the residual that a correction of products leaves.
+    /// Share of the residual that remains after a correction of products.
     pub left: f64,
     /// Greatest residual of exact multipliers of products.
     pub exact: f64,
@@ -83,7 +83,7 @@ pub const SETTINGS: LimitSettings = match LimitSettings::derived(1e-13, 1e-11, 1
 };
 
 impl LimitSettings {
-    /// All tolerances from three of them.
+    /// Derives all tolerances from three of them.
     pub const fn derived(rounding: f64, admissible: f64, active: f64) -> Self {
         LimitSettings {
             rounding,
@@ -124,8 +124,8 @@ impl LimitSettings {
         }
     }
 
-    /// Refuses numbers that are not positive and finite, and bounds that contradict each other. The error is the name of
-    /// the tolerance.
+    /// Refuses numbers that are not positive and finite, and bounds that contradict each other. The error is the name
+    /// of the tolerance.
     pub const fn validated(self) -> Result<Self, &'static str> {
         let shares = [
             ("rounding", self.rounding),
@@ -180,7 +180,7 @@ impl LimitSettings {
             }
             k += 1;
         }
-        // Each is less than the next one beside it.
+        // // Each value is less than the next one.
         let ordered = [
             ("exhausted", self.exhausted, self.rounding),
             ("rounding", self.rounding, self.admissible),
@@ -207,14 +207,14 @@ impl LimitSettings {
 mod tests {
     use super::*;
 
-    /// The tolerances in use contradict nothing. Certificates allow twice the errors that these tolerances accept.
+    /// The tolerances in use are consistent. Certificates allow twice the errors that these tolerances accept.
     #[test]
     fn the_tolerances_in_use_are_valid() {
         assert_eq!(SETTINGS.validated(), Ok(SETTINGS));
         const { assert!(SETTINGS.carried <= 0.5 * voussoir_core::certificate::ROUNDING) };
     }
 
-    /// No number, negative numbers, infinite ones and bounds in the wrong order are refused by name.
+    /// NaN, negative and infinite numbers and bounds in the wrong order are refused by name.
     #[test]
     fn nonsense_is_refused_by_name() {
         for (wrong, name) in [

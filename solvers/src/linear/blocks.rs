@@ -1,29 +1,31 @@
-//! Rows of contact points over contact forces, in dense blocks between groups of points, and over all other unknowns.
+//! Rows of contact points, with dense blocks for contact forces between groups of points, and sparse entries for all
+//! other unknowns.
 //!
-//! Points of one joint are a group, next to each other. Groups on one elastic body feel each other: their entries stand
-//! in a block, column by column, so that products, sums of rows and the assembly of factors run along columns. A group
-//! that touches no elastic body has a diagonal only.
+//! The points of one joint are a group and are numbered consecutively. Groups on the same elastic body are coupled by a
+//! block, stored column by column, so that products, sums of rows and the assembly of factors run along columns. A
+//! group that touches no elastic body has only a diagonal.
 
 use super::csr::CsrMatrix;
 use nalgebra::{DMatrix, Matrix2};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Which groups feel each other.
+/// The pattern of coupled groups.
 #[derive(Debug, Default)]
 pub struct Pattern {
     /// First contact point of every group, and the number of points.
     start: Vec<usize>,
     /// Group of every contact point.
     group: Vec<usize>,
-    /// By groups of rows, in order: the group of the columns, and where the block begins.
+    /// For each group of rows: the group of the columns and the start of the block, in order.
     beside: Vec<Vec<(usize, usize)>>,
-    /// Numbers in all blocks.
+    /// Number of entries in all blocks.
     entries: usize,
 }
 
 impl Pattern {
-    /// Of contact points by their groups, numbered in order, whose groups feel each other in `pairs` (both ways).
+    /// Creates a pattern from the group of each contact point; groups are numbered in order. `pairs` lists coupled
+    /// groups, in both directions.
     pub fn new(group: Vec<usize>, pairs: impl IntoIterator<Item = (usize, usize)>) -> Self {
         let groups = group.last().map_or(0, |last| last + 1);
         let mut start = vec![0; groups + 1];
@@ -48,27 +50,27 @@ impl Pattern {
         Pattern { start, group, beside, entries }
     }
 
-    /// Number of groups.
+    /// Returns the number of groups.
     pub fn groups(&self) -> usize {
         self.beside.len()
     }
 
-    /// Whether any groups feel each other.
+    /// Returns true if any groups are coupled.
     pub fn couples(&self) -> bool {
         self.entries > 0
     }
 
-    /// Group of a contact point.
+    /// Returns the group of a contact point.
     pub fn group(&self, contact: usize) -> usize {
         self.group[contact]
     }
 
-    /// Contact points of a group.
+    /// Returns the contact points of a group.
     pub fn contacts(&self, group: usize) -> Range<usize> {
         self.start[group]..self.start[group + 1]
     }
 
-    /// Groups whose forces the gaps of a group feel by blocks.
+    /// Returns the groups that have a block in the rows of a group.
     pub fn beside(&self, group: usize) -> impl Iterator<Item = usize> {
         self.beside[group].iter().map(|e| e.0)
     }
@@ -86,30 +88,31 @@ impl Pattern {
 #[derive(Debug, Clone)]
 pub struct BlockMatrix {
     pattern: Arc<Pattern>,
-    /// Blocks one after the other, each column by column.
+    /// All blocks, each stored column by column.
     values: Vec<f64>,
-    /// Diagonal of groups without a block of their own.
+    /// Diagonal of groups without a block.
     diagonal: Vec<f64>,
 }
 
 impl BlockMatrix {
-    /// Nothing but zeros.
+    /// Creates a matrix of zeros.
     pub fn zeros(pattern: Arc<Pattern>) -> Self {
         let (values, diagonal) = (vec![0.0; pattern.entries], vec![0.0; 2 * pattern.group.len()]);
         BlockMatrix { pattern, values, diagonal }
     }
 
-    /// Which groups feel each other.
+    /// Returns the pattern.
     pub fn pattern(&self) -> &Pattern {
         &self.pattern
     }
 
-    /// All entries times a factor.
+    /// Multiplies all entries by a factor.
     pub fn scale(&mut self, by: f64) {
         self.values.iter_mut().chain(&mut self.diagonal).for_each(|v| *v *= by);
     }
 
-    /// Adds the 2 × 2 entries between two points, row by row; without a block of theirs only a diagonal may be.
+    /// Adds the 2 × 2 entries between two points, row by row. If their groups have no block, only diagonal entries are
+    /// allowed.
     pub fn add(&mut self, row: usize, column: usize, entries: [[f64; 2]; 2]) {
         let pattern = &*self.pattern;
         let (a, b) = (pattern.group[row], pattern.group[column]);
@@ -126,8 +129,8 @@ impl BlockMatrix {
         }
     }
 
-    /// Adds to the block of two groups all 2 × 2 entries Mᵀ C N between points of them: C a matrix over the slots of the
-    /// points, given as (point, slot, frame) in their order.
+    /// Adds to the block of two groups all 2 × 2 entries Mᵀ C N between their points. C is a matrix over the slots of
+    /// the points; points are given in order as (point, slot, frame).
     pub fn add_turned(
         &mut self,
         rows: &[(usize, usize, Matrix2<f64>)],
@@ -145,7 +148,8 @@ impl BlockMatrix {
             let (x, y) = c.as_slice()[2 * slot * slots..][..2 * slots].split_at(slots);
             let target = &mut block[2 * (point - pattern.start[b]) * height..][..2 * height];
             let (normal, tangent) = target.split_at_mut(height);
-            // Written out: closures over pairs are not taken into the loop, which is most of the assembly.
+            // // Written out, because the compiler does not inline closures over pairs; this loop is most of the
+            // assembly.
             let [n00, n10, n01, n11] = [n[(0, 0)], n[(1, 0)], n[(0, 1)], n[(1, 1)]];
             for (point, slot, m) in rows {
                 let (k, s) = (2 * point - own.start, 2 * slot);
@@ -161,14 +165,14 @@ impl BlockMatrix {
         }
     }
 
-    /// Adds one entry; without a block of its own only to the diagonal.
+    /// Adds one entry; without a block only to the diagonal.
     pub fn add_entry(&mut self, i: usize, j: usize, value: f64) {
         let mut entries = [[0.0; 2]; 2];
         entries[i % 2][j % 2] = value;
         self.add(i / 2, j / 2, entries);
     }
 
-    /// Entries of a row that are not nothing, by columns.
+    /// Returns the non-zero entries of a row by columns.
     fn row(&self, i: usize) -> impl Iterator<Item = (usize, f64)> {
         let pattern = &*self.pattern;
         let group = pattern.group[i / 2];
@@ -180,18 +184,18 @@ impl BlockMatrix {
         blocks.chain([(i, diagonal)]).filter(|e| e.1 != 0.0)
     }
 
-    /// Columns of the blocks of a group of rows: their index among the forces, and their numbers.
+    /// Returns the columns of the blocks of a group of rows: index among the forces, and values.
     pub fn columns(&self, group: usize) -> impl Iterator<Item = (usize, &[f64])> {
         let height = self.pattern.rows(group).len();
         self.blocks(group).flat_map(move |(columns, block)| columns.zip(block.chunks_exact(height)))
     }
 
-    /// Diagonal entry of a row, where its group has no block of its own.
+    /// Returns the diagonal entry of a row whose group has no block.
     pub fn diagonal(&self, i: usize) -> f64 {
         self.diagonal[i]
     }
 
-    /// Blocks of a group of rows: the forces of the columns, and the numbers column by column.
+    /// Returns the blocks of a group of rows: range of the forces, and values column by column.
     fn blocks(&self, group: usize) -> impl Iterator<Item = (Range<usize>, &[f64])> {
         let pattern = &*self.pattern;
         let height = pattern.rows(group).len();
@@ -202,7 +206,7 @@ impl BlockMatrix {
         })
     }
 
-    /// out += A x.
+    /// Computes out += A x.
     pub fn add_product(&self, x: &[f64], out: &mut [f64]) {
         for group in 0..self.pattern.groups() {
             let out = &mut out[self.pattern.rows(group)];
@@ -213,7 +217,7 @@ impl BlockMatrix {
         out.iter_mut().zip(self.diagonal.iter().zip(x)).for_each(|(out, (d, x))| *out += d * x);
     }
 
-    /// out += A x, and the sizes of what adds up.
+    /// Computes out += A x, and adds the absolute values of the terms to `sizes`.
     fn add_product_and_sizes(&self, x: &[f64], out: &mut [f64], sizes: &mut [f64]) {
         for group in 0..self.pattern.groups() {
             let rows = self.pattern.rows(group);
@@ -229,7 +233,7 @@ impl BlockMatrix {
         }
     }
 
-    /// out += wᵀ A.
+    /// Computes out += wᵀ A.
     fn add_weighted(&self, w: &[f64], out: &mut [f64]) {
         for group in 0..self.pattern.groups() {
             let w = &w[self.pattern.rows(group)];
@@ -243,39 +247,39 @@ impl BlockMatrix {
     }
 }
 
-/// Rows of contact points over all unknowns: two per point.
+/// Rows of contact points over all unknowns: two rows per point.
 #[derive(Debug)]
 pub struct GapRows {
-    /// Over contact forces.
+    /// Entries for contact forces.
     pub forces: BlockMatrix,
-    /// Over all other unknowns, by their index among all.
+    /// Entries for all other unknowns, by their index among all unknowns.
     pub others: CsrMatrix,
 }
 
 impl GapRows {
-    /// Number of rows.
+    /// Returns the number of rows.
     pub fn len(&self) -> usize {
         self.others.len()
     }
 
-    /// Entries of a row, forces first.
+    /// Returns the entries of a row, forces first.
     pub fn row(&self, i: usize) -> impl Iterator<Item = (usize, f64)> {
         self.forces.row(i).chain(self.others.row(i).iter().copied())
     }
 
-    /// One row times all unknowns.
+    /// Returns the product of one row with all unknowns.
     pub fn row_dot(&self, i: usize, x: &[f64]) -> f64 {
         self.row(i).map(|(j, v)| v * x[j]).sum()
     }
 
-    /// All rows times all unknowns.
+    /// Returns the products of all rows with all unknowns.
     pub fn product(&self, x: &[f64]) -> Vec<f64> {
         let mut out: Vec<f64> = (0..self.len()).map(|i| self.others.row_dot(i, x)).collect();
         self.forces.add_product(&x[..self.len()], &mut out);
         out
     }
 
-    /// The same, and the sizes of what adds up.
+    /// Returns the products of all rows, and the sums of the absolute values of their terms.
     pub fn product_and_sizes(&self, x: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let (mut out, mut sizes) = (vec![0.0; self.len()], vec![0.0; self.len()]);
         for (i, (out, size)) in out.iter_mut().zip(&mut sizes).enumerate() {
@@ -301,7 +305,7 @@ impl GapRows {
 mod tests {
     use super::*;
 
-    /// Products, sums of rows, rows and 2 × 2 blocks are those of the matrix entry by entry.
+    /// Products, sums of rows, rows and 2 × 2 blocks agree with the matrix given by entries.
     #[test]
     fn blocks_are_the_matrix_entry_by_entry() {
         let pattern = Pattern::new(vec![0, 0, 1, 1, 1, 2, 3], [(0, 0), (1, 1), (0, 1), (1, 2), (2, 2)]);

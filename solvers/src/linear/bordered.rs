@@ -1,37 +1,36 @@
-//! The control's row beside the equations of points and bodies.
+//! A dense control row outside the equations of points and bodies.
 //!
-//! The row of an arc length or a displacement is dense: inside the matrix it would fill the factors. The
-//! equations above it, K x = f with one unknown more than rows, are factorised with one unknown x_k held
-//! in its place, and the control chooses among their solutions,
+//! The row of an arc length or a displacement is dense: inside the matrix it would fill the factors. The equations
+//! above it, K x = f with one unknown more than rows, are factorised with one unknown x_k held. The control selects one
+//! of their solutions,
 //!
 //! ```text
 //! [K; e_kᵀ] z = (f, 0)     [K; e_kᵀ] w = (0, 1)     x = z + t w,   t = (l − c·z) / (c·w)
 //! ```
 //!
-//! w spans the null space of K: the rate along the path. It exists at limit points too, where K without
-//! the column of λ is singular, as long as x_k moves along the path: where |w_k| is small beside the
-//! greatest |w|, the unknown that moves most is held instead (local parametrisation: Rheinboldt 1980,
-//! SIAM J. Numer. Anal. 17, 221-237). Two solutions and a quotient amplify rounding; refinement against
-//! all rows, the control's included, takes that out again (Govaerts 1991, SIAM J. Matrix Anal. Appl. 12,
-//! 469-483).
+//! w spans the null space of K: the rate along the path. It exists also at limit points, where K without the column of
+//! λ is singular, if x_k moves along the path. If |w_k| is small compared with the greatest |w|, the unknown that moves
+//! most is held instead (local parametrisation: Rheinboldt 1980, SIAM J. Numer. Anal. 17, 221-237). Two solutions and a
+//! quotient amplify rounding errors; refinement with all rows, the control row included, removes them (Govaerts 1991,
+//! SIAM J. Matrix Anal. Appl. 12, 469-483).
 
 use super::factorised::{Factorised, row_error};
 use super::inner;
 use crate::settings::SETTINGS;
 use std::rc::Rc;
 
-/// Entries up to which the control's row is part of the matrix.
+/// Greatest number of entries of a control row that is part of the matrix.
 const SPARSE: usize = 4;
 
-/// What stands in the last row of factorised equations.
+/// The last row of factorised equations.
 enum Last {
     /// The control.
     Control(Vec<(usize, f64)>),
-    /// An unknown that is held; w.
+    /// An unknown that is held, with w.
     Unknown(Vec<f64>),
 }
 
-/// Factorised equations without a control of their own: they serve every control that is a border.
+/// Factorised equations without a control: they serve every control that is a border.
 pub struct BorderedFactors<E> {
     equations: E,
     last: Last,
@@ -40,24 +39,24 @@ pub struct BorderedFactors<E> {
 /// Factorised equations with a control.
 pub struct BorderedSystem<E> {
     held: Rc<BorderedFactors<E>>,
-    /// The control's row with c·w, where it is not part of the matrix.
+    /// The control row with c·w, if it is not part of the matrix.
     border: Option<(Vec<f64>, f64)>,
 }
 
-/// Index of the greatest magnitude.
+/// Returns the index of the greatest magnitude.
 fn greatest(v: &[f64]) -> usize {
     (0..v.len()).fold(0, |best, i| if v[i].abs() > v[best].abs() { i } else { best })
 }
 
-/// The entries of a control's row, where it is part of the matrix.
+/// Returns the entries of a control row, if it is part of the matrix.
 fn few(control: &[f64]) -> Option<Vec<(usize, f64)>> {
     let entries = || control.iter().enumerate().filter(|(_, v)| **v != 0.0);
     (entries().nth(SPARSE).is_none()).then(|| entries().map(|(j, v)| (j, *v)).collect())
 }
 
 impl<E: Factorised> BorderedFactors<E> {
-    /// Equations that `factorise` makes and factorises with a given last row, which is what the `control` of `contacts`
-    /// points asks for. `None` where they are singular.
+    /// Creates factors: `factorise` factorises the equations with a given last row, as the `control` of `contacts`
+    /// points requires. `None` if they are singular.
     pub fn new(
         contacts: usize,
         control: &[f64],
@@ -86,12 +85,12 @@ impl<E: Factorised> BorderedFactors<E> {
         None
     }
 
-    /// The equations, with a row of their own in the control's place.
+    /// Returns the equations; their last row replaces the control.
     pub fn equations(&self) -> &E {
         &self.equations
     }
 
-    /// Whether it serves a control.
+    /// Returns true if the factors serve a control.
     pub fn serves(&self, control: &[f64]) -> bool {
         match (&self.last, few(control)) {
             (Last::Control(own), Some(few)) => *own == few,
@@ -100,7 +99,7 @@ impl<E: Factorised> BorderedFactors<E> {
         }
     }
 
-    /// Whether it serves a control of few unknowns, as it is or as a border along which w grows.
+    /// Returns true if the factors serve a control of few unknowns, either directly or as a border with c·w ≠ 0.
     pub fn borders(&self, control: &[f64]) -> bool {
         let Last::Unknown(w) = &self.last else { return self.serves(control) };
         let size = control[greatest(control)].abs();
@@ -110,7 +109,7 @@ impl<E: Factorised> BorderedFactors<E> {
 }
 
 impl<E: Factorised> BorderedSystem<E> {
-    /// With a control that the factorised equations serve. `None` where it is orthogonal to w.
+    /// Adds a control that the factorised equations serve. `None` if it is orthogonal to w.
     pub fn new(held: Rc<BorderedFactors<E>>, control: &[f64]) -> Option<Self> {
         let border = match &held.last {
             Last::Control(_) => None,
@@ -119,12 +118,12 @@ impl<E: Factorised> BorderedSystem<E> {
         Some(BorderedSystem { held, border })
     }
 
-    /// The equations above the control, the control's row in them or an unknown held in its place.
+    /// Returns the equations above the control, with the control row or an unknown held in its place.
     pub fn equations(&self) -> &E {
         &self.held.equations
     }
 
-    /// The control's row c, w and c·w, where an unknown is held in the control's place.
+    /// Returns the control row c, w and c·w, if an unknown is held in the control's place.
     pub fn border(&self) -> Option<(&[f64], &[f64], f64)> {
         match (&self.held.last, &self.border) {
             (Last::Unknown(w), Some((control, along))) => Some((control, w, *along)),
@@ -132,7 +131,7 @@ impl<E: Factorised> BorderedSystem<E> {
         }
     }
 
-    /// Once, without refinement.
+    /// Solves once, without refinement.
     pub fn apply(&self, right: &[f64]) -> Option<Vec<f64>> {
         let (Last::Unknown(w), Some((control, along))) = (&self.held.last, &self.border) else {
             return self.held.equations.apply(right);
@@ -146,10 +145,10 @@ impl<E: Factorised> BorderedSystem<E> {
         z.iter().all(|v| v.is_finite()).then_some(z)
     }
 
-    /// What all rows leave of a right-hand side, and the greatest backward error of a row.
+    /// Returns the residual of all rows for a right-hand side, and the greatest backward error of a row.
     pub fn left(&self, right: &[f64], x: &[f64]) -> (Vec<f64>, f64) {
         let Some((control, _)) = &self.border else { return self.held.equations.errors(right, x) };
-        // The row in the control's place is the control's, not that of the unknown that is held.
+        // // The last row is the control, not the row of the held unknown.
         let last = right.len() - 1;
         let mut above = right.to_vec();
         above[last] = self.held.equations.last_row_dot(x);

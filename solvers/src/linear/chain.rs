@@ -1,15 +1,15 @@
 //! Equations of contact points and bodies along a chain of elastic bodies, factorised by fronts.
 //!
-//! The two rows of a contact point are combinations of its forces and its gaps, so that they never stand in memory,
+//! The two rows of a contact point are combinations of its forces and its gaps, and are not stored:
 //!
 //! ```text
 //! P r_c + S g_c = f_c        g = C r + G q + g_λ λ
 //! ```
 //!
-//! then come those of the bodies and one more. Blocks of C go into fronts column by column, residuals are products with
-//! C. Points whose rows hold no gap (open ones, S = 0) are condensed out: r_c = P⁻¹ f_c. What is added to them, a soft
-//! spring between two bodies, is added to the rows of the bodies. Residuals are those of all equations without what was
-//! added.
+//! The rows of the bodies and one more row follow. Blocks of C are added to fronts column by column; residuals use
+//! products with C. Points without gaps in their rows (open points, S = 0) are condensed out: r_c = P⁻¹ f_c. The soft
+//! spring that is added to them between two bodies is added to the rows of the bodies. Residuals do not contain the
+//! added terms.
 
 use super::blocks::GapRows;
 use super::csr::CsrMatrix;
@@ -18,7 +18,8 @@ use crate::settings::SETTINGS;
 use std::rc::Rc;
 use voussoir_core::linear::{FrontRows, FrontalLu};
 
-/// The two rows of a contact point by its forces and its gaps, and what is added to both.
+/// Coefficients of the two rows of a contact point for its forces and gaps, with the terms that are added for the
+/// factorisation.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct PointRows {
     /// P.
@@ -31,24 +32,24 @@ pub struct PointRows {
     pub gap_shift: [[f64; 2]; 2],
 }
 
-/// Rows of the bodies, and what is added to their diagonal.
+/// Rows of the bodies, with the terms added to their diagonal.
 #[derive(Debug, Clone)]
 pub struct BodyRows {
     /// Over all unknowns.
     pub rows: Rc<CsrMatrix>,
-    /// Added to the diagonal, part of the equations.
+    /// Term added to the diagonal; it is part of the equations.
     pub diagonal: f64,
-    /// Added to the diagonal, taken out again by refinement.
+    /// Term added to the diagonal; refinement removes it.
     pub shift: f64,
 }
 
-/// Rows of contact points and of bodies: all equations but the last.
+/// Rows of contact points and of bodies: all equations but the last one.
 pub struct ChainRows {
-    /// Gaps over all unknowns.
+    /// Gaps as functions of all unknowns.
     pub gaps: Rc<GapRows>,
     /// Rows of the bodies.
     pub bodies: BodyRows,
-    /// Of every contact point.
+    /// Rows of every contact point.
     pub points: Vec<PointRows>,
 }
 
@@ -59,13 +60,13 @@ struct Equations {
     last: Vec<(usize, f64)>,
     /// P⁻¹ of points that are condensed out.
     inverse: Vec<Option<[[f64; 2]; 2]>>,
-    /// Rows of the bodies and the last one over kept unknowns by their places, with what is added.
+    /// Rows of the bodies and the last row, over the places of kept unknowns, with the added terms.
     reduced: CsrMatrix,
-    /// Places of the forces of every group of points that are kept.
+    /// Places of the kept forces of every group of points.
     forces_of: Vec<std::ops::Range<usize>>,
-    /// Unknowns that are not.
+    /// Unknowns that are not condensed out.
     kept: Vec<usize>,
-    /// Their places by unknowns; `usize::MAX` for the others.
+    /// Place of every unknown; `usize::MAX` if it is condensed out.
     place: Vec<usize>,
 }
 
@@ -75,7 +76,7 @@ pub struct ChainFactors {
     factors: FrontalLu,
 }
 
-/// P⁻¹ of a point whose rows hold no gap.
+/// Returns P⁻¹ of a point without gaps in its rows.
 fn own_inverse(rows: &PointRows) -> Option<[[f64; 2]; 2]> {
     if rows.gap != [[0.0; 2]; 2] {
         return None;
@@ -92,7 +93,7 @@ impl ChainRows {
         2 * self.points.len()
     }
 
-    /// The two rows of a contact point times all unknowns, with what is added to them if `shifted`.
+    /// Returns the products of the two rows of a contact point with all unknowns, with the added terms if `shifted`.
     pub fn point(&self, contact: usize, x: &[f64], shifted: bool) -> [f64; 2] {
         let rows = &self.points[contact];
         let gap = [0, 1].map(|l| self.gaps.row_dot(2 * contact + l, x));
@@ -107,7 +108,7 @@ impl ChainRows {
         })
     }
 
-    /// What the rows leave of a right-hand side.
+    /// Returns the residual of the rows for a right-hand side.
     pub fn left(&self, right: &[f64], x: &[f64]) -> Vec<f64> {
         let gap = self.gaps.product(x);
         let mut left = Vec::with_capacity(right.len());
@@ -126,7 +127,7 @@ impl ChainRows {
         left
     }
 
-    /// The same, and the greatest backward error of a row.
+    /// Returns the residual and the greatest backward error of a row.
     pub fn errors(&self, right: &[f64], x: &[f64]) -> (Vec<f64>, f64) {
         let (gap, gap_sizes) = self.gaps.product_and_sizes(x);
         let mut left = Vec::with_capacity(right.len());
@@ -161,7 +162,7 @@ impl Equations {
         self.above.forces()
     }
 
-    /// A sum of both rows of a contact point over the unknowns that are no forces.
+    /// Visits the entries of a weighted sum of both rows of a contact point for unknowns that are not forces.
     fn others(&self, contact: usize, weights: [f64; 2], mut each: impl FnMut(usize, f64)) {
         for (k, weight) in weights.into_iter().enumerate().filter(|(_, weight)| *weight != 0.0) {
             for &(j, v) in self.above.gaps.others.row(2 * contact + k) {
@@ -173,21 +174,21 @@ impl Equations {
         }
     }
 
-    /// Weights of the gaps of a row of a point, what is added among them.
+    /// Returns the weights of the gaps in a row of a point, with the added terms.
     fn gap_weights(&self, i: usize) -> [f64; 2] {
         let (rows, k) = (&self.above.points[i / 2], i % 2);
         [rows.gap[k][0] + rows.gap_shift[k][0], rows.gap[k][1] + rows.gap_shift[k][1]]
     }
 
-    /// What the spring that is added to a point which is condensed out gives in a row of a body in which its forces have
-    /// these factors: weights of the gaps of that point.
+    /// Returns the weights of the gaps of a condensed point that its added spring gives in a row of a body. `factors`
+    /// are the coefficients of the point's forces in that row.
     fn condensed(&self, contact: usize, factors: [f64; 2]) -> Option<[f64; 2]> {
         let (inverse, rows) = (self.inverse[contact]?, &self.above.points[contact]);
         let by = [0, 1].map(|i| factors[0] * inverse[0][i] + factors[1] * inverse[1][i]);
         Some([0, 1].map(|k| -(by[0] * rows.gap_shift[0][k] + by[1] * rows.gap_shift[1][k])))
     }
 
-    /// Rows of the bodies and the last one over kept unknowns.
+    /// Returns the rows of the bodies and the last row over kept unknowns.
     fn reduced_rows(&self) -> CsrMatrix {
         let forces = self.forces();
         let mut rows = CsrMatrix::with_capacity(self.above.bodies.rows.entries());
@@ -221,18 +222,18 @@ impl Equations {
         rows
     }
 
-    /// A row of the bodies or the last one over kept unknowns, by its place.
+    /// Returns a row of the bodies, or the last row, over kept unknowns by its place.
     fn row(&self, place: usize) -> &[(usize, f64)] {
         self.reduced.row(self.kept[place] - self.forces())
     }
 
-    /// Places of the own forces of the point of a row.
+    /// Returns the places of the forces of the point of a row.
     fn own_places(&self, i: usize) -> impl Iterator<Item = usize> {
         let own = i - i % 2;
         [self.place[own], self.place[own + 1]].into_iter().filter(|j| *j != usize::MAX)
     }
 
-    /// Runs of rows of points of one group among rows: where they begin and end.
+    /// Returns the sequences of rows that belong to points of one group: start and rows.
     fn runs<'r>(&'r self, rows: &'r [usize]) -> impl Iterator<Item = (usize, &'r [usize])> {
         let pattern = self.above.gaps.forces.pattern();
         let group = |k: &usize| Some(self.kept[*k]).filter(|i| *i < self.forces()).map(|i| pattern.group(i / 2));
@@ -255,7 +256,7 @@ impl FrontRows for Equations {
         if weights == [0.0; 2] {
             return;
         }
-        // Unknowns of a group have one rank.
+        // // All unknowns of a group have the same rank.
         let pattern = self.above.gaps.forces.pattern();
         pattern
             .beside(pattern.group(i / 2))
@@ -319,8 +320,8 @@ impl FrontRows for Equations {
 }
 
 impl ChainFactors {
-    /// Factorises the rows of contact points, of bodies and the `last` one; `chain` has the rank of every unknown but the
-    /// last, which is eliminated at the end. `None` where they are singular in their pattern.
+    /// Factorises the rows of contact points, the rows of bodies and the `last` row. `chain` has the rank of every
+    /// unknown except the last one, which is eliminated at the end. `None` if the pattern is singular.
     pub fn new(above: ChainRows, last: Vec<(usize, f64)>, chain: &[usize]) -> Option<Self> {
         let forces = above.forces();
         let size = forces + above.bodies.rows.len() + 1;
@@ -345,13 +346,13 @@ impl ChainFactors {
         Some(ChainFactors { equations, factors })
     }
 
-    /// The two rows of a contact point as they are factorised times all unknowns.
+    /// Returns the products of the factorised rows of a contact point with all unknowns.
     pub fn point(&self, contact: usize, x: &[f64]) -> [f64; 2] {
         let own = &self.equations;
         own.above.point(contact, x, own.inverse[contact].is_none())
     }
 
-    /// What forces alone give, taken out of a right-hand side; kept rows of it.
+    /// Subtracts the effect of condensed forces from a right-hand side and returns its kept rows.
     fn without(&self, right: &[f64], x: &[f64]) -> Vec<f64> {
         let own = &self.equations;
         let (above, forces) = (&own.above, own.forces());
@@ -368,7 +369,7 @@ impl ChainFactors {
         own.kept.iter().map(left).collect()
     }
 
-    /// The unknowns after the contact forces, for right-hand sides of which the rows of contact points have none.
+    /// Returns the unknowns after the contact forces, for right-hand sides that are zero in the rows of contact points.
     pub fn motions(&self, rights: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
         let own = &self.equations;
         let of_kept = |right: &Vec<f64>| own.kept.iter().map(|i| right[*i]).collect();

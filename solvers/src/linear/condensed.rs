@@ -1,19 +1,17 @@
-//! Linear equations of contact points and bodies without the contact forces that have equations of
-//! their own.
+//! Linear equations of contact points and bodies without the contact forces that are condensed out.
 //!
-//! Unknowns are (r_n, r_t) of every contact point, then all others. Where the two rows of a point hold no
-//! other contact force (rigid bodies with compliant joints: C is diagonal; points that are open, r = 0),
-//! they are condensed out exactly,
+//! Unknowns are (r_n, r_t) of every contact point, then all others. If the two rows of a point contain no other contact
+//! force (rigid bodies with compliant joints: C is diagonal; open points, r = 0), they are condensed out exactly,
 //!
 //! ```text
 //! A_c r_c + E_c y = f_c      r_c = A_c⁻¹ (f_c − E_c y)
 //! D y + Σ F_c r_c = g        (D − Σ F_c A_c⁻¹ E_c) y = g − Σ F_c A_c⁻¹ f_c
 //! ```
 //!
-//! so that what is factorised has three unknowns a body and not 2 × the contact points of its joints
-//! more. Points pressed on elastic bodies, whose gaps depend on other forces, stay. Here forces are differences of motions, which rounds by
-//! the size of the motions: residuals are those of all the equations, and one or two steps of iterative
-//! refinement leave the accuracy of the equations before condensation.
+//! so that the factorised matrix has three unknowns per body and none for the contact points of its joints. Closed
+//! points of elastic bodies are kept, because their gaps depend on other forces. Condensed forces are differences of
+//! motions and are rounded by the size of the motions. Residuals are therefore computed from all equations, and one or
+//! two steps of iterative refinement restore the accuracy.
 
 use super::csr::CsrMatrix;
 use super::factorised::{Factorised, row_error};
@@ -21,22 +19,22 @@ use crate::settings::SETTINGS;
 use std::sync::Arc;
 use voussoir_core::linear::{Analysis, Entries, FrontalLu, SparseLu};
 
-/// How condensed equations are factorised.
+/// The factorisation method of condensed equations.
 #[derive(Default)]
 pub struct Elimination {
-    /// Ranks of the unknowns along a chain, where they form one.
+    /// Ranks of the unknowns along a chain, if they form one.
     chain: Option<Arc<[usize]>>,
-    /// What the factorisation before leaves, where they do not.
+    /// The analysis kept from the previous factorisation, if they do not.
     analysis: Analysis,
 }
 
 impl Elimination {
-    /// Along a chain, where the unknowns form one; an unknown more is the last.
+    /// Creates the method with a chain, if the unknowns form one; an additional unknown is the last one.
     pub fn along(chain: Option<Arc<[usize]>>) -> Self {
         Elimination { chain, analysis: Analysis::default() }
     }
 
-    /// Factorises equations, row by row, of the unknowns that are `kept`.
+    /// Factorises equations of the `kept` unknowns, given row by row.
     fn factorise(&mut self, kept: &[usize], entries: &Entries) -> Option<Reduced> {
         let Some(chain) = &self.chain else {
             return SparseLu::analysed(kept.len(), entries, &mut self.analysis)
@@ -69,14 +67,14 @@ struct Point {
     first: usize,
     /// A⁻¹.
     inverse: [[f64; 2]; 2],
-    /// Where its E begins and ends among all.
+    /// Range of its E in the list of all points.
     across: [usize; 2],
-    /// Whether all of its E is added.
+    /// True if all of its E are added terms.
     added: bool,
 }
 
 impl Point {
-    /// A⁻¹ v.
+    /// Returns A⁻¹ v.
     fn own(&self, v: [f64; 2]) -> [f64; 2] {
         let [a, b] = self.inverse;
         [a[0] * v[0] + a[1] * v[1], b[0] * v[0] + b[1] * v[1]]
@@ -87,25 +85,25 @@ impl Point {
 pub struct Condensed {
     rows: CsrMatrix,
     points: Vec<Point>,
-    /// E: kept column, values in both rows of a point.
+    /// E: kept column, and values in both rows of a point.
     across: Vec<(usize, [f64; 2])>,
-    /// F: (position in `points`, values in both of its columns) by kept rows, and where each of these begins.
+    /// F by kept rows: start of each row, and (position in `points`, values in both columns).
     down: (Vec<usize>, Vec<(usize, [f64; 2])>),
     /// Position in `points` of every contact point.
     of: Vec<Option<usize>>,
-    /// Indices that are kept.
+    /// Indices of kept unknowns.
     kept: Vec<usize>,
-    /// Position of every index among them; `usize::MAX` where it is condensed out.
+    /// Position of every index among the kept ones; `usize::MAX` if it is condensed out.
     place: Vec<usize>,
     reduced: Reduced,
 }
 
-/// A value in one of two places.
+/// Returns a value in one of two places and zero in the other.
 pub fn pair(k: usize, value: f64) -> [f64; 2] {
     if k == 0 { [value, 0.0] } else { [0.0, value] }
 }
 
-/// A⁻¹ of the two rows of a point, where its own equations are strong enough.
+/// Returns A⁻¹ of the two rows of a point, if its equations are well conditioned.
 fn own_inverse(rows: [impl Iterator<Item = (usize, f64)>; 2], forces: usize) -> Option<[[f64; 2]; 2]> {
     let (mut own, mut other) = ([[0.0f64; 2]; 2], [0.0; 2]);
     for (k, row) in rows.into_iter().enumerate() {
@@ -126,7 +124,7 @@ fn own_inverse(rows: [impl Iterator<Item = (usize, f64)>; 2], forces: usize) -> 
     })
 }
 
-/// The contact points whose forces are condensed out, and their positions among them.
+/// Returns the contact points whose forces are condensed out, and the position of every point among them.
 fn condensable(rows: &CsrMatrix, shifts: &CsrMatrix, contacts: usize) -> (Vec<Point>, Vec<Option<usize>>) {
     let forces = 2 * contacts;
     let both = |i: usize| rows.row(i).iter().chain(shifts.row(i)).copied();
@@ -144,9 +142,8 @@ fn condensable(rows: &CsrMatrix, shifts: &CsrMatrix, contacts: usize) -> (Vec<Po
 }
 
 impl Condensed {
-    /// Condenses and factorises equations of `size` unknowns, the first of which belong to `contacts`
-    /// points, with something added that refinement takes out again. `None` where they are singular in
-    /// their pattern.
+    /// Condenses and factorises equations of `size` unknowns; the first ones belong to `contacts` points. `shifts` are
+    /// added terms that refinement removes. `None` if the pattern is singular.
     pub fn new(
         size: usize,
         contacts: usize,
@@ -157,7 +154,7 @@ impl Condensed {
         Condensed::of(rows, &shifts, contacts, elimination)
     }
 
-    /// The same from rows.
+    /// Condenses and factorises equations given as rows.
     pub fn of(rows: CsrMatrix, shifts: &CsrMatrix, contacts: usize, elimination: &mut Elimination) -> Option<Self> {
         let size = rows.len();
         let forces = 2 * contacts;
@@ -186,7 +183,7 @@ impl Condensed {
         let mut columns: Vec<usize> = Vec::new();
         for (k, &i) in kept.iter().enumerate() {
             columns.clear();
-            // Gaps hold few entries twice, and factorisations add them up.
+            // // Gaps contain few repeated entries, which factorisations add.
             let mut sum = |j: usize, value: f64| {
                 if i < forces {
                     reduced.push((k, j, value));
@@ -210,7 +207,7 @@ impl Condensed {
             }
             for &(point, f) in &down.1[begin..] {
                 let point: &Point = &points[point];
-                // What is added need not reach the gaps of other points: refinement takes it out, and the unknowns of
+                // // Added terms need not act on the gaps of other points: refinement removes them, and the unknowns of
                 // a chain stay neighbours.
                 if point.added && i < forces {
                     continue;
@@ -228,7 +225,7 @@ impl Condensed {
         Some(Condensed { rows, points, across, down, of, kept, place, reduced })
     }
 
-    /// y for several right-hand sides of all equations.
+    /// Returns y for several right-hand sides of all equations.
     pub fn condense(&self, rights: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
         let reduced = |right: &Vec<f64>| {
             let own = |p: &Point| p.own([right[p.first], right[p.first + 1]]);
@@ -243,7 +240,7 @@ impl Condensed {
         self.reduced.solve(&rights)
     }
 
-    /// y for unit right-hand sides of the two rows of a contact point.
+    /// Returns y for unit right-hand sides of the two rows of a contact point.
     pub fn units(&self, contact: usize) -> Option<[Vec<f64>; 2]> {
         let mut rights = vec![vec![0.0; self.kept.len()]; 2];
         for (k, right) in rights.iter_mut().enumerate() {
@@ -269,7 +266,7 @@ impl Condensed {
         self.of.len()
     }
 
-    /// r = A⁻¹ (f − E y).
+    /// Returns r = A⁻¹ (f − E y).
     fn recovered(&self, point: &Point, right: [f64; 2], y: &[f64]) -> [f64; 2] {
         let mut f = right;
         for (j, e) in &self.across[point.across[0]..point.across[1]] {
@@ -279,7 +276,7 @@ impl Condensed {
         point.own(f)
     }
 
-    /// All unknowns from y and the right-hand side.
+    /// Returns all unknowns from y and the right-hand side.
     pub fn expand(&self, right: &[f64], y: &[f64]) -> Vec<f64> {
         let mut x = vec![0.0; self.rows.len()];
         self.kept.iter().zip(y).for_each(|(i, y)| x[*i] = *y);
@@ -290,7 +287,7 @@ impl Condensed {
         x
     }
 
-    /// The force of one contact point from y and the right-hand sides of its rows.
+    /// Returns the force of one contact point from y and the right-hand sides of its rows.
     pub fn force(&self, contact: usize, right: [f64; 2], y: &[f64]) -> [f64; 2] {
         match self.of[contact] {
             Some(point) => self.recovered(&self.points[point], right, y),
@@ -298,22 +295,22 @@ impl Condensed {
         }
     }
 
-    /// y of all unknowns.
+    /// Returns y of all unknowns.
     pub fn kept_of(&self, x: &[f64]) -> Vec<f64> {
         self.kept.iter().map(|i| x[*i]).collect()
     }
 
-    /// An unknown that belongs to no contact point, from y.
+    /// Returns an unknown that belongs to no contact point, from y.
     pub fn other(&self, index: usize, y: &[f64]) -> f64 {
         y[self.place[index]]
     }
 
-    /// Nothing on the right-hand side, and y.
+    /// Returns a zero right-hand side and a zero y.
     pub fn nothing(&self) -> (Vec<f64>, Vec<f64>) {
         (vec![0.0; self.rows.len()], vec![0.0; self.kept.len()])
     }
 
-    /// Refined as long as that halves what is left, at most so often.
+    /// Solves with refinement while it halves the residual, at most `refinements` times.
     pub fn solve(&self, right: &[f64], refinements: usize) -> Option<Vec<f64>> {
         let norm = |v: &[f64]| v.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
         let mut x = self.apply(right)?;
@@ -322,7 +319,7 @@ impl Condensed {
             let step = self.apply(&left)?;
             let better: Vec<f64> = x.iter().zip(&step).map(|(x, s)| x + s).collect();
             let now = self.left(right, &better);
-            // Not less: rounding, or nothing left.
+            // // No decrease: only rounding is left, or the residual is zero.
             if norm(&now) >= norm(&left) {
                 break;
             }
@@ -331,7 +328,7 @@ impl Condensed {
         x.iter().all(|v| v.is_finite()).then_some(x)
     }
 
-    /// What the equations without what was added leave of a right-hand side.
+    /// Returns the residual of the equations, without the added terms, for a right-hand side.
     pub fn left(&self, right: &[f64], x: &[f64]) -> Vec<f64> {
         right.iter().enumerate().map(|(i, right)| right - self.rows.row_dot(i, x)).collect()
     }

@@ -1,11 +1,11 @@
-//! A sparse matrix by its rows, for products with dense vectors.
+//! A sparse matrix stored by rows, for products with dense vectors.
 
 use voussoir_core::linear::Entries;
 
-/// Entries from which on a row is summed up in four sums, which do not wait for each other.
+/// Least number of entries for which a row is summed in four independent sums.
 const LONG: usize = 16;
 
-/// CsrMatrix of (column, value); repeated entries stay apart and add up in products.
+/// Rows of (column, value). Repeated entries are stored separately; products add them.
 #[derive(Debug, Clone, Default)]
 pub struct CsrMatrix {
     start: Vec<usize>,
@@ -13,7 +13,7 @@ pub struct CsrMatrix {
 }
 
 impl CsrMatrix {
-    /// Entries sorted by row, otherwise in their order.
+    /// Creates a matrix with entries sorted by row; within a row they keep their order.
     pub fn new(rows: usize, unsorted: &Entries) -> Self {
         let mut start = vec![0; rows + 1];
         for entry in unsorted {
@@ -31,7 +31,7 @@ impl CsrMatrix {
         CsrMatrix { start, entries }
     }
 
-    /// From rows one by one.
+    /// Creates a matrix from its rows.
     pub fn from_rows(rows: &[Vec<(usize, f64)>]) -> Self {
         let mut all = CsrMatrix { start: vec![0], entries: Vec::with_capacity(rows.iter().map(Vec::len).sum()) };
         for row in rows {
@@ -41,17 +41,17 @@ impl CsrMatrix {
         all
     }
 
-    /// No row.
+    /// Creates a matrix without rows.
     pub fn with_capacity(capacity: usize) -> Self {
         CsrMatrix { start: vec![0], entries: Vec::with_capacity(capacity) }
     }
 
-    /// CsrMatrix without entries.
+    /// Creates a matrix without entries.
     pub fn empty(rows: usize) -> Self {
         CsrMatrix { start: vec![0; rows + 1], entries: Vec::new() }
     }
 
-    /// Entries of the row that [`CsrMatrix::end_row`] ends, after those of the rows before.
+    /// Returns the list to which entries of the next row are added; [`CsrMatrix::end_row`] ends the row.
     pub fn open_row(&mut self) -> &mut Vec<(usize, f64)> {
         &mut self.entries
     }
@@ -76,7 +76,7 @@ impl CsrMatrix {
         &self.entries[self.start[i]..self.start[i + 1]]
     }
 
-    /// A value less row i times a vector, and the sizes of all that adds up.
+    /// Returns `right` minus the product of row i with a vector, and the sum of the absolute values of all terms.
     pub fn left_of_row(&self, i: usize, right: f64, x: &[f64]) -> (f64, f64) {
         let row = self.row(i);
         let (short, fours) = if row.len() < LONG { (row, &row[..0]) } else { row.split_at(row.len() % 4) };
@@ -96,7 +96,7 @@ impl CsrMatrix {
         (left - sums.iter().sum::<f64>(), size + sizes.iter().sum::<f64>())
     }
 
-    /// Row i times a vector.
+    /// Returns the product of row i with a vector.
     pub fn row_dot(&self, i: usize, x: &[f64]) -> f64 {
         let row = self.row(i);
         if row.len() < LONG {

@@ -1,21 +1,21 @@
-//! Products of small dense matrices with few columns, with the vectors of the processor.
+//! Products of small dense matrices with few columns, with SIMD instructions.
 
 use nalgebra::DMatrix;
 use voussoir_core::linear::vectors::{self, Simd, add_columns, add_four};
 use voussoir_core::with_vectors;
 
-/// out += A x over the first rows and columns of A, four columns at a time; zeros of x cost nothing.
+/// Computes out += A x over the first rows and columns of A, four columns at a time; zero entries of x are skipped.
 pub fn add_product(out: &mut [f64], a: &DMatrix<f64>, x: &[f64]) {
     vectors::add_product(out, a.nrows(), a.as_slice(), x);
 }
 
-/// out += A x, A column by column.
+/// Computes out += A x, A stored column by column.
 pub fn add_block(out: &mut [f64], a: &[f64], x: &[f64]) {
     let rows = out.len();
     vectors::add_product(out, rows, a, x);
 }
 
-/// out += A x, A column by column, and the sizes of what adds up.
+/// Computes out += A x, A stored column by column, and adds the absolute values of the terms to `sizes`.
 pub fn add_block_and_sizes((out, sizes): (&mut [f64], &mut [f64]), a: &[f64], x: &[f64]) {
     if !out.is_empty() {
         with_vectors!('a, add_columns_and_sizes(out: &'a mut [f64], sizes: &'a mut [f64], a: &'a [f64], x: &'a [f64]) -> ());
@@ -44,7 +44,7 @@ fn add_columns_and_sizes<S: Simd>(_: S, out: &mut [f64], sizes: &mut [f64], a: &
     }
 }
 
-/// out += wᵀ A, A column by column.
+/// Computes out += wᵀ A, A stored column by column.
 pub fn add_row_block(out: &mut [f64], w: &[f64], a: &[f64]) {
     if !w.is_empty() {
         with_vectors!('a, add_row_columns(out: &'a mut [f64], w: &'a [f64], a: &'a [f64]) -> ());
@@ -58,7 +58,7 @@ fn add_row_columns<S: Simd>(_: S, out: &mut [f64], w: &[f64], a: &[f64]) {
     }
 }
 
-/// A times two columns added to two: each number of A is read once.
+/// Adds A x and A y to two vectors; each entry of A is read once.
 #[inline(always)]
 fn add_to_two<S: Simd>(simd: S, (first, second): (&mut [f64], &mut [f64]), a: &[f64], (x, y): (&[f64], &[f64])) {
     let height = first.len();
@@ -82,7 +82,7 @@ fn add_to_two<S: Simd>(simd: S, (first, second): (&mut [f64], &mut [f64]), a: &[
     }
 }
 
-/// Dot product in four sums.
+/// Returns a dot product, computed in four sums.
 #[inline(always)]
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 4];
@@ -96,7 +96,7 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }
 
-/// A times columns, of which the first entries count.
+/// Returns A times the first entries of columns.
 pub fn product(a: &DMatrix<f64>, columns: &DMatrix<f64>) -> DMatrix<f64> {
     let mut all = DMatrix::zeros(a.nrows(), columns.ncols());
     if all.is_empty() || columns.is_empty() {
@@ -120,7 +120,8 @@ fn add_matrix<S: Simd>(simd: S, out: &mut DMatrix<f64>, a: &DMatrix<f64>, column
     }
 }
 
-/// Rows, given as columns, times A, again as columns: of A's rows as many count as they have entries.
+/// Returns rows times A. Rows are stored as columns, and so is the result; only as many rows of A are used as `rows`
+/// has entries.
 pub fn row_product(rows: &DMatrix<f64>, a: &DMatrix<f64>) -> DMatrix<f64> {
     let mut all = DMatrix::zeros(a.ncols(), rows.ncols());
     if all.is_empty() || rows.is_empty() {
@@ -141,7 +142,7 @@ fn set_row_product<S: Simd>(_: S, out: &mut DMatrix<f64>, rows: &DMatrix<f64>, a
     }
 }
 
-/// out += f a.
+/// Computes out += f a.
 #[inline(always)]
 fn add_one<S: Simd>(simd: S, out: &mut [f64], a: &[f64], f: f64) {
     let (a, last) = S::as_simd_f64s(&a[..out.len()]);
@@ -153,7 +154,7 @@ fn add_one<S: Simd>(simd: S, out: &mut [f64], a: &[f64], f: f64) {
     rest.iter_mut().zip(last).for_each(|(out, a)| *out += a * f);
 }
 
-/// A += a bᵀ.
+/// Computes A += a bᵀ.
 pub fn add_outer(target: &mut DMatrix<f64>, a: &DMatrix<f64>, b: &DMatrix<f64>) {
     with_vectors!('a, add_dyads(target: &'a mut DMatrix<f64>, a: &'a DMatrix<f64>, b: &'a DMatrix<f64>) -> ());
 }
@@ -180,7 +181,7 @@ fn add_dyads<S: Simd>(simd: S, target: &mut DMatrix<f64>, a: &DMatrix<f64>, b: &
 mod tests {
     use super::*;
 
-    /// Products by pairs of columns, with a column over and zeros, and by rows are those of the definition.
+    /// Products by pairs of columns (odd numbers and zeros included) and by rows agree with the definition.
     #[test]
     fn products_are_those_of_the_definition() {
         let a = DMatrix::from_fn(7, 9, |i, j| ((3 * i + 5 * j * j + 1) as f64).sin());

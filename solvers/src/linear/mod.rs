@@ -1,4 +1,5 @@
-//! Sparse rows, rows in blocks, factorisations that follow changes of few rows, small dense products, equations bordered by a control.
+//! Sparse rows, rows in blocks, factorisations that follow changes of few rows, small dense products, equations with a
+//! control row.
 
 pub(crate) mod blocks;
 pub(crate) mod bordered;
@@ -11,12 +12,12 @@ pub(crate) mod factorised;
 mod tests;
 pub(crate) mod updated;
 
-/// a · b.
+/// Returns a · b.
 pub(crate) fn inner(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Greatest size of a number among these.
+/// Returns the greatest absolute value.
 pub(crate) fn largest(values: &[f64]) -> f64 {
     let eights = values.chunks_exact(8);
     let rest = eights.remainder().iter().fold(0.0, |a: f64, b| a.max(b.abs()));

@@ -1,4 +1,4 @@
-//! Factorisations against dense elimination, and products against their definition.
+//! Tests: factorisations against dense elimination, and products against their definition.
 
 use super::bordered::{BorderedFactors, BorderedSystem};
 use super::condensed::{Condensed, Elimination, pair};
@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, DVector};
 use std::rc::Rc;
 use voussoir_core::linear::Entries;
 
-/// Contact points, and unknowns after their forces.
+/// Numbers of contact points and of unknowns after their forces.
 const CONTACTS: usize = 4;
 const OTHERS: usize = 6;
 const SIZE: usize = 2 * CONTACTS + OTHERS;
@@ -20,7 +20,7 @@ fn value(i: usize, j: usize) -> f64 {
     ((7 * i + 11 * j * j + 3) as f64).sin()
 }
 
-/// Equations of contact points and bodies. The last contact point feels the force of the one before.
+/// Equations of contact points and bodies. The last contact point depends on the force of the previous one.
 fn entries() -> Entries {
     let mut entries = Vec::new();
     for i in 0..SIZE {
@@ -62,7 +62,8 @@ fn distance(x: &[f64], y: &DVector<f64>) -> f64 {
     x.iter().zip(y.iter()).fold(0.0, |worst, (x, y)| worst.max((x - y).abs()))
 }
 
-/// Points that feel their own forces only are condensed out, others stay: the solution is that of dense elimination.
+/// Points that depend only on their own forces are condensed out; others are kept. The solution is that of dense
+/// elimination.
 #[test]
 fn condensed_equations_have_the_solution_of_all_equations() {
     let (entries, right) = (entries(), right());
@@ -71,7 +72,7 @@ fn condensed_equations_have_the_solution_of_all_equations() {
     assert!(distance(&own.solve(&right, 1).unwrap(), &solved(dense(&entries), &right)) < 1e-13);
 }
 
-/// Shifts that are added for the factorisation are not part of the equations: each refinement removes them by their size.
+/// Shifts added for the factorisation are not part of the equations: each refinement removes them.
 #[test]
 fn refinement_takes_out_what_is_added_to_the_factors() {
     let (entries, right) = (entries(), right());
@@ -82,7 +83,7 @@ fn refinement_takes_out_what_is_added_to_the_factors() {
     assert!(largest(&own.left(&right, exact.as_slice())) < 1e-13);
 }
 
-/// The order of elimination, sparse or along ranks, does not show in the solution.
+/// The solution does not depend on the order of elimination, sparse or along ranks.
 #[test]
 fn elimination_along_a_chain_gives_the_same_solution() {
     let (entries, right) = (entries(), right());
@@ -112,7 +113,7 @@ fn units_are_columns_of_the_inverse() {
     }
 }
 
-/// Equations whose rows depend on each other have no factors, or no solution that is a number.
+/// Equations with dependent rows have no factors, or no finite solution.
 #[test]
 fn singular_equations_are_refused() {
     let twice: Entries = entries()
@@ -129,14 +130,15 @@ fn singular_equations_are_refused() {
     assert!(solution.is_none_or(|x| largest(&x) > 1e12));
 }
 
-/// A change of the two rows of a point by responses to their right-hand sides: the changed equations hold.
+/// After a change of the two rows of a point, the responses to their right-hand sides give the solution of the changed
+/// equations.
 #[test]
 fn a_few_changed_rows_are_followed_without_a_factorisation() {
     let entries = entries();
     let mut own = UpdatedFactorisation::new(condensed(&entries, 0.0));
     let contact = 1;
     assert_eq!((own.respond(contact, 0), own.respond(contact, 0)), (Some(2), Some(0)));
-    // In the changed equations the forces of the point are given.
+    // // In the changed equations the forces of the point are prescribed.
     let (given, right) = ([0.3, -0.7], right());
     let mut changed = dense(&entries);
     (0..2).for_each(|k| changed.row_mut(2 * contact + k).fill(0.0));
@@ -173,7 +175,7 @@ fn with_last_row(entries: &Entries, control: &[f64]) -> DMatrix<f64> {
     matrix
 }
 
-/// A dense control beside the equations has the solution and the residual of all rows.
+/// A dense control outside the equations gives the solution and the residual of all rows.
 #[test]
 fn a_control_beside_the_equations_is_their_last_row() {
     let (entries, right) = (entries(), right());
@@ -191,11 +193,11 @@ fn a_control_beside_the_equations_is_their_last_row() {
     assert!(distance(&own.left(&right, &away).0, &exact) < 1e-12);
 }
 
-/// At a limit point the equations without the column of the factor are singular. A control beside them is not.
+/// At a limit point the equations without the column of the factor are singular. A control outside them works there.
 #[test]
 fn a_control_beside_the_equations_serves_at_a_limit_point() {
     let mut singular = entries();
-    // One of the others drops out of all equations but the last row: it moves along the path on which the factor stands still.
+    // // One other unknown appears only in the last row: it moves along the path while the factor is constant.
     singular.retain(|e| e.1 != SIZE - 2);
     singular.extend((2 * CONTACTS..SIZE - 1).map(|i| (i, SIZE - 1, 1.0 + i as f64)));
     let control: Vec<f64> = (0..SIZE).map(|j| if j == SIZE - 2 { 2.0 } else { value(5, j) }).collect();
@@ -203,7 +205,8 @@ fn a_control_beside_the_equations_serves_at_a_limit_point() {
     assert!(distance(&x, &solved(with_last_row(&singular, &control), &right())) < 1e-11);
 }
 
-/// Factors with a control of few unknowns serve this control only; those that hold an unknown serve all dense ones.
+/// Factors with a control of few unknowns serve only this control; factors that hold an unknown serve all dense
+/// controls.
 #[test]
 fn factors_say_which_controls_they_serve() {
     let above: Entries = entries().into_iter().filter(|e| e.0 + 1 < SIZE).collect();
@@ -222,7 +225,7 @@ fn factors_say_which_controls_they_serve() {
     assert!(many.serves(&full) && !many.serves(&of_factor) && many.borders(&of_factor));
 }
 
-/// Rows of a sparse matrix add up entries that stand twice, in any order, short or long.
+/// Rows of a sparse matrix add repeated entries, in any order, short or long.
 #[test]
 fn rows_of_a_sparse_matrix_are_those_of_the_dense_one() {
     for columns in [5, 40] {

@@ -1,12 +1,12 @@
-//! One factorisation that serves while few contact points change their two rows (Sherman, Morrison & Woodbury).
+//! One factorisation that is reused while few contact points change their two rows (Sherman, Morrison & Woodbury).
 //!
 //! ```text
 //! B x_0 = f     B Y = [e_i]     x = x_0 + Y ε
 //! ```
 //!
-//! B: the rows that were factorised; Y: the responses to unit right-hand sides of the two rows of a changed point; ε
-//! such that its present rows hold. x_0 and Y are kept without the forces that [`condensed`](super::condensed)
-//! takes out.
+//! B: the factorised rows; Y: the responses to unit right-hand sides of the two rows of a changed point; ε is
+//! determined by its present rows. x_0 and Y are stored without the forces that [`condensed`](super::condensed)
+//! condenses out.
 
 use super::condensed::Condensed;
 use std::collections::BTreeMap;
@@ -15,19 +15,19 @@ use std::collections::BTreeMap;
 pub struct Column {
     /// Kept unknowns.
     pub y: Vec<f64>,
-    /// All unknowns, refined.
+    /// All unknowns, refined, if needed.
     pub x: Option<Vec<f64>>,
 }
 
-/// Factors with the responses that are known.
+/// Factors with the known responses.
 pub struct UpdatedFactorisation {
-    /// Of B.
+    /// Factors of B.
     pub factors: Condensed,
     columns: BTreeMap<usize, [Column; 2]>,
 }
 
 impl UpdatedFactorisation {
-    /// Without responses.
+    /// Creates factors without responses.
     pub fn new(factors: Condensed) -> Self {
         UpdatedFactorisation { factors, columns: BTreeMap::new() }
     }
@@ -37,8 +37,8 @@ impl UpdatedFactorisation {
         self.columns.clear();
     }
 
-    /// Makes sure that the responses to the rows of a point are known, refined so often. Returns how many right-hand
-    /// sides that took; `None` where they are not found.
+    /// Computes the responses to the rows of a point if they are not known, with `refinements` refinements. Returns the
+    /// number of right-hand sides solved; `None` if it fails.
     pub fn respond(&mut self, contact: usize, refinements: usize) -> Option<u64> {
         if self.columns.contains_key(&contact) {
             return Some(0);
@@ -59,18 +59,18 @@ impl UpdatedFactorisation {
         Some(2)
     }
 
-    /// The responses to the rows of a point, where they are known.
+    /// Returns the responses to the rows of a point, if they are known.
     pub fn columns(&self, contact: usize) -> Option<&[Column; 2]> {
         self.columns.get(&contact)
     }
 
-    /// Number of points whose responses are known.
+    /// Returns the number of points with known responses.
     pub fn responses(&self) -> usize {
         self.columns.len()
     }
 
-    /// A row times a solution of which the kept unknowns and the right-hand sides of the points are given; `own`: the
-    /// force of a point that is known.
+    /// Returns a row times a solution that is given by its kept unknowns and the right-hand sides of the points; `own`:
+    /// the force of a point, if it is known.
     pub fn row_dot(
         &self,
         row: impl Iterator<Item = (usize, f64)>,

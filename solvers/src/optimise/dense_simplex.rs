@@ -1,27 +1,26 @@
-//! Simplex method on a dense dictionary of non-negative variables: feasibility, least values and reasons of
-//! infeasibility, for thousands of linear programs that differ in which variables are fixed at zero.
+//! Simplex method on a dense dictionary of non-negative variables: feasibility, minima and reasons of infeasibility,
+//! for thousands of linear programs that differ in which variables are fixed at zero.
 //!
-//! x_B = β + M x_N with x ≥ 0; some variables are *fixed* at zero for the time being. The dual
-//! simplex method restores x ≥ 0 after a change, the primal one minimises a linear form. A row
-//! whose right-hand side is negative and which no variable that is not fixed can raise refutes the
-//! system; the fixed variables that could are the reason. Equations and free variables are
-//! eliminated beforehand, so that a pivot is one sweep over a dense matrix.
+//! x_B = β + M x_N with x ≥ 0; some variables are temporarily *fixed* at zero. The dual simplex method restores x ≥ 0
+//! after a change; the primal simplex method minimises a linear form. A row with a negative right-hand side that no
+//! free column can raise refutes the system; the fixed variables that could raise it are the reason. Equations and free
+//! variables are eliminated in advance, so that a pivot is one sweep over a dense matrix.
 
 use crate::settings::SETTINGS;
 
-/// Pivots after which the dictionary is compared with its original.
+/// Number of pivots after which the dictionary is compared with its original.
 const AUDIT: u64 = 64;
 
-/// Where a variable stands.
+/// The place of a variable.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Place {
     Row(usize),
     Column(usize),
-    /// In no equation: zero.
+    /// The variable is in no equation: it is zero.
     Absent,
 }
 
-/// A system that can be asked whether it has a point.
+/// A system with questions of feasibility and minimisation.
 #[derive(Debug, Clone)]
 pub struct Dictionary {
     rows: usize,
@@ -38,7 +37,7 @@ pub struct Dictionary {
     since_audit: u64,
     /// Row and sense of the last refutation.
     refuted: Option<(usize, f64)>,
-    /// Pivots done.
+    /// Number of pivots.
     pub pivots: u64,
 }
 
@@ -55,15 +54,15 @@ struct Original {
 pub enum Feasibility {
     /// The present point is feasible.
     Point,
-    /// It is not while all of these variables are fixed.
+    /// The system is infeasible while all of these variables are fixed.
     Reason(Vec<usize>),
     /// Rounding or the limit of pivots prevented an answer.
     Undecided,
 }
 
-/// Equations over free variables and variables ≥ 0: `rows` × (free + variables), row by row.
+/// Equations over free variables and variables ≥ 0: `rows` × (free + variables), stored row by row.
 pub struct Equations {
-    /// Number of free variables, the first columns.
+    /// Number of free variables; they are the first columns.
     pub free: usize,
     /// Number of variables ≥ 0.
     pub variables: usize,
@@ -74,8 +73,8 @@ pub struct Equations {
 }
 
 impl Equations {
-    /// Solves the equations for as many variables as there are independent ones, free variables
-    /// first, largest pivot first. `None` where the equations contradict each other.
+    /// Solves the equations for as many variables as there are independent equations, free variables first, largest
+    /// pivot first. `None` if the equations contradict each other.
     pub fn dictionary(mut self) -> Option<Dictionary> {
         let width = self.free + self.variables;
         let size = self.rows.iter().flatten().fold(0.0f64, |m, v| m.max(v.abs())).max(1.0);
@@ -110,7 +109,7 @@ impl Equations {
                     }
                     for &(j, v) in &entries {
                         let x = self.rows[i][j] - factor * v;
-                        // What cancels is zero.
+                        // // A difference within rounding is zero.
                         self.rows[i][j] = if x.abs() < 1e-14 * size { 0.0 } else { x };
                     }
                     self.rows[i][column] = 0.0;
@@ -143,12 +142,13 @@ impl Equations {
     }
 }
 
-/// A number in [0, 1) that depends on `index` without pattern.
+/// Returns a number in [0, 1) that depends irregularly on `index`.
 fn irregular(index: usize) -> f64 {
     ((index as f64 + 1.0) * 0.618_033_988_749_894_9).fract()
 }
 
-/// β after a variable's bound has moved: x_B = x'_B + by, or x_N = x'_N − by in every row that contains it.
+/// Computes β after the bound of a variable has moved: x_B = x'_B + by, or x_N = x'_N − by in every row that contains
+/// it.
 fn move_bound(beta: &mut [f64], matrix: &[f64], columns: usize, place: Place, by: f64) {
     match place {
         Place::Row(i) => beta[i] += by,
@@ -158,7 +158,7 @@ fn move_bound(beta: &mut [f64], matrix: &[f64], columns: usize, place: Place, by
 }
 
 impl Dictionary {
-    /// x_B = β + M x_N, M row by row; variables in neither list are zero.
+    /// Creates x_B = β + M x_N, M row by row; variables in neither list are zero.
     pub fn new(variables: usize, basic: Vec<usize>, nonbasic: Vec<usize>, beta: Vec<f64>, matrix: Vec<f64>) -> Self {
         let mut place = vec![Place::Absent; variables];
         basic.iter().enumerate().for_each(|(i, &x)| place[x] = Place::Row(i));
@@ -183,12 +183,12 @@ impl Dictionary {
         }
     }
 
-    /// Matrix entries swept so far: pivots × entries.
+    /// Returns the number of matrix entries swept: pivots × entries.
     pub fn work(&self) -> u64 {
         self.pivots * (self.rows * self.columns) as u64
     }
 
-    /// Value of a variable at the present point.
+    /// Returns the value of a variable at the present point.
     pub fn value(&self, variable: usize) -> f64 {
         match self.place[variable] {
             Place::Row(i) => self.beta[i],
@@ -196,7 +196,7 @@ impl Dictionary {
         }
     }
 
-    /// What one unit of a variable costs at the vertex that [`Self::minimise`] reached.
+    /// Returns the cost of one unit of a variable at the vertex that [`Self::minimise`] reached.
     pub fn reduced_cost(&self, variable: usize) -> f64 {
         match self.place[variable] {
             Place::Column(c) => self.cost[c],
@@ -204,22 +204,22 @@ impl Dictionary {
         }
     }
 
-    /// Whether a variable is zero because it is not in the basis.
+    /// Returns true if a variable is zero because it is not in the basis.
     pub fn at_zero(&self, variable: usize) -> bool {
         matches!(self.place[variable], Place::Column(_))
     }
 
-    /// Whether a variable is fixed at zero.
+    /// Returns true if a variable is fixed at zero.
     pub fn is_fixed(&self, variable: usize) -> bool {
         self.fixed[variable]
     }
 
-    /// Fixes a variable at zero, or sets it free again.
+    /// Fixes a variable at zero, or releases it.
     pub fn fix(&mut self, variable: usize, fixed: bool) {
         self.fixed[variable] = fixed;
     }
 
-    /// Adds `by` to a variable as a function of the others: its bound moves. The basis is computed afresh.
+    /// Adds `by` to a variable as a function of the others: its bound moves. The basis is computed again.
     pub fn shift(&mut self, variable: usize, by: f64) {
         let original = &mut self.original;
         let at = |list: &[usize], in_list: fn(usize) -> Place| list.iter().position(|&x| x == variable).map(in_list);
@@ -228,8 +228,8 @@ impl Dictionary {
         self.restore();
     }
 
-    /// The same for several variables, in the present basis as well as in the original, so that a few pivots of the dual
-    /// simplex method repair what has moved.
+    /// Moves the bounds of several variables in the present basis and in the original dictionary. A few pivots of the
+    /// dual simplex method then restore feasibility.
     pub fn relax(&mut self, shifts: &[(usize, f64)]) {
         let mut places = vec![Place::Absent; self.place.len()];
         self.original.basic.iter().enumerate().for_each(|(i, &x)| places[x] = Place::Row(i));
@@ -285,7 +285,7 @@ impl Dictionary {
         self.since_audit += 1;
     }
 
-    /// Greatest difference between the present point and the original dictionary.
+    /// Returns the greatest difference between the present point and the original dictionary.
     fn drift(&self) -> f64 {
         let point: Vec<f64> = self.original.nonbasic.iter().map(|&x| self.value(x)).collect();
         let mut worst = 0.0f64;
@@ -306,7 +306,7 @@ impl Dictionary {
         }
     }
 
-    /// The present basis computed afresh from the original dictionary.
+    /// Computes the present basis again from the original dictionary.
     pub fn restore(&mut self) {
         let wanted: Vec<bool> = self.place.iter().map(|p| matches!(p, Place::Row(_))).collect();
         let costs: Vec<(usize, f64)> = self.nonbasic.iter().copied().zip(self.cost.iter().copied()).collect();
@@ -322,7 +322,7 @@ impl Dictionary {
         }
         let mut entering: Vec<usize> = self.nonbasic.iter().copied().filter(|&x| wanted[x]).collect();
         while !entering.is_empty() {
-            // The largest pivot in the next column that has one.
+            // // The largest pivot in the next possible column.
             let mut best: (f64, usize, usize) = (0.0, 0, 0);
             for (k, &x) in entering.iter().enumerate() {
                 let Place::Column(c) = self.place[x] else { continue };
@@ -351,7 +351,7 @@ impl Dictionary {
         self.since_audit = 0;
     }
 
-    /// Makes the present costs those of a vertex: whatever is not fixed costs something.
+    /// Changes the costs so that the present basis is optimal: every free column has a cost.
     fn shift_costs(&mut self) {
         for (cost, &x) in self.cost.iter_mut().zip(&self.nonbasic) {
             if !self.fixed[x] && *cost < 0.0 {
@@ -360,7 +360,7 @@ impl Dictionary {
         }
     }
 
-    /// Looks for a point with x ≥ 0 and the fixed variables at zero, by the dual simplex method.
+    /// Searches a point with x ≥ 0 and the fixed variables at zero, by the dual simplex method.
     pub fn feasible(&mut self) -> Feasibility {
         self.shift_costs();
         self.refuted = None;
@@ -368,7 +368,7 @@ impl Dictionary {
         let mut restored = false;
         for step in 0..limit {
             self.audit();
-            // The worst row; late in the game any order will do that does not repeat.
+            // // The most violated row; after many pivots an order that cannot cycle.
             let mut leaving: Option<(usize, f64, f64)> = None;
             for i in 0..self.rows {
                 let (beta, fixed) = (self.beta[i], self.fixed[self.basic[i]]);
@@ -406,7 +406,7 @@ impl Dictionary {
         Feasibility::Undecided
     }
 
-    /// The column that enters for row `r`: least ratio, among nearly equal ones the largest pivot.
+    /// Returns the column that enters for row `r`: least ratio; among nearly equal ratios the largest pivot.
     fn entering(&self, r: usize, sense: f64) -> Option<usize> {
         let row = self.row(r);
         let mut bound = f64::INFINITY;
@@ -430,8 +430,8 @@ impl Dictionary {
         best.map(|b| b.0)
     }
 
-    /// What the last [`Feasibility::Reason`] rests on: Σ c x = β for all points of the affine space, as
-    /// (x, c), and the sense (1 or −1) by which to multiply it so that β < 0.
+    /// Returns the proof of the last [`Feasibility::Reason`]: Σ c x = β for all points of the affine space, as (x, c),
+    /// and the sense (1 or −1) by which to multiply it so that β < 0.
     pub fn refutation(&self) -> Option<(Vec<(usize, f64)>, f64)> {
         let (r, sense) = self.refuted?;
         let mut row = vec![(self.basic[r], 1.0)];
@@ -439,7 +439,7 @@ impl Dictionary {
         Some((row, sense))
     }
 
-    /// The fixed variables that keep row `r` from being repaired.
+    /// Returns the fixed variables that could raise row `r` if they were free.
     fn reason(&self, r: usize, sense: f64) -> Vec<usize> {
         let mut reason: Vec<usize> = self
             .row(r)
@@ -455,8 +455,8 @@ impl Dictionary {
         reason
     }
 
-    /// Minimises Σ weight × variable from a feasible point, by the primal simplex method, at most
-    /// so many pivots. Returns the value and whether it is the least; `None` where it has no bound.
+    /// Minimises Σ weight × variable from a feasible point by the primal simplex method with at most `most` pivots.
+    /// Returns the value, and true if it is the minimum; `None` if it has no bound.
     pub fn minimise(&mut self, weights: &[(usize, f64)], most: u64) -> Option<(f64, bool)> {
         let n = self.columns;
         self.cost.iter_mut().for_each(|c| *c = 0.0);
@@ -480,7 +480,7 @@ impl Dictionary {
             for c in 0..n {
                 let d = self.cost[c];
                 if d < -1e-10 * scale && !self.fixed[self.nonbasic[c]] {
-                    // Bland's rule once the point no longer moves.
+                    // // Bland's rule if the point does not move.
                     let better = match entering {
                         None => true,
                         Some((b, _)) if degenerate > 40 => self.nonbasic[c] < self.nonbasic[b],

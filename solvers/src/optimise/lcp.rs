@@ -1,7 +1,7 @@
 //! Lemke's pivoting for linear complementarity problems: w = q + M z ≥ 0, z ≥ 0, z·w = 0.
 //!
-//! Lemke (1965), with a lexicographic ratio test, so that degenerate ties cannot cycle. A secondary ray proves
-//! that there is no solution only for copositive-plus matrices.
+//! Lemke (1965), with a lexicographic ratio test, so that degenerate ties cannot cycle. A secondary ray proves that no
+//! solution exists only for copositive-plus matrices.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -14,18 +14,18 @@ pub struct Lcp {
     pub constant: DVector<f64>,
 }
 
-/// How Lemke's algorithm ended.
+/// The result of Lemke's algorithm.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LemkeResult {
     /// A solution z.
     Solution(Vec<f64>),
-    /// A secondary ray: the direction in z along which the almost complementary solutions go on.
+    /// A secondary ray: the direction in z along which almost complementary solutions continue.
     Ray(Vec<f64>),
     /// Too many pivots.
     Unfinished,
 }
 
-/// Lemke's algorithm. `pivots` counts.
+/// Runs Lemke's algorithm and counts its `pivots`.
 pub fn lemke(problem: &Lcp, pivots: &mut u64) -> LemkeResult {
     let Lcp { matrix: m, constant: q } = problem;
     let n = q.len();
@@ -33,8 +33,8 @@ pub fn lemke(problem: &Lcp, pivots: &mut u64) -> LemkeResult {
     if q.iter().all(|v| *v >= 0.0) || scale == 0.0 {
         return LemkeResult::Solution(vec![0.0; n]);
     }
-    // Tableau [I, −M, −1 | q] in the order w (0..n), z (n..2n), z_0 (2n), right-hand side (2n + 1);
-    // the columns of w are the inverse of the basis, which the lexicographic rule reads.
+    // // Tableau [I, −M, −1 | q] in the order w (0..n), z (n..2n), z_0 (2n), right-hand side (2n + 1). The columns of w
+    // are the inverse of the basis, which the lexicographic rule uses.
     let last = 2 * n + 1;
     let mut t = DMatrix::<f64>::zeros(n, last + 1);
     for i in 0..n {
@@ -84,8 +84,8 @@ pub fn lemke(problem: &Lcp, pivots: &mut u64) -> LemkeResult {
     LemkeResult::Unfinished
 }
 
-/// The row with the least ratio, ties by the lexicographic order of the rows of the basis inverse;
-/// the artificial variable leaves as soon as it can.
+/// Returns the row with the least ratio; ties are decided by the lexicographic order of the rows of the basis inverse.
+/// The artificial variable leaves as soon as possible.
 fn least_ratio(t: &DMatrix<f64>, candidates: &[usize], entering: usize, basis: &[usize]) -> usize {
     let n = basis.len();
     let ratio = |row: usize, column: usize| t[(row, column)] / t[(row, entering)];

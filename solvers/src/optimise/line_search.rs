@@ -4,33 +4,34 @@
 //! ‖F(x + t Δx)‖ ≤ (1 − σ t) max ‖F‖ of the last m iterations
 //! ```
 //!
-//! Armijo's rule for semismooth systems (De Luca, Facchinei & Kanzow 1996, Math. Programming 75, 407-439) with the
-//! greatest of several merits, so that a step over a kink need not lower each (Grippo, Lampariello & Lucidi 1986,
-//! SIAM J. Numer. Anal. 23, 707-716). Where none of the halves does, the one with the least merit is taken.
+//! Armijo's rule for semismooth systems (De Luca, Facchinei & Kanzow 1996, Math. Programming 75, 407-439). The maximum
+//! over several iterations allows a step over a kink that increases the merit (Grippo, Lampariello & Lucidi 1986, SIAM
+//! J. Numer. Anal. 23, 707-716). If no halving satisfies the rule, the step with the least merit is used.
 
 /// The rule of a line search and the merits of its last iterations.
 #[derive(Debug, Clone)]
 pub struct LineSearch {
     /// σ.
     pub decrease: f64,
-    /// Most halvings of one iteration.
+    /// Greatest number of halvings of one iteration.
     pub halvings: i32,
     /// m.
     pub memory: usize,
-    /// Merits below which every step is taken.
+    /// Merit below which every step is accepted.
     pub nothing: f64,
     /// ‖F‖ of all iterations.
     pub merits: Vec<f64>,
 }
 
 impl LineSearch {
-    /// For systems that change their pieces all at once.
+    /// Creates the rule for systems whose pieces all change at once.
     pub fn of_pieces() -> Self {
         LineSearch { decrease: 1e-2, halvings: 8, memory: 3, nothing: 0.0, merits: Vec::new() }
     }
 
-    /// The step that is taken, and whether it is the whole: of what `at` finds at a number of halvings and a share
-    /// of the step, with its merit. An error is the last of `at`, where it finds nothing anywhere.
+    /// Returns the result of the accepted step, and true if it is the full step. `at` receives the number of halvings
+    /// and the step length and returns a result with its merit. If `at` fails for all lengths, the error is its last
+    /// one.
     pub fn search<T, E>(
         &mut self,
         most: f64,

@@ -1,4 +1,5 @@
-//! Optimisation without a word of masonry: dense linear programs, linear complementarity problems, random numbers.
+//! Optimisation methods without knowledge of masonry: dense linear programs, linear complementarity problems, random
+//! numbers.
 
 pub(crate) mod dense_simplex;
 pub(crate) mod lcg;

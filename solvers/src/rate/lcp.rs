@@ -50,7 +50,7 @@ fn flow(problem: &RateProblem, at: (usize, usize), associated: bool) -> [f64; 2]
 }
 
 impl RateLcp {
-    /// (point, facet) of all rows, those of eliminated multipliers last.
+    /// Returns (point, facet) of all rows; rows of eliminated multipliers are last.
     pub fn all_rows(&self) -> Vec<(usize, usize)> {
         [&self.facets[..], &self.free.facets].concat()
     }
@@ -74,7 +74,8 @@ impl RateLcp {
     }
 }
 
-/// With the laws' own flow or an associated one. `None` where nothing holds points that are open with a strength.
+/// Creates the problem with the laws' own flow or an associated one. `None` if a point that is open with a strength is
+/// not held by anything.
 pub fn rate_lcp(problem: &RateProblem, associated: bool) -> Option<RateLcp> {
     let points = || problem.points.iter().enumerate();
     let pairs = |(k, p): (usize, &ActivePoint)| -> Vec<(usize, usize)> {
@@ -107,7 +108,7 @@ pub fn rate_lcp(problem: &RateProblem, associated: bool) -> Option<RateLcp> {
         q += &onto * multipliers.column(n);
     }
     let largest = m.diagonal().amax();
-    // A diagonal entry that is rounding is no unit.
+    // // A diagonal entry within rounding of zero cannot be a unit.
     let common = if largest > 0.0 { largest } else { 1.0 };
     let scale = |d: f64| if d > SETTINGS.inequality() * largest { d.sqrt() } else { common.sqrt() };
     let unit: Vec<f64> = m.diagonal().iter().map(|d| scale(d.abs())).collect();
@@ -116,7 +117,7 @@ pub fn rate_lcp(problem: &RateProblem, associated: bool) -> Option<RateLcp> {
     Some(RateLcp { facets, unit, lcp: Lcp { matrix, constant }, free: Free { facets: opened, multipliers, rows } })
 }
 
-/// ġ of multipliers with a λ̇.
+/// Returns ġ of multipliers with a λ̇.
 pub fn gaps_of(problem: &RateProblem, lcp: &RateLcp, z: &[f64], factor: f64, associated: bool) -> Vec<[f64; 2]> {
     let mut gaps = vec![[0.0; 2]; problem.points.len()];
     let mut add = |at: (usize, usize), multiplier: f64| {
@@ -165,14 +166,14 @@ pub fn associated_modes(problem: &RateProblem, trials: &mut u64) -> Option<Vec<C
     Some(modes_of_solution(problem, &lcp, &z))
 }
 
-/// Modes of multipliers that solve the problem.
+/// Returns the modes of multipliers that solve the problem.
 pub fn modes_of_solution(problem: &RateProblem, lcp: &RateLcp, z: &[f64]) -> Vec<ContactMode> {
     let most = z.iter().copied().fold(1e-300, f64::max);
     let w = &lcp.lcp.matrix * DVector::from_column_slice(z);
     modes_of(problem, &lcp.facets, |i| z[i] > 1e-9 * most && z[i] > 1e-9 * w[i])
 }
 
-/// Modes from which facets (point, index) flow.
+/// Returns the modes in which the facets (point, index) flow.
 fn modes_of(problem: &RateProblem, facets: &[(usize, usize)], flows: impl Fn(usize) -> bool) -> Vec<ContactMode> {
     let open = |point: &ActivePoint| point.open.map_or(ContactMode::Stick, |f| ContactMode::Facet(f as u8));
     let mut modes: Vec<ContactMode> = problem.points.iter().map(open).collect();

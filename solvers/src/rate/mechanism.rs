@@ -6,14 +6,14 @@
 //! G q̇ = −Σ γ_i d_i over the facets without slack,   γ ≥ 0,   p·q̇ = 1
 //! ```
 //!
-//! is a rate of solution with forces that stand still (the flow of limit analysis at a given field: Livesley
-//! 1978, Int. J. Numer. Meth. Engng 12).
+//! is a solution rate with constant forces (the flow of limit analysis at a given field: Livesley 1978, Int. J. Numer.
+//! Meth. Engng 12).
 
 use crate::optimise::dense_simplex::{Dictionary, Equations};
 
-/// The program of the mechanisms over some motions: variables are the motions forwards, the same backwards, then the
-/// multipliers γ. `rows`: contact points with their normal and tangential rows of G over the motions; `flows`: contact
-/// points with a flow d each; `power`: p over the motions. `None` where the equations contradict each other.
+/// Creates the program of the mechanisms over some motions. Variables are the motions forwards, the motions backwards,
+/// then the multipliers γ. `rows`: contact points with their normal and tangential rows of G over the motions; `flows`:
+/// contact points with a flow d each; `power`: p over the motions. `None` if the equations contradict each other.
 pub fn mechanisms(rows: &[(usize, [Vec<f64>; 2])], flows: &[(usize, [f64; 2])], power: &[f64]) -> Option<Dictionary> {
     let equation = |motions: &[f64], flow: &dyn Fn(usize) -> f64| -> Vec<f64> {
         let backwards = motions.iter().map(|v| -v);

@@ -1,5 +1,5 @@
-//! One rate problem for both path solvers: the modes that contact points take next. The problem is data ([`problem`]);
-//! [`answer`] finds the rate that continues a path, or proves that none does.
+//! The rate problem of both path solvers: the modes that contact points take next. [`problem`] holds its data;
+//! [`answer`] finds the rate that continues a path, or proves that no rate does.
 
 pub(crate) mod admits;
 pub(crate) mod answer;

@@ -1,10 +1,9 @@
 //! The rate problem over the active set: the contact points that may change their mode.
 //!
-//! Everything else keeps its mode, so that forces and gaps of those points are linear: ṙ = S ġ + s λ̇. Each of
-//! them must find a mode of its law that its rate does not violate
-//! ([`active_point`](crate::contact::active_point)). For a given combination of modes that is a small linear system;
-//! where it is singular with one null vector, that vector is a mechanism.
-//! Sources: Klarbring (1990), Ing.-Arch. 60; Björkman (1992) on rate problems with friction.
+//! All other points keep their modes, so that forces and gaps of the active points are linear: ṙ = S ġ + s λ̇. Each of
+//! them must have a mode of its law that its rate does not violate ([`active_point`](crate::contact::active_point)). A
+//! given combination of modes is a small linear system; if it is singular with one null vector, that vector is a
+//! mechanism. Sources: Klarbring (1990), Ing.-Arch. 60; Björkman (1992) on rate problems with friction.
 
 use crate::contact::active_point::ActivePoint;
 use crate::contact::mode::ContactMode;
@@ -23,7 +22,7 @@ pub struct Rate {
 }
 
 impl Rate {
-    /// Whether gaps of another rate are the same within a share of its greatest.
+    /// Returns true if the gaps of another rate are the same within a tolerance relative to the greatest gap.
     pub fn is_same(&self, other: &Rate, tolerance: f64) -> bool {
         let size = other.gaps.iter().flatten().fold(1e-300, |a: f64, g| a.max(g.abs()));
         let mut both = self.gaps.iter().flatten().zip(other.gaps.iter().flatten());
@@ -47,19 +46,18 @@ pub struct RateProblem<'a> {
     /// Products of the motions (and factors) of the structure for unit gap rates and, last, for λ̇ = 1: the square of the
     /// length of a rate. If it is not known, gap rates measure a rate.
     pub metric: Option<DMatrix<f64>>,
-    /// Whether a support moves: then forces may stand still while λ goes on, and their rates are rounding of what
-    /// cancels.
+    /// True if a support moves: then forces may be constant while λ changes, and their rates are rounding errors.
     pub settles: bool,
 }
 
-/// The linear system of a combination of modes, solved.
+/// The solved linear system of a combination of modes.
 pub struct Attempt {
-    /// Multipliers, or gap rates of open points, mode after mode.
+    /// Multipliers, or gap rates of open points, in the order of the modes.
     unknowns: Vec<f64>,
     /// ġ.
     pub gaps: DVector<f64>,
     forces: DVector<f64>,
-    /// Whether it is a null vector.
+    /// True if it is a null vector.
     pub singular: bool,
 }
 
@@ -73,7 +71,7 @@ impl Attempt {
 type At = (usize, [f64; 2]);
 
 impl RateProblem<'_> {
-    /// Directions of ġ and functionals of ṙ of a combination of modes, in the points' own units.
+    /// Returns the directions of ġ and the functionals of ṙ of a combination of modes, in the units of the points.
     fn flows_and_rows(&self, modes: &[ContactMode]) -> (Vec<At>, Vec<At>) {
         let (mut flows, mut rows) = (Vec::new(), Vec::new());
         for (k, (point, mode)) in self.points.iter().zip(modes).enumerate() {
@@ -92,20 +90,20 @@ impl RateProblem<'_> {
         DMatrix::from_fn(flows.len(), flows.len(), |i, j| entry(&rows[i], &flows[j]))
     }
 
-    /// Flows of a combination of modes and its matrix.
+    /// Returns the flows of a combination of modes and its matrix.
     fn system(&self, modes: &[ContactMode]) -> (Vec<At>, DMatrix<f64>) {
         let (flows, rows) = self.flows_and_rows(modes);
         let matrix = self.matrix(&flows, &rows);
         (flows, matrix)
     }
 
-    /// AᵀSD over the flows and rows of a combination of modes, in the units of the points.
+    /// Returns AᵀSD over the flows and rows of a combination of modes, in the units of the points.
     pub(super) fn mode_matrix(&self, modes: &[ContactMode]) -> DMatrix<f64> {
         self.system(modes).1
     }
 
-    /// Solves for the unknowns of a combination of modes with λ̇ = `factor`; where the combination
-    /// is singular with one null vector, that vector.
+    /// Solves for the unknowns of a combination of modes with λ̇ = `factor`. If the system is singular with one null
+    /// vector, returns that vector.
     pub fn attempt(&self, modes: &[ContactMode], factor: f64) -> Option<Attempt> {
         let (flows, rows) = self.flows_and_rows(modes);
         let n = flows.len();
@@ -120,7 +118,7 @@ impl RateProblem<'_> {
             _ => return None,
         };
         let solved = if singular {
-            // The null vector: the last unknown, in the order of the pivots, is one.
+            // // The null vector: the last unknown in the order of the pivots is one.
             let last = u.view((0, n - 1), (n - 1, 1)) * -1.0;
             let mut null = u.view((0, 0), (n - 1, n - 1)).solve_upper_triangular(&last)?.resize_vertically(n, 1.0);
             lu.q().inv_permute_rows(&mut null);
@@ -134,7 +132,7 @@ impl RateProblem<'_> {
         self.completed(&flows, solved.as_slice(), factor, singular)
     }
 
-    /// Gaps, forces and unknowns of an attempt from the scaled unknowns.
+    /// Returns gaps, forces and unknowns from the scaled unknowns.
     fn completed(&self, flows: &[At], scaled: &[f64], factor: f64, singular: bool) -> Option<Attempt> {
         let mut gaps = DVector::zeros(2 * self.points.len());
         for ((k, f), c) in flows.iter().zip(scaled) {
@@ -146,11 +144,11 @@ impl RateProblem<'_> {
         Some(Attempt { unknowns, gaps, forces, singular })
     }
 
-    /// The violations of an attempt: how far, at which point, and the mode that mends it.
+    /// Returns the violations of an attempt: size, point, and the mode that repairs it.
     pub fn violations(&self, modes: &[ContactMode], attempt: &Attempt, sign: f64) -> Vec<(f64, usize, ContactMode)> {
         let gap_size = attempt.gaps.amax().max(1e-300);
         let force_size = attempt.forces.amax().max(if attempt.singular {
-            // A mechanism moves without forces: their size is that of what stiffness could do.
+            // // A mechanism has no forces: their scale is the gap size times the stiffness.
             gap_size * self.points.iter().map(|p| p.stiffness).fold(0.0, f64::max)
         } else {
             let share = if self.settles { SETTINGS.cancelled } else { 1e-4 };
@@ -173,20 +171,20 @@ impl RateProblem<'_> {
         out
     }
 
-    /// The rate of an attempt in the sense `sign`.
+    /// Returns the rate of an attempt in the sense `sign`.
     pub fn rate(&self, modes: &[ContactMode], attempt: &Attempt, sign: f64, factor: f64) -> Rate {
         let gaps = attempt.gaps_of_points().into_iter().map(|gap| gap.map(|g| g * sign));
         Rate { factor, modes: modes.to_vec(), gaps: gaps.collect() }
     }
 
-    /// Work of the load on a motion without forces, by virtual work with the forces that a growing
-    /// load causes at points that do not move (exact where all else sticks or flows associated). At
-    /// a constant load a path goes on in the sense in which the load does work, not back.
+    /// Returns the work of the load on a motion without forces. Virtual work with the forces that a growing load causes
+    /// at held points gives it exactly if all other points stick or have associated flow. At a constant load a path
+    /// continues in the sense in which the load does work.
     pub fn power(&self, gaps: &[[f64; 2]]) -> f64 {
         -gaps.iter().flatten().zip(&self.load_rate).map(|(gap, force)| gap * force).sum::<f64>()
     }
 
-    /// Whether a rate is one along which a path goes on: λ grows, or the load does work.
+    /// Returns true if a path can continue with a rate: λ grows, or the load does work.
     pub fn leads_on(&self, rate: &Rate) -> bool {
         rate.factor > 0.0 || (rate.factor == 0.0 && self.power(&rate.gaps) > self.least_power(rate))
     }
@@ -196,20 +194,21 @@ impl RateProblem<'_> {
         rate.factor == 0.0 && self.power(&rate.gaps) < -self.least_power(rate)
     }
 
-    /// Work of the load on a rate up to which it is rounding. If the load causes no force at the points, its rates are
-    /// rounding too.
+    /// Returns the work of the load on a rate up to which it is rounding. If the load causes no force at the points,
+    /// the force rates are rounding too.
     fn least_power(&self, rate: &Rate) -> f64 {
         let size = rate.gaps.iter().flatten().fold(0.0, |a: f64, gap| a.max(gap.abs()));
         SETTINGS.inequality() * size * self.load_rate.amax().max(self.load_force)
     }
 
-    /// The rate of some modes with λ̇ = `factor`, where it fits them.
+    /// Returns the rate of some modes with λ̇ = `factor` if it satisfies them.
     pub fn exactly(&self, modes: Vec<ContactMode>, factor: f64) -> Option<Rate> {
         let attempt = self.attempt(&modes, 1.0).filter(|attempt| !attempt.singular)?;
         self.violations(&modes, &attempt, factor).is_empty().then(|| self.rate(&modes, &attempt, factor, factor))
     }
 
-    /// The motion at constant load that some modes allow. The load does work on it or, if they allow none of this kind, resists it.
+    /// Returns the motion at constant load that some modes allow. The load does work on it; if no such motion exists,
+    /// the load resists it.
     pub fn at_constant_load(&self, modes: &[ContactMode]) -> Option<Rate> {
         let attempt = self.attempt(modes, 1.0).filter(|attempt| attempt.singular)?;
         let fitting = [1.0, -1.0].into_iter().filter(|sign| self.violations(modes, &attempt, *sign).is_empty());
@@ -218,19 +217,19 @@ impl RateProblem<'_> {
         rates.iter().find(drives).or_else(|| rates.iter().find(|rate| self.load_resists(rate))).cloned()
     }
 
-    /// Whether flow is associated.
+    /// Returns true if flow is associated.
     pub fn is_associated(&self) -> bool {
         self.points.iter().flat_map(|p| p.facets).all(|f| f.flow == f.normal)
     }
 
-    /// A motion without forces in which every point keeps its mode, close to a given one.
+    /// Returns a motion without forces in which every point keeps its mode, close to a given one.
     pub fn mechanism_near(&self, modes: &[ContactMode], gaps: &[[f64; 2]]) -> Option<Rate> {
         let (flows, matrix) = self.system(modes);
         let n = flows.len();
         if n == 0 {
             return None;
         }
-        // Inverse iteration: what the matrix makes nothing of the given motion.
+        // // Inverse iteration from the given motion finds the null vector.
         let shifted = &matrix + DMatrix::identity(n, n) * (1e-12 * matrix.amax().max(1e-300));
         let lu = shifted.lu();
         let points = self.points.iter().zip(modes).zip(gaps);

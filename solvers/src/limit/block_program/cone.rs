@@ -1,42 +1,42 @@
-//! The rows that bound the forces of one joint, and the inverse root of their weighted normal matrix.
+//! The rows that bound the forces of one joint, and the inverse square root of their weighted normal matrix.
 
 use crate::limit::settings::SETTINGS;
 
-/// Rows of a joint at the most.
+/// Greatest number of rows of a joint.
 pub const ROWS: usize = 4;
 
-/// Rows with all but one of them as a basis.
+/// The rows split into a basis and at most one other row.
 #[derive(Debug, Clone, PartialEq)]
 struct Split {
-    /// The row that is left over, if any.
+    /// The row outside the basis, if any.
     over: Option<usize>,
     /// Rows of the basis.
     basis: [usize; 3],
     /// Inverse of the matrix of the basis, by rows.
     inverse: [[f64; 3]; 3],
-    /// The row left over as a combination of the basis.
+    /// The other row as a combination of the basis.
     shares: [f64; 3],
 }
 
-/// The normals of the rows of a joint, of greatest entry 1.
+/// The normals of the rows of a joint, scaled to greatest entry 1.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cone {
     /// Number of forces.
     pub forces: usize,
-    /// Normals; of forces that the joint does not have the entries are zero.
+    /// Normals; entries are zero for forces that the joint does not have.
     pub normals: Vec<[f64; 3]>,
-    /// The same by forces; of rows that the joint does not have the entries are zero.
+    /// The normals by forces; entries are zero for rows that the joint does not have.
     columns: [[f64; ROWS]; 3],
     splits: Vec<Split>,
 }
 
 impl Cone {
-    /// Of normals. `None` where there are more than one beyond a basis.
+    /// Creates the cone of normals. `None` if more than one row is outside a basis.
     pub fn new(forces: usize, normals: Vec<[f64; 3]>) -> Option<Self> {
         if normals.len() > ROWS || forces > 3 {
             return None;
         }
-        // Forces that a joint does not have, and those that no row bounds, get rows of their own at the end.
+        // // Forces that a joint does not have, and unbounded forces, get extra rows at the end.
         let mut all = normals.clone();
         let independent = |rows: &[[f64; 3]], row: &[f64; 3]| orthonormal(rows, Some(row)).1;
         for k in 0..3 {
@@ -56,20 +56,20 @@ impl Cone {
         (!splits.is_empty()).then_some(Cone { forces, normals, columns, splits })
     }
 
-    /// A x.
+    /// Returns A x.
     #[inline(always)]
     pub fn values(&self, x: &[f64; 3]) -> [f64; ROWS] {
         combination(&self.columns, x)
     }
 
-    /// Aᵀ z.
+    /// Returns Aᵀ z.
     #[inline(always)]
     pub fn weighted(&self, z: &[f64; ROWS]) -> [f64; 3] {
         self.columns.map(|column| (column[0] * z[0] + column[1] * z[1]) + (column[2] * z[2] + column[3] * z[3]))
     }
 
-    /// R of (Aᵀ W A)⁻¹ = R Rᵀ by rows, and A R by columns. Weights may differ by any power of ten: the row that weighs least is left
-    /// over from a basis, so that no difference is taken of great numbers, in A R neither.
+    /// Returns R of (Aᵀ W A)⁻¹ = R Rᵀ by rows, and A R by columns. Weights may differ by any power of ten: the row of
+    /// least weight is outside the basis, so that no large numbers are subtracted, also in A R.
     pub fn root(&self, weights: &[f64; ROWS]) -> ([[f64; 3]; 3], [[f64; ROWS]; 3]) {
         let weight = |row: usize| if row < self.normals.len() { weights[row] } else { SETTINGS.unbounded };
         let least = |split: &Split| split.over.map_or(0.0, weight);
@@ -103,14 +103,14 @@ impl Cone {
             if let Some(over) = split.over {
                 column[over] = split.shares[k] * inverse[k] * (1.0 - beta * squared);
             }
-            // Rows of forces without bounds are none of the joint's.
+            // // Extra rows of unbounded forces do not belong to the joint.
             column[self.normals.len()..].fill(0.0);
         }
         (root, columns)
     }
 }
 
-/// Orthonormal vectors that span rows, and whether `other` is not in their span.
+/// Returns orthonormal vectors that span rows, and true if `other` is not in their span.
 fn orthonormal(rows: &[[f64; 3]], other: Option<&[f64; 3]>) -> (Vec<[f64; 3]>, bool) {
     let mut basis: Vec<[f64; 3]> = Vec::new();
     let mut added = false;
@@ -136,18 +136,18 @@ fn basis_size(rows: &[[f64; 3]]) -> usize {
     orthonormal(rows, None).0.len()
 }
 
-/// Orthonormal vectors that span rows.
+/// Returns orthonormal vectors that span rows.
 pub fn span(rows: &[[f64; 3]]) -> Vec<[f64; 3]> {
     orthonormal(rows, None).0
 }
 
-/// Σ of three columns times numbers.
+/// Returns the sum of three columns times numbers.
 #[inline(always)]
 pub fn combination(columns: &[[f64; ROWS]; 3], x: &[f64; 3]) -> [f64; ROWS] {
     std::array::from_fn(|row| columns[0][row] * x[0] + columns[1][row] * x[1] + columns[2][row] * x[2])
 }
 
-/// a · b.
+/// Returns a · b.
 #[inline(always)]
 pub fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
@@ -178,7 +178,7 @@ mod tests {
         vec![[-1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [-mu, -mu, 1.0], [-mu, -mu, -1.0]]
     }
 
-    /// Whatever the weights, R Rᵀ times the normal matrix is the identity, to the rounding of that product.
+    /// For all weights, R Rᵀ times the normal matrix is the identity within the rounding of the product.
     #[test]
     fn the_root_inverts_the_normal_matrix() {
         let cases = [
@@ -207,7 +207,7 @@ mod tests {
                 normal += row * row.transpose() * weight;
             }
             let product = root.transpose() * normal * root;
-            // In directions that no row bounds it is zero.
+            // // In unbounded directions the product is zero.
             for i in 0..3 {
                 let own = product.row(i).iter().fold(0.0f64, |m, v| m.max(v.abs()));
                 assert!(i >= forces || (product[(i, i)] - 1.0).abs() < 1e-10, "{forces} {weights:?} {product}");
@@ -216,7 +216,7 @@ mod tests {
         }
     }
 
-    /// Shear that cannot slide is held by a spring of almost no weight.
+    /// A soft spring holds shear that cannot slide.
     #[test]
     fn forces_without_rows_have_soft_springs() {
         let cone = Cone::new(3, friction(0.65)[..2].to_vec()).unwrap();
@@ -228,7 +228,7 @@ mod tests {
         );
     }
 
-    /// A span has as many orthonormal vectors as its rows are independent, and holds each of them.
+    /// A span has as many orthonormal vectors as independent rows, and contains each row.
     #[test]
     fn a_span_holds_its_rows() {
         for (mu, size) in [(0.5, 3), (0.0, 3)] {

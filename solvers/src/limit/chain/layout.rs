@@ -1,7 +1,7 @@
-//! Bodies as trees rooted at supports, closed by a few joints, and the joint forces as affine forms of their redundants.
+//! Bodies as trees rooted at supports, closed by a few joints, and the joint forces as affine forms of the redundants.
 //!
-//! Each joint of the trees transmits what the loads behind it and the redundants of the closing joints make of it
-//! (force method; Livesley 1978). An arch is a tree of two branches that one joint closes: three redundants.
+//! Each joint of the trees transmits a force that depends on the loads beyond it and on the redundants of the closing
+//! joints (force method; Livesley 1978). An arch is a tree of two branches that one joint closes: three redundants.
 
 use crate::limit::settings::SETTINGS;
 use nalgebra::Vector3;
@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 use voussoir_core::limit::{LimitJoint, LimitProblem};
 use voussoir_core::model::Wrenches;
 
-/// With more closing joints sparse programs are faster.
+/// Greatest number of closing joints: with more, sparse programs are faster.
 const MOST_CUTS: usize = 8;
 
 /// A joint of a tree.
@@ -19,21 +19,21 @@ pub struct Link {
     pub joint: usize,
     /// Group towards the root, `None` for the ground.
     pub behind: Option<usize>,
-    /// Group away from it.
+    /// Group away from the root.
     pub ahead: usize,
 }
 
-/// Trees that reach every group, breadth first from the supports, so that closing joints lie midway between them and
-/// no branch collects all the rounding.
+/// Trees that reach every group, breadth first from the supports. Closing joints then lie midway between supports, and
+/// rounding errors do not accumulate in one branch.
 #[derive(Debug, Clone)]
 pub struct Trees {
-    /// Each after the one behind it.
+    /// Links, each after the one behind it.
     pub links: Vec<Link>,
     /// Joints that close the trees.
     pub cuts: Vec<usize>,
 }
 
-/// The problem's bodies as trees, if few joints close them.
+/// Returns the problem's bodies as trees, if few joints close them.
 pub fn trees(problem: &LimitProblem) -> Option<Trees> {
     if problem.joints.len() > problem.groups + MOST_CUTS || problem.joints.iter().any(|joint| joint.fill.is_some()) {
         return None;
@@ -66,11 +66,11 @@ pub fn trees(problem: &LimitProblem) -> Option<Trees> {
             None => trees.cuts.push(joint),
         }
     }
-    // Groups never reached touch no support.
+    // // Groups that are not reached have no support.
     (reached.iter().all(|&r| r) && trees.cuts.len() <= MOST_CUTS).then_some(trees)
 }
 
-/// The joints of every group, one group after the other.
+/// The joints of every group, group by group.
 struct Touching {
     joints: Vec<usize>,
     ends: Vec<usize>,
@@ -89,7 +89,7 @@ impl Touching {
                 places[group] += 1;
             }
         }
-        // Each place has come to the end of its group.
+        // // Each place is now at the end of its group.
         Touching { joints, ends: places }
     }
 
@@ -99,17 +99,18 @@ impl Touching {
     }
 }
 
-/// (N_0, N_1, T) of every joint by the redundants, three a closing joint: the same whatever the loads are.
+/// (N_0, N_1, T) of every joint as functions of the redundants, three for each closing joint. They do not depend on the
+/// loads.
 #[derive(Debug, Clone)]
 pub struct Redundants {
-    /// Their number.
+    /// Number of redundants.
     count: usize,
-    /// For each joint three rows of so many numbers.
+    /// For each joint three rows of `count` numbers.
     values: Vec<f64>,
 }
 
 impl Redundants {
-    /// Of a problem whose bodies are trees.
+    /// Computes the forms of a problem whose bodies are trees.
     pub fn new(problem: &LimitProblem, trees: &Trees) -> Self {
         let count = 3 * trees.cuts.len();
         let mut values = vec![0.0; 3 * count * problem.joints.len()];
@@ -128,7 +129,7 @@ impl Redundants {
                 }
                 set(cut, 3 * number + k, resolved(problem, cut, joint.plus, wrench));
                 transmit(trees, &mut loads, |link, wrench| {
-                    // Branches that the cut does not close stay without forces.
+                    // // Branches that the cut does not close have no forces.
                     if wrench != Vector3::zeros() {
                         set(link.joint, 3 * number + k, resolved(problem, link.joint, Some(link.ahead), wrench));
                     }
@@ -145,7 +146,7 @@ pub enum Aim {
     Last,
     /// The loads alone determine the joint's normal forces.
     Determined([f64; 3]),
-    /// The form has the same value in all fields, other forms of the joint have not.
+    /// The form has the same value in all fields, but other forms of the joint vary.
     Constant,
 }
 
@@ -159,8 +160,8 @@ pub struct Forms {
 }
 
 impl Forms {
-    /// Variables: the redundants, then one factor per entry of `columns` (loads with the factor that one unit of the
-    /// variable stands for).
+    /// Creates the forms. Variables are the redundants, then one factor per entry of `columns`: a load, and the load
+    /// factor for a unit of the variable.
     pub fn new(
         problem: &LimitProblem,
         trees: &Trees,
@@ -210,20 +211,20 @@ impl Forms {
         Aim::Last
     }
 
-    /// The form of N_0, N_1 or T of a joint, the constant last.
+    /// Returns the form of N_0, N_1 or T of a joint; its constant is last.
     pub fn form(&self, joint: usize, i: usize) -> &[f64] {
         let length = self.variables + 1;
         &self.values[(3 * joint + i) * length..][..length]
     }
 
-    /// The forms of N_0, N_1 and T of a joint.
+    /// Returns the forms of N_0, N_1 and T of a joint.
     pub fn of_joint(&self, joint: usize) -> &[f64] {
         let length = 3 * (self.variables + 1);
         &self.values[joint * length..][..length]
     }
 }
 
-/// Adds the weighted coefficients of a joint's forms of so many variables to `a`; what is left of a bound when their constants are taken off.
+/// Adds the weighted coefficients of the forms of a joint to `a`. Returns the bound minus the weighted constants.
 #[inline(always)]
 pub fn add_weighted(variables: usize, forms: &[f64], weights: &[f64; 3], mut bound: f64, a: &mut [f64]) -> f64 {
     let a = &mut a[..variables];
@@ -234,8 +235,8 @@ pub fn add_weighted(variables: usize, forms: &[f64], weights: &[f64; 3], mut bou
     bound
 }
 
-/// Calls with every link, those away from the roots first, and the wrench that it transmits onto what lies ahead: it
-/// balances all loads there, which add up towards the roots.
+/// Calls `each` with every link, starting at the links farthest from the roots, and the wrench that it transmits to the
+/// groups ahead. The wrench balances all loads there; loads are summed towards the roots.
 fn transmit(trees: &Trees, loads: &mut [Vector3<f64>], mut each: impl FnMut(&Link, Vector3<f64>)) {
     for link in trees.links.iter().rev() {
         let sum = loads[link.ahead];
@@ -244,7 +245,7 @@ fn transmit(trees: &Trees, loads: &mut [Vector3<f64>], mut each: impl FnMut(&Lin
     }
 }
 
-/// (N_0, N_1, T) of a joint that transmits `wrench` (about the pole) onto what lies ahead.
+/// Returns (N_0, N_1, T) of a joint that transmits `wrench` (about the pole) to the groups ahead.
 fn resolved(problem: &LimitProblem, index: usize, ahead: Option<usize>, wrench: Vector3<f64>) -> [f64; 3] {
     let joint = &problem.joints[index];
     let sign = if joint.plus == ahead { 1.0 } else { -1.0 };
@@ -262,7 +263,7 @@ mod tests {
     use super::*;
     use crate::limit::scenes::{STUCK, block, lintel};
 
-    /// A block on the ground is one link. Two half lintels between supports are a link each, closed by a joint.
+    /// A block on the ground is one link. Two half lintels between supports are one link each, closed by a joint.
     #[test]
     fn trees_reach_every_group() {
         let alone = trees(&block(1.0, 2.0, STUCK)).expect("a tree");
@@ -273,7 +274,7 @@ mod tests {
         assert_eq!((ahead, between.cuts.len()), (vec![0, 1], 1));
     }
 
-    /// A group that no joint holds is in no tree.
+    /// A group without a joint is in no tree.
     #[test]
     fn a_floating_group_has_no_tree() {
         let mut problem = lintel(4.0, 1.0, 10.0);
@@ -281,7 +282,7 @@ mod tests {
         assert!(trees(&problem).is_none());
     }
 
-    /// The joints of a group are those that name it, in their order.
+    /// The joints of a group are the joints that name it, in their order.
     #[test]
     fn groups_know_their_joints() {
         let problem = lintel(4.0, 1.0, 10.0);

@@ -1,12 +1,12 @@
-//! Mechanisms in the relative interior of the optimal ones, where the optimum is degenerate.
+//! Mechanisms in the relative interior of all optimal mechanisms, for degenerate optima.
 
 use super::simplex::{Column, Program};
 use crate::limit::settings::SETTINGS;
 use nalgebra::{DMatrix, DVector};
 
-/// The analytic centre of all optimal multipliers {y ≥ 0 : Σ y_i a_i = c} over the rows active at
-/// `point`, and whether there is only one. `found` is one of them. The centre does not depend on
-/// the scale of rows and is symmetric where the scene is.
+/// Returns the analytic centre of all optimal multipliers {y ≥ 0 : Σ y_i a_i = c} over the rows active at `point`, and
+/// true if there is only one. `found` is one of them. The centre does not depend on the scale of rows and is symmetric
+/// if the scene is.
 pub fn centre(program: &Program, point: &[f64], found: Vec<(Column, f64)>) -> (Vec<(Column, f64)>, bool) {
     let mut columns: Vec<Column> = found.iter().map(|(column, _)| *column).collect();
     for column in program.active(point) {
@@ -55,8 +55,8 @@ fn rank(matrix: &DMatrix<f64>) -> usize {
     if clearly_independent(&scaled) { matrix.ncols() } else { scaled.svd(false, false).rank(SETTINGS.active) }
 }
 
-/// Returns true if columns of length one have no singular value below a thousand times `active`, by their volume: the product of k singular
-/// values, each at most √k. False does not say that they have.
+/// Returns true if columns of length one have no singular value below a thousand times `active`, by their volume: the
+/// product of k singular values, each at most √k. If it returns false, nothing is known.
 fn clearly_independent(columns: &DMatrix<f64>) -> bool {
     let k = columns.ncols();
     let mut rest = columns.clone();
@@ -77,8 +77,8 @@ fn clearly_independent(columns: &DMatrix<f64>) -> bool {
     true
 }
 
-/// A point of {y ≥ 0 : A y = A start} with as many positive entries as any: the mean of points that
-/// each carry one entry as far as it goes.
+/// Returns a point of {y ≥ 0 : A y = A start} with the greatest number of positive entries: the mean of points that
+/// each increase one entry as far as possible.
 fn interior_point(matrix: &DMatrix<f64>, start: &DVector<f64>) -> Option<DVector<f64>> {
     let k = matrix.ncols();
     let mut sum = start.clone();
@@ -163,7 +163,7 @@ fn analytic_centre(matrix: &DMatrix<f64>, start: DVector<f64>) -> DVector<f64> {
 mod tests {
     use super::*;
 
-    /// The bound by the volume says of no columns that they are independent of which singular values say otherwise.
+    /// Columns that the volume bound calls independent have full rank by their singular values.
     #[test]
     fn clearly_independent_columns_have_full_rank() {
         let column =
@@ -182,7 +182,7 @@ mod tests {
         assert!(!clearly_independent(&DMatrix::from_element(3, 4, 0.5)));
     }
 
-    /// The rank counts independent directions, whatever the sizes of columns are.
+    /// The rank is the number of independent directions for all sizes of columns.
     #[test]
     fn the_rank_does_not_depend_on_sizes() {
         let (a, b) = (DVector::from_vec(vec![1.0, 2.0, 0.5]), DVector::from_vec(vec![-1.0, 0.3, 4.0]));
@@ -193,7 +193,8 @@ mod tests {
         assert_eq!(rank(&DMatrix::zeros(0, 0)), 0);
     }
 
-    /// On y_1 + … + y_n = 1 an entry goes up to 1, the interior has all entries, and its analytic centre is 1/n.
+    /// On y_1 + … + y_n = 1 an entry increases up to 1, an interior point has only positive entries, and the analytic
+    /// centre is 1/n.
     #[test]
     fn the_centre_of_a_simplex_is_its_middle() {
         let matrix = DMatrix::from_element(1, 4, 1.0);

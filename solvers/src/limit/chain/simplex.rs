@@ -1,5 +1,5 @@
-//! The simplex method on elementary mechanisms: min β·y with Σ y_i a_i = c, y ≥ 0, columns priced
-//! joint by joint, stress blocks by their tangents.
+//! The simplex method on elementary mechanisms: min β·y with Σ y_i a_i = c, y ≥ 0. Columns are priced joint by joint;
+//! stress blocks are represented by tangents.
 
 use super::layout::{Forms, Trees, add_weighted};
 use super::small_lu::SmallLu;
@@ -10,21 +10,21 @@ use std::cmp::Ordering;
 use voussoir_core::law::{ForceRow, StressBlock};
 use voussoir_core::limit::{JointForce, LimitProblem, Velocity};
 
-/// Violations of stress blocks at which Newton's method is tried, in turn; after the last one the
-/// tangents themselves are the answer.
+/// Violations of stress blocks below which Newton's method is tried, in order; after the last one the tangents
+/// themselves give the answer.
 const BLOCK_TOLERANCES: [f64; 4] = [SETTINGS.shift, SETTINGS.negligible, SETTINGS.balanced, SETTINGS.rounding];
 const MAX_PIVOTS: u64 = 5000;
 
-/// Which elementary mechanism a column is.
+/// The elementary mechanism of a column.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Column {
     /// A linear row of a joint's strength.
     Row { joint: usize, row: usize },
-    /// The tangent at `u` of a joint's stress block, bounding the force at one end.
+    /// The tangent at `u` of a joint's stress block, which bounds the force at one end.
     Tangent { joint: usize, end: usize, u: f64 },
     /// The upper bound of the objective.
     Cap,
-    /// No mechanism: ± a unit vector, for the start.
+    /// Not a mechanism: ± a unit vector, for the start.
     Artificial { variable: usize },
 }
 
@@ -33,17 +33,18 @@ pub struct Program<'a> {
     problem: &'a LimitProblem,
     forms: &'a Forms,
     force: f64,
-    /// What every pivot reads of a row of a joint's strength, a row after the other: its coefficients over the variables of `forms`, 1 or 0 where
-    /// it can have no slack, and its bound in units of the force scale, less what the constants of the forms take of it.
+    /// The rows of the joints' strengths in the form that pivots use, row after row: the coefficients over the
+    /// variables of `forms`; 1, or 0 if the row can have no slack; and the bound in units of the force scale, minus the
+    /// constants of the forms.
     rows: Vec<f64>,
-    /// For each joint where its rows end, in rows.
+    /// End of the rows of each joint, counted in rows.
     ends: Vec<usize>,
-    /// Whether every row can have slack.
+    /// True if every row can have slack.
     slack: bool,
-    /// Whether any joint crushes.
+    /// True if any joint crushes.
     crushes: bool,
     margin: bool,
-    /// Whether any point with a margin will do.
+    /// True if any point with a margin is sufficient.
     any_field: bool,
     cap: f64,
     /// Number of variables.
@@ -78,9 +79,9 @@ pub struct Work {
 
 struct Basis {
     columns: Vec<Column>,
-    /// Their gradients, one after the other.
+    /// Gradients of the columns, one after the other.
     matrix: Vec<f64>,
-    /// Where the lexicographic rule starts from.
+    /// Origin of the lexicographic rule.
     origin: Vec<f64>,
     lu: SmallLu,
 }
@@ -90,15 +91,15 @@ enum Ending {
         point: Vec<f64>,
         weights: Vec<f64>,
     },
-    /// Any point would do, and this one keeps all rows.
+    /// A point that satisfies all rows, if any point is sufficient.
     Enough(Vec<f64>),
-    /// A column that enters for ever, with its weight and those of the basis that go with it.
+    /// A column that can enter without limit, with its weight and the weights of the basis columns that change with it.
     NoLeaving(Vec<(Column, f64)>),
     Stuck(String),
 }
 
 impl<'a> Program<'a> {
-    /// Maximises the last factor of `forms`.
+    /// Creates a program that maximises the last factor of `forms`.
     pub fn new(problem: &'a LimitProblem, forms: &'a Forms, force: f64) -> Self {
         let count: usize = problem.joints.iter().map(|joint| joint.strength.rows.len()).sum();
         let mut rows = vec![0.0; count * (forms.variables + 2)];
@@ -126,14 +127,14 @@ impl<'a> Program<'a> {
         self
     }
 
-    /// With a margin, ended at the first point that keeps all rows without it: what it takes from each is then more than what the
-    /// worst of them lacks. Not where some row can have no slack, nor where tangents stand for stress blocks within a tolerance.
+    /// Maximises the margin, but ends at the first point that satisfies all rows without it: its margin is then greater
+    /// than the worst violation. This is not used if a row can have no slack or if a joint crushes.
     pub fn with_any_margin(mut self) -> Self {
         self.any_field = !self.crushes && self.slack;
         self.with_margin()
     }
 
-    /// With an upper bound of the objective.
+    /// Adds an upper bound of the objective.
     pub fn with_cap(mut self, cap: f64) -> Self {
         self.cap = cap;
         self
@@ -143,7 +144,7 @@ impl<'a> Program<'a> {
         self.forms.form(joint, i)
     }
 
-    /// A row of a joint as every pivot reads it.
+    /// Returns a row of a joint in the form that pivots use.
     fn row(&self, joint: usize, row: usize) -> (&[f64], f64, f64) {
         let first = joint.checked_sub(1).map_or(0, |before| self.ends[before]);
         let stride = self.forms.variables + 2;
@@ -151,7 +152,7 @@ impl<'a> Program<'a> {
         (a, rest[0], rest[1])
     }
 
-    /// (N_0, N_1, T) at a point, in units of the force scale; `constant` 0 drops the fixed loads.
+    /// Returns (N_0, N_1, T) at a point, in units of the force scale; with `constant` 0 without the fixed loads.
     fn evaluate(&self, joint: usize, point: &[f64], constant: f64) -> [f64; 3] {
         std::array::from_fn(|i| {
             let form = self.form(joint, i);
@@ -171,7 +172,7 @@ impl<'a> Program<'a> {
             .map(|b| StressBlock { tension: b.tension / self.force, total: b.total / self.force })
     }
 
-    /// Coefficients of a column over (N_0, N_1, T); none for cap and artificials.
+    /// Returns the coefficients of a column over (N_0, N_1, T); `None` for cap and artificials.
     fn weights(&self, column: Column) -> Option<(usize, [f64; 3])> {
         match column {
             Column::Row { joint, row } => Some((joint, self.problem.joints[joint].strength.rows[row].normal)),
@@ -185,7 +186,7 @@ impl<'a> Program<'a> {
         }
     }
 
-    /// Writes a of a column; its β.
+    /// Writes the vector a of a column and returns its β.
     fn write(&self, column: Column, a: &mut [f64]) -> f64 {
         a.fill(0.0);
         let known = self.forms.variables;
@@ -219,9 +220,9 @@ impl<'a> Program<'a> {
         }
     }
 
-    /// Calls `visit` with every column whose violation at `point`, as `measure` reads it, is above `least`, and goes on with
-    /// what it returns; in the recession cone where `constant` is 0. Of an arch, whose variables are three redundants and a factor
-    /// at the most, without loops over them.
+    /// Calls `visit` with every column whose violation at `point`, evaluated by `measure`, is above `least`; `visit`
+    /// returns the new `least`. With `constant` 0 it scans the recession cone. For arches, with at most three
+    /// redundants and a factor, the number of variables is a constant, so that the compiler unrolls the loops.
     fn scan(
         &self,
         (point, constant): (&[f64], f64),
@@ -237,7 +238,7 @@ impl<'a> Program<'a> {
         }
     }
 
-    /// The same of so many variables.
+    /// Scans with this number of variables.
     #[inline(always)]
     fn scan_by(
         &self,
@@ -277,7 +278,7 @@ impl<'a> Program<'a> {
         }
     }
 
-    /// The column violated most, and by how much.
+    /// Returns the most violated column and its violation.
     fn entering(&self, point: &[f64], constant: f64, block_tolerance: f64, basis: &[Column]) -> Option<(Column, f64)> {
         let mut worst: Option<(Column, f64)> = None;
         let size = point.iter().fold(1.0f64, |m, x| m.max(x.abs()));
@@ -292,7 +293,7 @@ impl<'a> Program<'a> {
         worst
     }
 
-    /// Rows active at a point.
+    /// Returns the rows active at a point.
     pub fn active(&self, point: &[f64]) -> Vec<Column> {
         let size = point.iter().fold(1.0f64, |m, x| m.max(x.abs()));
         let mut active = Vec::new();
@@ -304,7 +305,7 @@ impl<'a> Program<'a> {
         active
     }
 
-    /// The vector a of a column.
+    /// Returns the vector a of a column.
     pub fn gradient(&self, column: Column) -> DVector<f64> {
         let mut a = DVector::zeros(self.variables);
         self.write(column, a.as_mut_slice());
@@ -358,7 +359,7 @@ impl<'a> Program<'a> {
         (outcome, work)
     }
 
-    /// Cost of a column: in phase one 1 for artificials of the objective, else β.
+    /// Returns the cost of a column: in phase one 1 for artificials of the objective, otherwise β.
     fn cost(&self, column: Column, beta: f64, phase_one: bool) -> f64 {
         match (phase_one, column) {
             (true, Column::Artificial { .. }) => 1.0,
@@ -383,7 +384,7 @@ impl<'a> Program<'a> {
             basis.lu.solve(&mut weights);
             point.copy_from_slice(&costs);
             basis.lu.solve_transposed(&mut point);
-            // One step of refinement: λ is read off this point.
+            // // One step of refinement, because λ is read from this point.
             for ((step, cost), column) in step.iter_mut().zip(&costs).zip(basis.matrix.chunks_exact(m)) {
                 *step = cost - inner(column, &point);
             }
@@ -395,7 +396,7 @@ impl<'a> Program<'a> {
             if self.any_field && violation <= self.slack_variable(&point) {
                 return Ending::Enough(point);
             }
-            // The entering column, which the step no longer needs.
+            // // The buffer of the step, which is not needed any more, holds the entering column.
             let entering = &mut step;
             let beta = self.write(column, entering);
             change.copy_from_slice(entering);
@@ -414,7 +415,7 @@ impl<'a> Program<'a> {
         Ending::Stuck(format!("no optimum after {MAX_PIVOTS} pivots"))
     }
 
-    /// Replaces artificials, which stand at zero, by real columns wherever some column can.
+    /// Replaces artificials, which are zero, by real columns if possible.
     fn drive_out(&self, basis: &mut Basis) {
         let m = self.variables;
         let mut row = vec![0.0; m];
@@ -426,7 +427,7 @@ impl<'a> Program<'a> {
             row[place] = 1.0;
             basis.lu.solve_transposed(&mut row);
             let mut best: (f64, Option<Column>) = (SETTINGS.active, None);
-            // In the recession cone the violation at a point is its product with the column.
+            // // In the recession cone the violation at a point is its product with the column.
             self.scan((&row, 0.0), f64::abs, best.0, &mut |column, product| {
                 if !basis.columns.contains(&column) {
                     best = (product, Some(column));
@@ -440,8 +441,8 @@ impl<'a> Program<'a> {
         }
     }
 
-    /// Turns the last basis into an answer; where stress blocks are active, Newton's method on them.
-    /// `last`: the tangents are near enough to stand for their blocks where Newton's method fails.
+    /// Returns the answer of the last basis; Newton's method improves it if stress blocks are active. `last`: the
+    /// tangents are close enough to replace their blocks if Newton's method fails.
     fn finish(&self, basis: &Basis, mut point: Vec<f64>, weights: Vec<f64>, last: bool, work: &mut Work) -> Outcome {
         let mut merged: Vec<(Column, f64)> = Vec::new();
         for (&column, &weight) in basis.columns.iter().zip(weights.iter()) {
@@ -458,7 +459,7 @@ impl<'a> Program<'a> {
         }
         merged.retain(|(column, _)| !matches!(column, Column::Artificial { .. }));
         if merged.iter().any(|(column, _)| matches!(column, Column::Tangent { .. })) {
-            // Rows that stand at zero may be active by chance; with too few the system is singular.
+            // // Rows with zero multipliers may be active by chance; with too few rows the system is singular.
             let mut failed = String::new();
             let found = [SETTINGS.negligible, f64::NEG_INFINITY].iter().find_map(|&least| {
                 let mut trial: Vec<_> = merged.iter().copied().filter(|(_, weight)| *weight > least).collect();
@@ -482,7 +483,7 @@ impl<'a> Program<'a> {
         Outcome::Optimal(Solved { value: point[self.variables - 1], point, columns: merged, capped })
     }
 
-    /// Stationarity Σ y_i ∇c_i(v) = c with c_i(v) = 0 for the columns given.
+    /// Solves the stationarity Σ y_i ∇c_i(v) = c with c_i(v) = 0 for the given columns by Newton's method.
     fn newton(&self, point: &mut [f64], columns: &mut [(Column, f64)], work: &mut Work) -> Result<(), String> {
         let (m, k) = (self.variables, columns.len());
         let mut a = vec![0.0; m];
@@ -547,18 +548,18 @@ impl<'a> Program<'a> {
         JointForce { normal: [forces[0] * self.force, forces[1] * self.force], shear: forces[2] * self.force }
     }
 
-    /// Joint forces \[N\] at a point.
+    /// Returns the joint forces \[N\] at a point.
     pub fn forces(&self, point: &[f64]) -> Vec<JointForce> {
         (0..self.problem.joints.len()).map(|joint| self.joint_force(self.evaluate(joint, point, 1.0))).collect()
     }
 
-    /// Joint forces \[N\] along a direction, without the fixed loads.
+    /// Returns the joint forces \[N\] along a direction, without the fixed loads.
     pub fn directions(&self, direction: &[f64]) -> Vec<JointForce> {
         (0..self.problem.joints.len()).map(|joint| self.joint_force(self.evaluate(joint, direction, 0.0))).collect()
     }
 
-    /// Velocities of the groups about the pole from the multipliers of the columns: each yielding
-    /// row moves its joint by −y times its normal; motions add up along the trees.
+    /// Returns the velocities of the groups about the pole from the multipliers of the columns. Each yielding row moves
+    /// its joint by −y times its normal; motions are added along the trees.
     pub fn motion(&self, problem: &LimitProblem, trees: &Trees, columns: &[(Column, f64)]) -> Vec<Velocity> {
         let mut rates = vec![[0.0; 3]; problem.joints.len()];
         for &(column, weight) in columns {
@@ -582,7 +583,7 @@ impl<'a> Program<'a> {
     }
 }
 
-/// Writes the rows of all joints as every pivot reads them.
+/// Writes the rows of all joints in the form that pivots use.
 #[inline(always)]
 fn write_rows(known: usize, problem: &LimitProblem, forms: &Forms, force: f64, rows: &mut [f64]) {
     let mut rows = rows.chunks_exact_mut(known + 2);
@@ -594,12 +595,12 @@ fn write_rows(known: usize, problem: &LimitProblem, forms: &Forms, force: f64, r
     }
 }
 
-/// A row that pins T to zero can have no slack.
+/// Returns false for a row that sets T to zero: it can have no slack.
 fn can_be_slack(row: &ForceRow) -> bool {
     !(row.normal[0] == 0.0 && row.normal[1] == 0.0 && row.bound == 0.0)
 }
 
-/// Visits the tangents of a stress block next to the forces of its joint.
+/// Visits the tangents of a stress block that are nearest to the forces of its joint.
 fn tangents(
     joint: usize,
     block: &StressBlock,
@@ -624,13 +625,13 @@ fn tangents(
     }
 }
 
-/// The place that leaves: least y/d over d > 0, ties by the lexicographic rule on the rows of the basis' inverse times
-/// `origin`, which keeps degenerate pivots from cycling.
+/// Returns the column that leaves: least y/d over d > 0. Ties are decided by the lexicographic rule on the rows of the
+/// basis' inverse times `origin`, which prevents cycles of degenerate pivots.
 fn leaving(weights: &[f64], change: &[f64], lu: &mut SmallLu, origin: &[f64]) -> Option<usize> {
     let m = change.len();
     let largest = change.iter().fold(0.0f64, |m, x| m.max(x.abs()));
     let close = |x: f64, y: f64| (x - y).abs() <= SETTINGS.rounding * (1.0 + x.abs().max(y.abs()));
-    // Columns of the rule so far: most pivots need none.
+    // // Columns of the rule computed so far: most pivots need none.
     let mut reference: Vec<f64> = Vec::new();
     let mut order = |a: usize, b: usize| {
         let (x, y) = (weights[a].max(0.0) / change[a], weights[b].max(0.0) / change[b]);
@@ -656,7 +657,7 @@ fn leaving(weights: &[f64], change: &[f64], lu: &mut SmallLu, origin: &[f64]) ->
 mod tests {
     use super::*;
 
-    /// The tangents next to forces on the parabola of an end touch it there, and those of other forces hold them.
+    /// Tangents nearest to forces on the parabola of an end touch it there; tangents of other forces lie outside it.
     #[test]
     fn tangents_touch_the_parabola() {
         let block = StressBlock { tension: 0.2, total: 10.2 };
@@ -669,7 +670,8 @@ mod tests {
         }
     }
 
-    /// The least ratio leaves; of equal ones that of the first row of the inverse, and none if nothing shrinks.
+    /// The column with the least ratio leaves; among equal ratios the first row of the inverse decides; no column
+    /// leaves if no weight decreases.
     #[test]
     fn the_least_ratio_leaves() {
         let identity = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];

@@ -10,26 +10,26 @@ use voussoir_core::model::Wrenches;
 pub struct Block {
     /// Variables of N_0, N_1.
     pub normal: [usize; 2],
-    /// Which end.
+    /// Index of the end.
     pub end: usize,
     /// Scaled strengths.
     pub strength: StressBlock,
 }
 
 impl Block {
-    /// (u, w) at x.
+    /// Returns (u, w) at x.
     pub fn state(&self, x: &[f64]) -> (f64, f64) {
         let u = x[self.normal[0]] + x[self.normal[1]] + self.strength.tension;
         (u, 2.0 * x[self.normal[self.end]] + self.strength.tension)
     }
 
-    /// φ at x.
+    /// Returns φ at x.
     pub fn value(&self, x: &[f64]) -> f64 {
         let (u, w) = self.state(x);
         u * u / self.strength.total - w
     }
 
-    /// ∇φ at x.
+    /// Returns ∇φ at x.
     pub fn gradient(&self, x: &[f64]) -> Row {
         let slope = 2.0 * self.state(x).0 / self.strength.total;
         (0..2).map(|i| (self.normal[i], slope - if i == self.end { 2.0 } else { 0.0 })).collect()
@@ -42,41 +42,41 @@ pub struct System {
     pub variables: usize,
     /// Index of θ, the last variable.
     pub theta: usize,
-    /// Three per group.
+    /// Equations of equilibrium, three per group.
     pub equations: Vec<Row>,
     /// Right-hand sides of the equations.
     pub right: Vec<f64>,
     /// Linear rows.
     pub rows: Vec<Row>,
-    /// Their bounds.
+    /// Bounds of the rows.
     pub bounds: Vec<f64>,
     /// Index of the row θ ≤ cap, if any.
     pub cap: Option<usize>,
-    /// Crushing.
+    /// Stress blocks of crushing joints.
     pub blocks: Vec<Block>,
     forces: ForceVariables,
     force: f64,
     length: f64,
 }
 
-/// What the system is made for.
+/// The loads and bounds of a system.
 #[derive(Clone, Copy)]
 pub struct Loads<'a> {
-    /// At factor one throughout.
+    /// Loads with factor one.
     pub constant: Option<&'a Wrenches>,
-    /// Multiplied by θ, with the factor one unit of θ stands for.
+    /// Loads multiplied by θ, and the load factor for θ = 1.
     pub varying: (&'a Wrenches, f64),
-    /// Multiplied by a free variable.
+    /// Loads multiplied by a free variable, and the load factor for its unit.
     pub free: Option<(&'a Wrenches, f64)>,
     /// Upper bound of θ in its unit.
     pub cap: Option<f64>,
-    /// With strengths, or in the recession cone.
+    /// True with strengths; false for the recession cone.
     pub strengths: bool,
     /// Force scale \[N\].
     pub force: f64,
 }
 
-/// Rows and crushing of one joint, of whose variables the first and their number are given.
+/// Adds the rows and stress blocks of one joint, whose first variable and number of variables are given.
 fn strength_rows(
     joint: &LimitJoint,
     (first, own): (usize, usize),
@@ -85,7 +85,7 @@ fn strength_rows(
 ) {
     for row in &joint.strength.rows {
         let bound = if loads.strengths { row.bound / loads.force } else { 0.0 };
-        // Bounds of the fill may be far beyond all loads: their rows are kept of size one.
+        // // Bounds of the fill may be much greater than the loads: their rows are scaled to size one.
         let scale = if joint.fill.is_some() { 1.0 / bound.max(1.0) } else { 1.0 };
         let entries: Row =
             (0..own).filter(|&k| row.normal[k] != 0.0).map(|k| (first + k, row.normal[k] * scale)).collect();
@@ -100,7 +100,7 @@ fn strength_rows(
             blocks.extend((0..2).map(|end| Block { normal: [first, first + 1], end, strength }));
         }
         Some(_) => {
-            // A bounded normal force has no direction to grow in.
+            // // A bounded normal force is zero in the recession cone.
             for (k, sign) in [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)] {
                 rows.push(vec![(first + k, sign)]);
                 bounds.push(0.0);
@@ -111,7 +111,7 @@ fn strength_rows(
 }
 
 impl System {
-    /// Builds and scales.
+    /// Builds the scaled system.
     pub fn new(problem: &LimitProblem, loads: &Loads) -> Self {
         let forces = ForceVariables::new(problem);
         let mut variables = forces.count;
@@ -164,19 +164,19 @@ impl System {
         self.right.push(0.0);
     }
 
-    /// Makes the normal force of a joint one unit of force.
+    /// Sets the normal force of a joint to one unit of force.
     pub fn press(&mut self, joint: usize) {
         let (first, _) = self.forces.joints[joint];
         self.equations.push(vec![(first, 1.0), (first + 1, 1.0)]);
         self.right.push(1.0);
     }
 
-    /// Joint forces \[N\].
+    /// Returns the joint forces \[N\].
     pub fn forces(&self, x: &[f64]) -> Vec<JointForce> {
         self.forces.joint_forces(x, self.force)
     }
 
-    /// Velocities about the pole from the multipliers of equilibrium, up to a common factor.
+    /// Returns the velocities about the pole from the multipliers of equilibrium, up to a common factor.
     pub fn motion(&self, multipliers: &[f64]) -> Vec<Velocity> {
         multipliers.chunks(3).map(|q| [q[0], q[1], q[2] / self.length]).collect()
     }
@@ -186,7 +186,8 @@ impl System {
 mod tests {
     use super::*;
 
-    /// The gradient of φ is its difference quotient, and φ = 0 where the pressed part of the joint is its whole stress block.
+    /// The gradient of φ is its difference quotient; φ = 0 if the whole compressed part of the joint is its stress
+    /// block.
     #[test]
     fn the_gradient_of_a_block_is_its_slope() {
         for end in [0, 1] {

@@ -1,13 +1,13 @@
 //! Local search for non-associated limit states.
 //!
-//! For static fields s and mechanisms γ, Σ s_i γ_i ≥ 0 is bilinear and zero exactly at a limit
-//! state. Alternating linear programs lower it from many starts; at a state, the least factor with
-//! its mechanism is a linear program in the field, and other mechanisms at that field lead further.
+//! For static fields s and mechanisms γ, Σ s_i γ_i ≥ 0 is bilinear and zero exactly at a limit state. Alternating
+//! linear programs lower it from many starts. At a state, a linear program in the field gives the least factor of its
+//! mechanism; other mechanisms at that field lead to lower states.
 
 use crate::limit::settings::SETTINGS;
 use crate::optimise::dense_simplex::{Dictionary, Feasibility};
 
-/// A pair of systems between which the search alternates.
+/// The two systems of the alternating search.
 pub struct Descent<'a> {
     /// Statics, with the bound of θ.
     pub statics: &'a mut Dictionary,
@@ -15,7 +15,7 @@ pub struct Descent<'a> {
     pub kinematics: &'a mut Dictionary,
     /// Number of pairs.
     pub pairs: usize,
-    /// Variable θ of statics.
+    /// Index of θ in statics.
     pub theta: usize,
     /// Pairs that never move.
     pub excluded: &'a [bool],
@@ -41,7 +41,7 @@ impl Descent<'_> {
         values.into_iter().map(|v| if v > SETTINGS.active * greatest { v } else { 0.0 }).collect()
     }
 
-    /// Lets every pair move and yield again.
+    /// Releases all pairs: every pair may move and yield.
     pub fn release(&mut self) {
         for i in 0..self.pairs {
             self.statics.fix(i, false);
@@ -49,7 +49,7 @@ impl Descent<'_> {
         }
     }
 
-    /// Alternates from the given mechanism weights; a state where the product vanishes.
+    /// Alternates from the given weights of mechanisms. Returns a state if the product vanishes.
     pub fn alternate(&mut self, start: &[f64]) -> Option<State> {
         self.release();
         if self.statics.feasible() != Feasibility::Point || self.kinematics.feasible() != Feasibility::Point {
@@ -75,7 +75,7 @@ impl Descent<'_> {
         None
     }
 
-    /// The least θ at which all these pairs yield.
+    /// Returns the least θ at which all these pairs yield.
     pub fn least_with(&mut self, moving: &[usize]) -> Option<f64> {
         (0..self.pairs).for_each(|i| self.statics.fix(i, false));
         moving.iter().for_each(|&i| self.statics.fix(i, true));
@@ -84,8 +84,7 @@ impl Descent<'_> {
         least.map(|l| l.0)
     }
 
-    /// From a state to states with lesser factors: at its field, every mechanism that does without
-    /// one of the moving pairs is tried.
+    /// Improves a state to lower factors: at its field it tries every mechanism without one of the moving pairs.
     pub fn improve(&mut self, mut state: State) -> State {
         'again: loop {
             let Some(theta) = self.least_with(&state.moving) else { return state };
@@ -118,7 +117,7 @@ impl Descent<'_> {
 mod tests {
     use super::*;
 
-    /// Weights are the positive values with their places.
+    /// Weights are the positive values with their indices.
     #[test]
     fn weights_are_positive_values() {
         assert_eq!(Descent::weights(&[0.0, 2.0, -1.0, 0.5]), [(1, 2.0), (3, 0.5)]);

@@ -1,14 +1,15 @@
-//! The program of all products, for scenes whose rows are too many for an interior-point method.
+//! The program of all products, for scenes with too many rows for an interior-point method.
 //!
-//! With U spanning the motions (γ, p·q̇) that the flow rule allows and V the fields (s, θ − a, t − θ) in
-//! equilibrium, the products of a state are Z = U Y Vᵀ ≥ 0 with Z_ii = 0 for each pair. The least θ − a of such Z
-//! with p·q̇ = 1 is a linear program over a tensor product of two subspaces. The projection onto it is
-//! U (Uᵀ · V) Vᵀ, four products of dense matrices, whatever the number of rows: operator splitting needs nothing else.
+//! U spans the motions (γ, p·q̇) that satisfy the flow rule, and V the fields (s, θ − a, t − θ) in equilibrium. The
+//! products of a state are Z = U Y Vᵀ ≥ 0 with Z_ii = 0 for each pair. The least θ − a of such Z with p·q̇ = 1 is a
+//! linear program over a tensor product of two subspaces. The projection onto it is U (Uᵀ · V) Vᵀ, four products of
+//! dense matrices for any number of rows. Operator splitting needs no other operation.
 //!
-//! Splitting with an adapted penalty (Boyd et al., Foundations and Trends in Machine Learning 3 (2011)) gives an estimate and
-//! multipliers that are nearly right. Those that prove a bound β are exact: Λ ≥ 0 with Uᵀ (C − β N − Λ) V = 0 is looked for by
-//! the Douglas–Rachford iteration, and what is left is taken out by changes M ∘ (U y Vᵀ), where M vanishes with Λ, by conjugate
-//! residuals. Where Λ stays ≥ 0, β is proved, and the next is half the way to the estimate, else half the way down.
+//! Splitting with an adapted penalty (Boyd et al., Foundations and Trends in Machine Learning 3 (2011)) gives an
+//! estimate and approximate multipliers. The multipliers that prove a bound β are exact: Λ ≥ 0 with Uᵀ (C − β N − Λ) V
+//! = 0. The Douglas–Rachford iteration approaches them; conjugate residuals remove the remaining error by changes M ∘
+//! (U y Vᵀ), where M vanishes with Λ. If Λ stays ≥ 0, β is proved, and the next bound is half of the way to the
+//! estimate; otherwise it is half of the way down.
 
 use super::curve::Curve;
 use super::products::{Bound, Kind, Step};
@@ -17,38 +18,39 @@ use crate::limit::systems::Systems;
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::limit::BracketWork;
 
-/// The first range takes this share of the work, the next the same of what is left.
+/// Share of the remaining work that is given to each range.
 const RANGE: f64 = 0.6;
-/// Shares of a range's work: the program itself, and each trial of a bound.
+/// Share of a range's work for the program itself, and for each trial of a bound.
 const SPLITTING: f64 = 0.2;
 const TRIAL: f64 = 0.08;
-/// The fewest iterations of either.
+/// Least number of iterations of both.
 const FEWEST: usize = 1000;
-/// Multipliers are looked at so often, and corrected where none would be lower than this; next time, than a tenth of it.
+/// Number of iterations between checks of multipliers.
 const CHECKED: usize = 200;
-/// Conjugate residuals of one correction.
+/// Greatest number of conjugate residual iterations of one correction.
 const RESIDUALS: usize = 500;
-/// Supports on which multipliers are corrected in one trial, and corrections on each.
+/// Greatest number of supports on which multipliers are corrected in one trial, and of corrections on each.
 const SUPPORTS: usize = 10;
 const CORRECTIONS: usize = 4;
-/// A bound lower by this share of the range is the least that is tried.
+/// Least distance of a trial bound above the proved one, relative to the range.
 const LEAST: f64 = 0.02;
-/// Multipliers below this many times the greatest residual, and below this, change in proportion to themselves.
+/// Multipliers below this multiple of the greatest residual, and below the second value, change in proportion to their
+/// size.
 const FREE: [f64; 2] = [100.0, 1e-4];
-/// Over-relaxation.
+/// Over-relaxation factor.
 const RELAXATION: f64 = 1.7;
-/// The penalty at first, in units of the objective.
+/// Initial penalty, in units of the objective.
 const PENALTY: f64 = 10.0;
-/// The penalty is adapted so often.
+/// Number of iterations between adaptations of the penalty.
 const ADAPTED: usize = 100;
-/// The first bound tried, as a share of the estimate.
+/// The first bound that is tried, relative to the estimate.
 const FIRST_SHARE: f64 = 0.85;
-/// Bounds closer than this share of t are not told apart.
+/// Bounds closer than this share of t count as equal.
 const CLOSE: f64 = 1e-3;
-/// Rounds in which the rows are scaled.
+/// Number of scalings of the rows.
 const SCALINGS: usize = 8;
 
-/// Columns that span the solutions of matrix · x = 0.
+/// Returns columns that span the solutions of matrix · x = 0.
 fn null_space(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     let decomposed = matrix.transpose().col_piv_qr();
     let diagonal = decomposed.r().diagonal();
@@ -59,7 +61,7 @@ fn null_space(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     basis.rows(rank, columns - rank).transpose()
 }
 
-/// Orthonormal columns of the same span.
+/// Returns orthonormal columns of the same span.
 fn orthonormal(columns: DMatrix<f64>) -> DMatrix<f64> {
     let decomposed = columns.col_piv_qr();
     let r = decomposed.r().diagonal();
@@ -67,7 +69,7 @@ fn orthonormal(columns: DMatrix<f64>) -> DMatrix<f64> {
     decomposed.q().columns(0, rank).into_owned()
 }
 
-/// Orthonormal columns after rows were scaled until none stands out, with the scales.
+/// Scales rows to similar size. Returns orthonormal columns and the scales.
 fn balanced(columns: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
     let mut scale = DVector::from_element(columns.nrows(), 1.0);
     let scaled = |scale: &DVector<f64>| {
@@ -82,7 +84,7 @@ fn balanced(columns: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
     (scaled(&scale), scale)
 }
 
-/// U: γ and p·q̇ of the motions that the flow rule allows.
+/// Returns U: γ and p·q̇ of the motions that satisfy the flow rule.
 fn motions(systems: &Systems) -> DMatrix<f64> {
     let (groups, pairs) = (systems.equilibrium.len(), systems.pairs.len());
     let mut flow = DMatrix::zeros(systems.forces, groups + pairs);
@@ -99,7 +101,7 @@ fn motions(systems: &Systems) -> DMatrix<f64> {
     all
 }
 
-/// V: s, θ − a and t − θ of the fields in equilibrium.
+/// Returns V: s, θ − a and t − θ of the fields in equilibrium.
 fn fields(systems: &Systems, [a, t]: [f64; 2]) -> DMatrix<f64> {
     let (rows, forces, pairs) = (systems.equilibrium.len(), systems.forces, systems.pairs.len());
     let mut balance = DMatrix::zeros(rows, forces + 2);
@@ -135,7 +137,7 @@ impl Subspace {
     }
 }
 
-/// The program over the products of two subspaces, and the work done on it.
+/// The program over the products of two subspaces, with its work.
 struct Products {
     motions: Subspace,
     fields: Subspace,
@@ -143,11 +145,11 @@ struct Products {
     range: [f64; 2],
     /// Projection of C, in units of its length.
     objective: DMatrix<f64>,
-    /// Length of the projection of C: multipliers in units of it.
+    /// Length of the projection of C, the unit of multipliers.
     unit: f64,
     /// Projection of N.
     power: DMatrix<f64>,
-    /// Multiplications so far.
+    /// Number of multiplications.
     work: u64,
 }
 
@@ -171,7 +173,7 @@ impl Products {
         all
     }
 
-    /// Uᵀ Z V.
+    /// Returns Uᵀ Z V.
     fn inner(&mut self, z: &DMatrix<f64>) -> DMatrix<f64> {
         let (u, v) = (&self.motions, &self.fields);
         let (rows, columns) = z.shape();
@@ -179,7 +181,7 @@ impl Products {
         &u.transposed * z * &v.columns
     }
 
-    /// U y Vᵀ.
+    /// Returns U y Vᵀ.
     fn outer(&mut self, y: &DMatrix<f64>) -> DMatrix<f64> {
         let (u, v) = (&self.motions, &self.fields);
         let (rows, columns) = y.shape();
@@ -192,20 +194,20 @@ impl Products {
         self.outer(&inner)
     }
 
-    /// Multipliers ≥ 0; those of γ_i s_i have either sign.
+    /// Returns the nearest admissible multipliers: ≥ 0, except that multipliers of γ_i s_i have either sign.
     fn admissible(&self, z: &DMatrix<f64>) -> DMatrix<f64> {
         let mut own = z.map(|z| z.max(0.0));
         (0..self.pairs).for_each(|i| own[(i, i)] = z[(i, i)]);
         own
     }
 
-    /// The least of what must not be negative.
+    /// Returns the least entry among those that must not be negative.
     fn least(&self, z: &DMatrix<f64>) -> f64 {
         let all = (0..z.ncols()).flat_map(|j| (0..z.nrows()).map(move |i| (i, j)));
         all.filter(|&(i, j)| i != j || i == self.pairs).map(|at| z[at]).fold(0.0, f64::min)
     }
 
-    /// The program by splitting: multipliers, and the bound that they nearly prove.
+    /// Runs the splitting. Returns multipliers, and the bound that they approximately prove.
     fn split(&mut self, iterations: usize) -> (DMatrix<f64>, f64) {
         let length = self.power.norm();
         let unit_power = &self.power / length;
@@ -214,7 +216,7 @@ impl Products {
         let (mut w, mut penalty) = (z.clone(), PENALTY);
         for iteration in 1..=iterations {
             let mut x = self.project(&(&z - &w)) - &self.objective / penalty;
-            // p·q̇ = 1, in units that make the normalisation of length one.
+            // // p·q̇ = 1, scaled so that the normalisation has length one.
             let short = 1.0 - x.dot(&unit_power);
             x += &unit_power * short;
             let y = &x * RELAXATION + &z * (1.0 - RELAXATION) + &w;
@@ -222,7 +224,7 @@ impl Products {
             (0..self.pairs).for_each(|i| next[(i, i)] = 0.0);
             w = y - &next;
             if iteration % ADAPTED == 0 {
-                // What is missing of Z = U Y Vᵀ and of the multipliers' equation, each relative to its data.
+                // // Errors of Z = U Y Vᵀ and of the equation of the multipliers, each relative to its data.
                 let apart = (&x - &next).norm() / next.norm().max(x.norm());
                 let by = (apart / (penalty * (&next - &z).norm())).sqrt().clamp(0.5, 2.0);
                 if by.is_finite() && !(0.7..=1.4).contains(&by) {
@@ -239,7 +241,7 @@ impl Products {
         (multipliers, bound)
     }
 
-    /// Exact multipliers of a bound, from some that are nearly right and come nearer.
+    /// Searches exact multipliers of a bound, starting from approximate ones, which are improved.
     fn prove(&mut self, bound: f64, near: &mut DMatrix<f64>, iterations: usize) -> Option<DMatrix<f64>> {
         let target = &self.objective - &self.power * (bound / self.unit);
         let mut nearly = SETTINGS.nearly;
@@ -265,7 +267,7 @@ impl Products {
         None
     }
 
-    /// Multipliers that are exact, from some that are nearly so.
+    /// Returns exact multipliers from nearly exact ones.
     fn corrected(&mut self, target: &DMatrix<f64>, mut own: DMatrix<f64>) -> Option<DMatrix<f64>> {
         let mut worst = f64::INFINITY;
         for _ in 0..SUPPORTS {
@@ -296,7 +298,7 @@ impl Products {
         None
     }
 
-    /// y with Uᵀ (M ∘ (U y Vᵀ)) V = left, by conjugate residuals.
+    /// Solves Uᵀ (M ∘ (U y Vᵀ)) V = left for y by conjugate residuals.
     fn correction(&mut self, freedom: &DMatrix<f64>, left: DMatrix<f64>) -> DMatrix<f64> {
         let apply = |all: &mut Self, y: &DMatrix<f64>| {
             let outer = all.outer(y).component_mul(freedom);
@@ -317,7 +319,7 @@ impl Products {
             let step = power / squared;
             y += &direction * step;
             residual -= &along * step;
-            // Conjugate residuals never grow but by rounding.
+            // // Conjugate residuals do not grow, except by rounding.
             let now = residual.norm();
             if now <= enough || now > before {
                 break;
@@ -333,7 +335,7 @@ impl Products {
         y
     }
 
-    /// The proof with its multipliers, in the units of the systems.
+    /// Returns the proof with its multipliers, in the units of the systems.
     fn step(&self, bound: f64, multipliers: &DMatrix<f64>) -> Step {
         let n = self.pairs;
         let mut kinds = Vec::new();
@@ -357,7 +359,8 @@ impl Products {
         Step { raw: self.range[0] + bound, range: self.range, multipliers: kinds }
     }
 
-    /// The greatest bound that so much work proves; `raised` hears of each on the way, with the work until then.
+    /// Returns the greatest bound proved with this work. `raised` is called with each improved bound and the work up to
+    /// it.
     fn greatest(&mut self, limit: u64, raised: &mut dyn FnMut(u64, f64)) -> Option<Step> {
         let before = self.work;
         let once = self.objective.clone();
@@ -366,7 +369,8 @@ impl Products {
         let iterations = |share: f64| ((share * limit as f64 / cost) as usize).max(FEWEST);
         let width = self.range[1] - self.range[0];
         let (mut near, estimate) = self.split(iterations(SPLITTING));
-        // Not a bound, and at first not near one: what has failed is tried again once something lower is proved.
+        // // The estimate is not a bound and may be inaccurate at first: failed values are tried again after a lower
+        // bound is proved.
         let high = if estimate > 0.0 { estimate.min(width) } else { width };
         let (mut low, mut best, mut bound) = (0.0, None, FIRST_SHARE * high);
         while high - low > CLOSE * width && bound > low + LEAST * width.min(high - low) && self.work < limit {
@@ -384,14 +388,15 @@ impl Products {
     }
 }
 
-/// The greatest lower bound of θ, for states with θ ≤ `most`, that so many multiplications prove; with the work it took.
+/// Returns the greatest lower bound of θ for states with θ ≤ `most` that this number of multiplications proves, and the
+/// work done.
 pub fn split_bound(systems: &Systems, most: f64, limit: u64, curve: &mut Curve) -> (Option<Bound>, u64) {
     let most = most * (1.0 + SETTINGS.above_state);
     let (mut steps, mut proved, mut work) = (Vec::new(), 0.0, 0u64);
     while !systems.pairs.is_empty() && proved < most * (1.0 - CLOSE) {
         let mut products = Products::new(systems, [proved, most]);
         let own = (RANGE * limit.saturating_sub(work) as f64) as u64;
-        // No motion of the flow rule has p·q̇ = 1, or there is too little work left to try.
+        // // No motion of the flow rule has p·q̇ = 1, or too little work is left.
         let hopeless = products.power.norm() < SETTINGS.negligible || own < (FEWEST as u64) * products.work;
         let mut raised = |own: u64, theta: f64| {
             curve.proved(BracketWork::Splitting, (work + own) as f64 / 1e9, theta * (1.0 - SETTINGS.closed));
@@ -416,7 +421,7 @@ mod tests {
         DMatrix::from_fn(rows, columns, |i, j| ((7 * i * i + 11 * j + 5 * i * j + 1) as f64).sin())
     }
 
-    /// The columns of the null space solve the equations, and are as many as columns without rank.
+    /// The columns of the null space solve the equations; their number is the number of columns minus the rank.
     #[test]
     fn the_null_space_solves_the_equations() {
         let thin = matrix(2, 5);
@@ -446,7 +451,7 @@ mod tests {
         let (motions, fields) = (motions(&systems), fields(&systems, [0.0, 1.0]));
         let pairs = systems.pairs.len();
         assert!(motions.ncols() > 1 && fields.ncols() == 2);
-        // θ and 1 − θ add up to the share of the fixed loads.
+        // // The sum of θ and 1 − θ is the share of the fixed loads.
         let share = |k: usize| fields[(pairs, k)] + fields[(pairs + 1, k)];
         let change = fields.column(0) * share(1) - fields.column(1) * share(0);
         for motion in motions.column_iter() {

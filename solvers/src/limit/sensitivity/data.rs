@@ -5,24 +5,24 @@ use voussoir_core::limit::{LimitJoint, LimitProblem};
 use voussoir_core::model::Wrenches;
 use voussoir_core::model::geometry::Vec2;
 
-/// Derivatives of the data of a problem with respect to a parameter θ, on one side of its value; wrenches are about
-/// the pole of the problem itself.
+/// Derivatives of the data of a problem with respect to a parameter θ, on one side of its value; the pole of wrenches
+/// is that of the problem itself.
 #[derive(Debug, Clone)]
 pub struct DataRate {
-    /// Of the wrenches of each joint's N_0, N_1, T.
+    /// Derivatives of the wrenches of each joint's N_0, N_1, T.
     pub wrenches: Vec<[[f64; 3]; 3]>,
-    /// Of the coefficients and the bound of each joint's rows.
+    /// Derivatives of the coefficients and the bound of each joint's rows.
     pub rows: Vec<Vec<([f64; 3], f64)>>,
-    /// Of F_t and F_c + F_t of each joint's stress block; zero where it has none.
+    /// Derivatives of F_t and F_c + F_t of each joint's stress block; zero without a stress block.
     pub blocks: Vec<[f64; 2]>,
-    /// Of the fixed wrenches.
+    /// Derivatives of the fixed wrenches.
     pub fixed: Wrenches,
-    /// Of the varying wrenches.
+    /// Derivatives of the varying wrenches.
     pub varying: Wrenches,
 }
 
-/// All data of a problem about a pole, number after number, each with its kind (0 directions and coefficients,
-/// 1 lengths, 2 forces, 3 moments).
+/// Returns all data of a problem about a pole, each with its kind (0 directions and coefficients, 1 lengths, 2 forces,
+/// 3 moments).
 fn data(problem: &LimitProblem, pole: Vec2) -> Vec<(f64, usize)> {
     let mut out = Vec::new();
     for joint in &problem.joints {
@@ -43,7 +43,7 @@ fn data(problem: &LimitProblem, pole: Vec2) -> Vec<(f64, usize)> {
     out
 }
 
-/// Whether two problems have the same joints, groups and rows.
+/// Returns true if two problems have the same joints, groups and rows.
 fn same_topology(a: &LimitProblem, b: &LimitProblem) -> bool {
     let same = |(a, b): (&LimitJoint, &LimitJoint)| {
         let rows = a.strength.rows.iter().map(|row| row.mode).eq(b.strength.rows.iter().map(|row| row.mode));
@@ -53,7 +53,7 @@ fn same_topology(a: &LimitProblem, b: &LimitProblem) -> bool {
     a.group_of == b.group_of && a.joints.len() == b.joints.len() && a.joints.iter().zip(&b.joints).all(same)
 }
 
-/// Whether the data of two problems are equal to rounding.
+/// Returns true if the data of two problems are equal to rounding.
 pub fn same_data(a: &LimitProblem, b: &LimitProblem) -> bool {
     let close = |((x, kind), (y, _)): (&(f64, usize), &(f64, usize)), scale: &[f64; 4]| {
         (x - y).abs() <= SETTINGS.balanced * scale[*kind]
@@ -63,7 +63,7 @@ pub fn same_data(a: &LimitProblem, b: &LimitProblem) -> bool {
     same_topology(a, b) && of_a.iter().zip(&of_b).all(|pair| close(pair, &scale))
 }
 
-/// The greatest datum of each kind.
+/// Returns the greatest value of each kind.
 fn scales(data: &[(f64, usize)]) -> [f64; 4] {
     let mut scale = [f64::MIN_POSITIVE; 4];
     data.iter().for_each(|(x, kind)| scale[*kind] = scale[*kind].max(x.abs()));
@@ -71,8 +71,8 @@ fn scales(data: &[(f64, usize)]) -> [f64; 4] {
 }
 
 impl DataRate {
-    /// From the problem at θ, at θ + `step` and at θ + 2 `step`, for the left side with θ counted backwards: second order
-    /// in the step. An error says why there is no rate.
+    /// Computes derivatives from the problems at θ, θ + `step` and θ + 2 `step`, to second order in the step; for the
+    /// left side `step` is counted backwards. An error gives the reason why no rate exists.
     pub fn one_sided(at: &LimitProblem, [near, far]: [&LimitProblem; 2], step: f64) -> Result<Self, String> {
         if !same_topology(at, near) || !same_topology(at, far) {
             return Err("joints, blocks or strengths are others next to the value".into());
@@ -89,7 +89,7 @@ impl DataRate {
         Ok(Self::gathered(at, &rates))
     }
 
-    /// From rates in the order of [`data`].
+    /// Creates the derivatives from rates in the order of [`data`].
     fn gathered(at: &LimitProblem, rates: &[f64]) -> Self {
         let mut rates = rates.iter().copied();
         let mut next = || rates.next().unwrap_or(0.0);
@@ -114,7 +114,7 @@ mod tests {
         block(1.0, 2.0, Dry { friction: Some(mu), ..STUCK })
     }
 
-    /// The rate of a linear datum is its slope: friction stands in the rows of sliding with the factor −1.
+    /// The rate of linear data is their slope: friction appears in the rows of sliding with the factor −1.
     #[test]
     fn the_rate_of_linear_data_is_their_slope() {
         let [at, near, far] = [0.5, 0.6, 0.7].map(with_friction);

@@ -7,15 +7,15 @@ use crate::limit::settings::SETTINGS;
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::limit::{JointForce, LimitProblem, Velocity};
 
-/// Scenes of more forces take too long.
+/// Greatest number of forces: larger scenes take too long.
 const GREATEST: usize = 900;
 
-/// All fields that carry the limit load, and all mechanisms at it, by what they share.
+/// All fields that carry the limit load, and all mechanisms at it, described by one field and one mechanism.
 #[derive(Debug)]
 pub struct OptimalFace<'a> {
     problem: &'a LimitProblem,
     factor: f64,
-    /// First force of each joint among all, and one past the last.
+    /// First force of each joint, and the number of all forces.
     offsets: Vec<usize>,
     /// r̂ / `force`.
     field: DVector<f64>,
@@ -27,10 +27,10 @@ pub struct OptimalFace<'a> {
     load: f64,
 }
 
-/// An orthonormal basis of the null space, the pseudo-inverse, and the rank.
+/// Returns an orthonormal basis of the null space, the pseudo-inverse, and the rank.
 fn null_space(matrix: &DMatrix<f64>) -> Result<(DMatrix<f64>, DMatrix<f64>, usize), String> {
     let (rows, columns) = matrix.shape();
-    // Padded with zero rows, so that all right singular vectors come.
+    // // Zero rows make the decomposition return all right singular vectors.
     let padded = matrix.clone().resize_vertically(rows.max(columns), 0.0);
     let svd = padded.try_svd(false, true, f64::EPSILON, 10_000).ok_or("singular values were not found")?;
     let v = svd.v_t.ok_or("singular values were not found")?;
@@ -39,7 +39,7 @@ fn null_space(matrix: &DMatrix<f64>) -> Result<(DMatrix<f64>, DMatrix<f64>, usiz
         (0..columns).partition(|&i| svd.singular_values[i] <= SETTINGS.negligible * greatest);
     let basis = DMatrix::from_fn(columns, null.len(), |i, j| v[(null[j], i)]);
     let mut inverse = DMatrix::zeros(columns, rows);
-    // By the images of the right vectors: of a matrix without full rank the left ones may belong to others.
+    // // Uses the images of the right vectors: without full rank the left vectors may belong to other right vectors.
     for &k in &full {
         let own = v.row(k).transpose();
         let image = matrix * &own;
@@ -49,8 +49,8 @@ fn null_space(matrix: &DMatrix<f64>) -> Result<(DMatrix<f64>, DMatrix<f64>, usiz
 }
 
 impl<'a> OptimalFace<'a> {
-    /// The face around a field that carries `factor` and a mechanism at it, as a limit solver has answered them. An
-    /// error says why there are no derivatives.
+    /// Creates the face around a field that carries `factor` and a mechanism at it, from the answer of a limit solver.
+    /// An error gives the reason why no derivatives exist.
     pub fn new(
         problem: &'a LimitProblem,
         factor: f64,
@@ -83,13 +83,13 @@ impl<'a> OptimalFace<'a> {
         Ok(face)
     }
 
-    /// Wrenches on groups as one vector, moments divided by the length.
+    /// Returns the wrenches on groups as one vector; moments are divided by the length.
     fn stacked(&self, wrench: impl Fn(usize, usize) -> f64) -> DVector<f64> {
         let unit = |i: usize| if i == 2 { 1.0 / self.problem.length } else { 1.0 };
         DVector::from_fn(3 * self.problem.groups, |row, _| wrench(row / 3, row % 3) * unit(row % 3))
     }
 
-    /// E from the wrenches of each joint.
+    /// Returns E from the wrenches of each joint.
     fn equilibrium(&self, wrenches: impl Fn(usize) -> [[f64; 3]; 3]) -> DMatrix<f64> {
         let mut matrix = DMatrix::zeros(3 * self.problem.groups, self.offsets[self.problem.joints.len()]);
         for (index, joint) in self.problem.joints.iter().enumerate() {
@@ -133,7 +133,7 @@ impl<'a> OptimalFace<'a> {
         linear.chain(blocks).collect()
     }
 
-    /// What does not depend on the parameter.
+    /// Computes the parts that do not depend on the parameter.
     fn prepared(&self, motion: &[Velocity]) -> Result<Program, String> {
         let problem = self.problem;
         let equilibrium = self.equilibrium(|joint| problem.joints[joint].wrenches(problem.pole));
@@ -142,7 +142,8 @@ impl<'a> OptimalFace<'a> {
             return Err("some blocks are held by nothing".into());
         }
         let count = self.field.len();
-        // Where the mechanism moves, forces of the face do no work besides r̂; a stress block that flows keeps its own.
+        // // Where the mechanism moves, the difference of a field from r̂ does no work; a yielding stress block keeps
+        // its forces.
         let mut held: Vec<DVector<f64>> = Vec::new();
         let jumps: Vec<[f64; 3]> = (0..problem.joints.len()).map(|joint| self.jump(joint, motion)).collect();
         let greatest = jumps.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));
@@ -178,7 +179,7 @@ impl<'a> OptimalFace<'a> {
         Ok(program)
     }
 
-    /// Opening of both ends and slip of a joint in a motion.
+    /// Returns the opening of both ends and the slip of a joint in a motion.
     fn jump(&self, joint: usize, motion: &[Velocity]) -> [f64; 3] {
         let of = |group: Option<usize>| group.and_then(|group| motion.get(group)).copied().unwrap_or([0.0; 3]);
         let own = &self.problem.joints[joint];
@@ -186,8 +187,8 @@ impl<'a> OptimalFace<'a> {
         own.wrenches(self.problem.pole).map(|wrench| (0..3).map(|i| wrench[i] * (plus[i] - minus[i])).sum())
     }
 
-    /// The derivative of the limit load in the sense in which the data change with this rate; an error says why there is
-    /// none.
+    /// Returns the derivative of the limit load for the change of the data with this rate. An error gives the reason if
+    /// it does not exist.
     pub fn derivative(&self, rate: &DataRate) -> Result<f64, String> {
         let matrix = self.equilibrium(|joint| rate.wrenches[joint]);
         let loads = self.stacked(|group, i| rate.fixed[group][i] + self.factor * rate.varying[group][i]) / self.force;
@@ -196,7 +197,7 @@ impl<'a> OptimalFace<'a> {
         Ok(self.program.greatest(&self.rows, &direction)? * self.force / self.load)
     }
 
-    /// A′ r̂ − b′ of a row, and A′ over all forces.
+    /// Returns A′ r̂ − b′ of a row, and A′ over all forces.
     fn row_rate(&self, row: &FaceRow, rate: &DataRate) -> (f64, DVector<f64>) {
         let first = self.offsets[row.joint];
         let components = self.offsets[row.joint + 1] - first;
@@ -213,7 +214,7 @@ impl<'a> OptimalFace<'a> {
                 let normal =
                     [0, 1].map(|k| (2.0 * tension_rate - if k == end { 2.0 * total_rate } else { 0.0 }) / total);
                 let constant = (2.0 * tension * tension_rate - total_rate * tension) / total - tension_rate;
-                // Of ((N + F_t)² − (F_c + F_t)(2 N_i + F_t)) / (F_c + F_t) where the row itself is zero.
+                // // Derivative of ((N + F_t)² − (F_c + F_t)(2 N_i + F_t)) / (F_c + F_t) at a zero of the row.
                 ([normal[0], normal[1], 0.0], constant)
             }
         };

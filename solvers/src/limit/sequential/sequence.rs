@@ -1,4 +1,4 @@
-//! The sequence of linear programs with fictitious cohesion that ends at a state of the laws' own flow.
+//! The sequence of linear programs with fictitious cohesion that converges to a state with the laws' own flow.
 
 use super::vertices::Vertices;
 use crate::limit::conic;
@@ -13,11 +13,11 @@ use voussoir_core::model::Wrenches;
 const CLOSELY: usize = 36;
 /// Greatest number of programs.
 const PROGRAMS: usize = 120;
-/// Programs solved at vertices before fields are taken from the middle of those that carry the factor: vertices may jump
-/// where fields are many, the middle moves with the bounds.
+/// Number of programs solved at vertices before fields in the middle of the optimal ones are used. If the field is not
+/// unique, vertices may jump, but the middle changes continuously with the bounds.
 const CENTRES: usize = 48;
 
-/// A state that obeys the laws' own flow.
+/// A state with the laws' own flow.
 #[derive(Debug, Clone)]
 pub struct FlowState {
     /// Factor above the base loads.
@@ -28,16 +28,16 @@ pub struct FlowState {
     pub motion: Vec<Velocity>,
 }
 
-/// How a sequence ended.
+/// The end of a sequence.
 pub enum Sequence {
-    /// At a state.
+    /// A state.
     Converged(FlowState),
-    /// Not, and why.
+    /// No state, with the reason.
     Open(String),
 }
 
-/// The problem with each row that flows otherwise replaced by its flow as an associated row through
-/// the yield point at the normal forces of `reference`: d·r ≤ b + (d − a)·r̄.
+/// Returns the problem with each non-associated row replaced by an associated row with its flow, through the yield
+/// point at the normal forces of `reference`: d·r ≤ b + (d − a)·r̄.
 fn fictitious(problem: &LimitProblem, reference: &[JointForce]) -> LimitProblem {
     let mut replaced = problem.clone();
     for (joint, force) in replaced.joints.iter_mut().zip(reference) {
@@ -51,7 +51,8 @@ fn fictitious(problem: &LimitProblem, reference: &[JointForce]) -> LimitProblem 
     replaced
 }
 
-/// The greatest factor of associated flow by the conic engine: a field in the middle of those that carry it.
+/// Returns the greatest factor of associated flow by the conic engine, with a field in the middle of all optimal
+/// fields.
 fn by_engine(problem: &LimitProblem, base: &Wrenches, counters: &mut Counters) -> Greatest {
     let mut engine = conic::engine(problem);
     let greatest = engine.greatest(base, &problem.varying, f64::INFINITY);
@@ -61,7 +62,7 @@ fn by_engine(problem: &LimitProblem, base: &Wrenches, counters: &mut Counters) -
     greatest
 }
 
-/// Runs the sequence from a field, that of associated flow by default.
+/// Runs the sequence from a field; by default the field of associated flow.
 pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], counters: &mut Counters) -> Sequence {
     let systems = Systems::new(problem, base);
     let mut reference = from.to_vec();
@@ -94,7 +95,7 @@ pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], co
         {
             return Sequence::Converged(state);
         }
-        // Where fields are many the programs may wander among them at one factor.
+        // // If the field is not unique, the programs may change between fields at one factor.
         if steady && let Some((field, factor)) = field_at(&systems, problem, factor, &moving) {
             return Sequence::Converged(FlowState { factor, field, motion });
         }
@@ -113,8 +114,8 @@ pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], co
     Sequence::Open(course.verdict())
 }
 
-/// Share of the way from a reference to the field of its program: half where full steps have not settled, then a quarter and
-/// ever less, so that fields between which the programs jump pull on one place.
+/// Returns the step length from a reference to the field of its program: half if full steps have not converged, then a
+/// quarter and decreasing values, so that fields between which the programs jump are averaged.
 fn share(step: usize) -> f64 {
     match step {
         0..12 => 1.0,
@@ -123,10 +124,10 @@ fn share(step: usize) -> f64 {
     }
 }
 
-/// Programs whose factors are told where the sequence does not converge.
+/// Number of last programs whose factors are reported if the sequence does not converge.
 const TOLD: usize = 20;
 
-/// What the last programs of a sequence gave.
+/// Results of the last programs of a sequence.
 #[derive(Default)]
 struct Course {
     factors: Vec<f64>,
@@ -140,7 +141,7 @@ impl Course {
         (self.violation, self.idle) = (violation, idle);
     }
 
-    /// Why the sequence did not end at a state.
+    /// Returns the reason why the sequence did not converge.
     fn verdict(&self) -> String {
         let last = &self.factors[self.factors.len().saturating_sub(TOLD)..];
         let low = last.iter().copied().fold(f64::INFINITY, f64::min);
@@ -161,7 +162,7 @@ impl Course {
     }
 }
 
-/// A field at this factor, to the tolerance, in which all moving pairs yield.
+/// Returns a field at this factor, within the tolerance, in which all moving pairs yield.
 fn field_at(
     systems: &Systems,
     problem: &LimitProblem,
@@ -189,8 +190,8 @@ fn field_at(
     near.then(|| (systems.joint_forces(&z), z[systems.forces] * systems.unit))
 }
 
-/// The same in scenes too large for the simplex method: the greatest factor with equality in the
-/// moving rows. With the mechanism that moves only there, any such field is a state.
+/// Returns such a field in scenes too large for the simplex method: the greatest factor with equality in the moving
+/// rows. Any such field, with the mechanism that moves only there, is a state.
 fn field_yielding(
     systems: &Systems,
     problem: &LimitProblem,
@@ -222,7 +223,7 @@ fn field_yielding(
     (violation <= SETTINGS.balanced).then(|| (systems.joint_forces(&z), z[systems.forces] * systems.unit))
 }
 
-/// A converged field moved onto the yield surface where the mechanism moves, with the mechanism.
+/// Returns a converged field, moved onto the yield surface where the mechanism moves, with the mechanism.
 fn settled(
     systems: &Systems,
     (mut z, factor): (Vec<f64>, f64),
@@ -247,7 +248,7 @@ mod tests {
     use super::*;
     use crate::limit::scenes::{Dry, STUCK, block};
 
-    /// Full steps first, then shares that fall to nothing.
+    /// Full steps come first, then shares that decrease to zero.
     #[test]
     fn shares_fall() {
         let shares: Vec<f64> = (0..PROGRAMS).map(share).collect();
@@ -267,7 +268,7 @@ mod tests {
         assert!(replaced.joints[0].strength.rows.iter().all(|row| row.flow == row.normal));
     }
 
-    /// A verdict tells factors that wander from factors that stay.
+    /// A verdict distinguishes factors that change from factors that stay constant.
     #[test]
     fn the_verdict_tells_whether_factors_wander() {
         let verdict = |factors: [f64; 3]| {

@@ -1,4 +1,4 @@
-//! Every combination of modes: all solutions, with λ rising, standing still (mechanisms) and falling.
+//! Every combination of modes: all solutions with λ rising, constant (mechanisms) and falling.
 
 use crate::contact::mode::ContactMode;
 use crate::rate::problem::{Rate, RateProblem};

@@ -53,7 +53,7 @@ fn the_order_of_points_does_not_matter() {
     assert!(senses[0] > 3 && senses[2] > 30, "{senses:?}");
 }
 
-/// The proof of a permuted problem speaks of the permuted points.
+/// The proof of a permuted problem refers to the permuted points.
 #[test]
 fn proofs_follow_the_numbering() {
     let laws = dry(4.0, 0.0);

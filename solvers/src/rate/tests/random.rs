@@ -37,7 +37,7 @@ pub fn without_continuation(laws: &[Facet]) -> Case<'_> {
         .expect("a problem without a continuation")
 }
 
-/// The answer rises where any combination does, else falls where any combination continues; else it has proofs.
+/// The answer rises if any combination rises, otherwise it falls if any combination continues; otherwise it has proofs.
 #[test]
 fn answers_agree_with_every_combination() {
     let mut random = Lcg::new(11);
@@ -72,7 +72,7 @@ fn answers_agree_with_every_combination() {
     assert!(kinds[2] > 100 && kinds[0] > 5 && kinds[3] > 5, "{kinds:?}");
 }
 
-/// Mirror-symmetric structures have equal pivots and singular values in pairs: their problems are decided all the same.
+/// Mirror-symmetric structures have equal pivots and singular values in pairs; their problems are decided as well.
 #[test]
 fn mirror_symmetric_problems_are_decided() {
     let laws = dry(0.6, 0.0);
@@ -97,7 +97,7 @@ fn mirror_symmetric_problems_are_decided() {
     }
 }
 
-/// S and s of a structure that its mirror image equals: tangential rates change their sign.
+/// S and s of a mirror-symmetric structure: its image changes the sign of tangential rates.
 fn mirrored(half: usize, random: &mut Lcg) -> (DMatrix<f64>, DVector<f64>) {
     let n = 4 * half;
     let image = |i: usize| (n - 2 - i / 2 * 2 + i % 2, if i.is_multiple_of(2) { 1.0 } else { -1.0 });
@@ -111,7 +111,7 @@ fn mirrored(half: usize, random: &mut Lcg) -> (DMatrix<f64>, DVector<f64>) {
     (DMatrix::from_fn(n, n, both), DVector::from_fn(n, |i, _| push[i] + image(i).1 * push[image(i).0]))
 }
 
-/// A stiffness that is rounding makes a mechanism: the load does work on it, and none rises.
+/// A stiffness within rounding of zero gives a mechanism: the load does work on it, and no rate rises.
 #[test]
 fn a_stiffness_that_is_rounding_is_none() {
     let laws = dry(0.6, 0.0);
