@@ -1,10 +1,10 @@
-//! `backing`: solid backing beside a ring.
+//! `backing`: solid backing behind a ring.
 #![doc = include_str!("backing.md")]
 
 use voussoir_core::law::{FillResistance, FillState};
 use voussoir_core::plugin::{Card, Keys, PluginKind};
 
-/// Resists up to a pressure, whatever stands on it.
+/// Backing that resists up to a pressure, for any load on it.
 #[derive(Debug, Clone, Keys)]
 pub struct Backing {
     /// horizontal pressure up to which it resists; 0 switches it off

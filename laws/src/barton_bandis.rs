@@ -1,11 +1,11 @@
-//! `barton_bandis`: a rough rock joint: hyperbolic closure, friction that falls with pressure.
+//! `barton_bandis`: a rough rock joint with hyperbolic closure and friction that decreases with pressure.
 #![doc = include_str!("barton_bandis.md")]
 
 use std::sync::Arc;
 use voussoir_core::law::{Effect, InterfaceLaw, InterfaceResponse, TractionPoint, UpdateBranch, UpdateFailure};
 use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, PluginKind, Property, Sample};
 
-/// A rock joint by its index numbers.
+/// A rock joint described by its index numbers.
 #[derive(Debug, Clone, Keys)]
 pub struct BartonBandis {
     /// joint roughness coefficient JRC
@@ -28,9 +28,9 @@ pub struct BartonBandis {
     pub shear_stiffness: f64,
 }
 
-/// The greatest angle of friction \[deg\] that is believed where there is little pressure (Barton & Choubey 1977).
+/// Greatest angle of friction \[deg\] at low pressure (Barton & Choubey 1977).
 const STEEPEST: f64 = 70.0;
-/// Share of V_m beyond which the hyperbola goes on along its tangent: a joint that is closed is stiff, not infinitely so.
+/// Share of V_m beyond which the hyperbola continues along its tangent: a closed joint is stiff, but not infinitely.
 const CLOSED: f64 = 0.99;
 
 #[typetag::serde(name = "barton_bandis")]
@@ -54,7 +54,7 @@ pub struct BartonBandisResponse {
 }
 
 impl BartonBandisResponse {
-    /// Pressure, its slope and the energy stored at a closure ≥ 0.
+    /// Returns pressure, its slope and the stored energy at a closure ≥ 0.
     fn closure(&self, closure: f64) -> [f64; 3] {
         let BartonBandis { normal_stiffness: k, greatest_closure: most, .. } = self.joint;
         let x = (closure / most).min(CLOSED);
@@ -64,7 +64,7 @@ impl BartonBandisResponse {
         [pressure + slope * beyond, slope, stored + (pressure + 0.5 * slope * beyond) * beyond]
     }
 
-    /// τ_p at a pressure ≥ 0, and its slope.
+    /// Returns τ_p at a pressure ≥ 0, and its slope.
     fn strength(&self, pressure: f64) -> [f64; 2] {
         let BartonBandis { roughness, wall_strength, residual_angle, .. } = self.joint;
         if pressure == 0.0 {
@@ -99,7 +99,7 @@ impl InterfaceResponse for BartonBandisResponse {
         let k_t = self.joint.shear_stiffness;
         new[0] = old[0];
         if gap[0] > 0.0 {
-            // Open: nothing is carried, and where it closes again it meets nothing along itself.
+            // Open: no traction. If the joint closes again, shear starts from zero at the new position.
             new[0] = gap[1];
             return Ok(TractionPoint { branch: UpdateBranch::OPEN, ..TractionPoint::ZERO });
         }

@@ -1,4 +1,4 @@
-//! `cohesive`: a bond that softens in tension and shear and leaves dry friction behind.
+//! `cohesive`: a bond that softens in tension and shear and leaves dry friction.
 #![doc = include_str!("cohesive.md")]
 
 use crate::shared::*;
@@ -55,7 +55,7 @@ impl Mode {
 }
 
 impl Cohesive {
-    /// What is wrong with the parameters taken together.
+    /// Returns the mistakes in the combination of parameters.
     pub fn validate(&self) -> Vec<(String, String)> {
         let mut wrong = validate_friction(self.friction, self.friction_angle, None);
         let modes = [
@@ -93,7 +93,7 @@ impl InterfaceLaw for Cohesive {
 
 /// The bond softens.
 const SOFTENING: UpdateBranch = UpdateBranch::new("softening", Effect::Softening);
-/// Open, and nothing is left of the bond.
+/// The joint is open and the bond is lost.
 const PARTED: UpdateBranch = UpdateBranch::new("parted", Effect::Softening);
 /// The broken share slides.
 const SLIDING: UpdateBranch = UpdateBranch::new("sliding", Effect::Sliding);
@@ -183,7 +183,7 @@ impl InterfaceResponse for CohesiveResponse {
             let sense = carried.signum();
             let per_damage = g_t - sense * self.friction * pressure / k_t;
             slip = damage * per_damage;
-            // The same as k_t (g_t − z), without its cancellation.
+            // Equal to k_t (g_t − z), without cancellation.
             shear = (1.0 - damage) * k_t * g_t + sense * limit;
             slip_by = [
                 damage_by[0] * per_damage - damage * sense * self.friction * pressure_by_n / k_t,

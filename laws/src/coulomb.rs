@@ -1,4 +1,4 @@
-//! `coulomb`: unilateral contact with Coulomb friction, slip not dilating unless asked.
+//! `coulomb`: unilateral contact with Coulomb friction. Slip does not dilate by default.
 #![doc = include_str!("coulomb.md")]
 
 use crate::shared::*;
@@ -45,7 +45,7 @@ impl InterfaceLaw for Coulomb {
     }
 }
 
-/// Closed, slipped, back within stick, slipped the other way, opened.
+/// Closed, slipped, moved back within stick, slipped in the other direction, opened.
 const KNOWN_PATHS: &[KnownPath] = &[KnownPath {
     table: "friction = 0.6\nnormal_stiffness = 1e10\nshear_stiffness = 5e9",
     source: "by hand: stick with k_t, slip at μ t_n at constant volume",

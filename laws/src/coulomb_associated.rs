@@ -42,7 +42,7 @@ impl InterfaceLaw for CoulombAssociated {
     }
 }
 
-/// Slip opens the joint against its stiffness: γ = 1.4 MPa / (μ² k_n + k_t); then back within stick.
+/// Slip opens the joint against its stiffness: γ = 1.4 MPa / (μ² k_n + k_t). Then the joint moves back within stick.
 const KNOWN_PATHS: &[KnownPath] = &[KnownPath {
     table: "friction = 0.6\nnormal_stiffness = 1e10\nshear_stiffness = 5e9",
     source: "by hand: one facet reached, γ = 1.4e6 / (0.36e10 + 5e9)",

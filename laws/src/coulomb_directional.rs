@@ -1,11 +1,11 @@
-//! `coulomb_directional`: friction that differs with the sense of slip.
+//! `coulomb_directional`: friction that differs with the direction of slip.
 #![doc = include_str!("coulomb_directional.md")]
 
 use crate::shared::*;
 use voussoir_core::law::{Facet, FacetMode, InterfaceLaw};
 use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, PluginKind, Property, Sample};
 
-/// Dry friction with a grain.
+/// Dry friction of a surface with a grain.
 #[derive(Debug, Clone, Keys)]
 #[keys(check = CoulombDirectional::validate)]
 pub struct CoulombDirectional {
@@ -28,7 +28,7 @@ pub struct CoulombDirectional {
 }
 
 impl CoulombDirectional {
-    /// What is wrong with the parameters taken together.
+    /// Returns the mistakes in the combination of parameters.
     pub fn validate(&self) -> Vec<(String, String)> {
         let least = self.friction_forward.min(self.friction_backward);
         validate_friction(Some(least), None, Some(self.dilatancy_angle))
@@ -39,7 +39,7 @@ impl CoulombDirectional {
 impl InterfaceLaw for CoulombDirectional {
     fn facets(&self) -> Option<Vec<Facet>> {
         let dilatancy = tangent(self.dilatancy_angle);
-        // Slip along +t meets t_t < 0: its facet is the one with normal −1, because ġ = −γ d.
+        // Slip along +t is resisted by t_t < 0: its facet has the normal −1, because ġ = −γ d.
         let sliding = |sense: f64, friction: f64| Facet {
             mode: FacetMode::Sliding,
             normal: [-friction, sense],
@@ -54,7 +54,7 @@ impl InterfaceLaw for CoulombDirectional {
     }
 }
 
-/// Slipped along +t against μ₊, back within stick, and along −t against μ₋.
+/// Slipped along +t against μ₊, moved back within stick, and slipped along −t against μ₋.
 const KNOWN_PATHS: &[KnownPath] = &[KnownPath {
     table: "friction_forward = 0.6\nfriction_backward = 0.3\nnormal_stiffness = 1e10\nshear_stiffness = 5e9",
     source: "by hand: stick with k_t, slip at μ₊ t_n along +t and at μ₋ t_n along −t",

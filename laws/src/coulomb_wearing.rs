@@ -1,4 +1,4 @@
-//! `coulomb_wearing`: dilatant friction whose dilatancy wears out with slip.
+//! `coulomb_wearing`: dilatant friction whose dilatancy decreases with slip.
 #![doc = include_str!("coulomb_wearing.md")]
 
 use crate::shared::*;
@@ -52,10 +52,10 @@ impl InterfaceLaw for CoulombWearing {
     }
 }
 
-/// The joint slides and climbs on what is left of its roughness.
+/// The joint slides and opens on its remaining roughness.
 const SLIDING: UpdateBranch = UpdateBranch::new("sliding", Effect::Sliding);
 
-/// The joint loses strength faster than its stiffness lets shear fall.
+/// The strength of the joint falls faster than its stiffness allows shear to fall.
 const SNAPS: UpdateFailure =
     UpdateFailure::Law("the joint wears faster than its shear can fall: raise wear_slip or shear_stiffness");
 
@@ -73,17 +73,17 @@ pub struct WearingResponse {
 }
 
 impl WearingResponse {
-    /// d(z) = tan ψ_0 e^(−z/z_0).
+    /// Returns d(z) = tan ψ_0 e^(−z/z_0).
     fn slope(&self, total: f64) -> f64 {
         self.dilatancy * (-total / self.wear_slip).exp()
     }
 
-    /// D(z) = z_0 tan ψ_0 (1 − e^(−z/z_0)), what slip has opened \[m\].
+    /// Returns D(z) = z_0 tan ψ_0 (1 − e^(−z/z_0)), the opening by slip \[m\].
     fn opened(&self, total: f64) -> f64 {
         -self.wear_slip * self.dilatancy * (-total / self.wear_slip).exp_m1()
     }
 
-    /// The slip Δ ≥ 0 at which f(Δ) = |t̂_t| − k_t Δ − (μ + d) (t̂_n + k_n ΔD) = 0, with −df/dΔ there.
+    /// Returns the slip Δ ≥ 0 at which f(Δ) = |t̂_t| − k_t Δ − (μ + d) (t̂_n + k_n ΔD) = 0, with −df/dΔ there.
     fn slip(&self, trial: [f64; 2], total: f64) -> Result<(f64, f64), UpdateFailure> {
         let [k_n, k_t] = self.stiffness;
         let shear = trial[1].abs();
@@ -93,7 +93,7 @@ impl WearingResponse {
             let strength = (self.friction + d) * normal;
             (shear - k_t * slip - strength, k_t - d / self.wear_slip * normal + (self.friction + d) * k_n * d)
         };
-        // f(0) > 0 and f(|t̂_t| / k_t) ≤ 0; where f falls at both ends of what the root leaves, there is one root.
+        // f(0) > 0 and f(|t̂_t| / k_t) ≤ 0. If f decreases at both ends of the bracket, there is one root.
         let (mut low, mut high) = (0.0, shear / k_t);
         if evaluate(0.0).1 <= 0.0 {
             return Err(SNAPS);
@@ -144,7 +144,7 @@ impl InterfaceResponse for WearingResponse {
         let trial = [-k_n * (gap[0] - self.opened(total)), -k_t * (gap[1] - slipped)];
         let stored = |t: [f64; 2]| 0.5 * (t[0] * t[0] / k_n + t[1] * t[1] / k_t);
         if trial[0] < 0.0 {
-            // Open: nothing is carried, and where it closes again it meets nothing along itself.
+            // Open: no traction. If the joint closes again, shear starts from zero at the new position.
             new[0] = gap[1];
             return Ok(TractionPoint { branch: UpdateBranch::OPEN, ..TractionPoint::ZERO });
         }
@@ -175,7 +175,7 @@ const WEAR_T: f64 = 0.005336626033649185;
 const WEAR_P: f64 = 9833747.742548015;
 const WEAR_S: f64 = 6683130.168245922;
 
-/// Without dilatancy dry friction; with it a slip from which gaps and tractions follow backwards.
+/// Without dilatancy: dry friction. With dilatancy: a given slip, from which gaps and tractions are computed backwards.
 const KNOWN_PATHS: &[KnownPath] = &[
     KnownPath {
         table: "friction = 0.5\ndilatancy_angle = 0.0\nwear_slip = 0.01\nnormal_stiffness = 1e10\nshear_stiffness = 5e9",

@@ -1,4 +1,4 @@
-//! `drucker_prager_cap`: stone that fails in shear and crushes under a cap.
+//! `drucker_prager_cap`: stone that fails in shear and crushes at a cap.
 #![doc = include_str!("drucker_prager_cap.md")]
 
 pub mod surface;
@@ -56,7 +56,7 @@ pub struct DruckerPragerCap {
 }
 
 impl DruckerPragerCap {
-    /// The stone of Drosopoulos, Stavroulakis & Massalas (2008), E = 5 GPa, ν = 0.2, with a constant p_b \[Pa\].
+    /// Returns the stone of Drosopoulos, Stavroulakis & Massalas (2008), E = 5 GPa, ν = 0.2, with a constant p_b \[Pa\].
     pub fn drosopoulos_2008(hydrostatic_strength: f64) -> Self {
         DruckerPragerCap {
             young_modulus: 5e9,
@@ -74,8 +74,7 @@ impl DruckerPragerCap {
         }
     }
 
-    /// p_b over compaction: the table, or the constant p_b that gives the uniaxial strength. Empty
-    /// where neither is possible.
+    /// Returns p_b over compaction: the table, or the constant p_b that gives the uniaxial strength. Empty if neither is possible.
     pub fn hardening(&self) -> Vec<[f64; 2]> {
         match (&self.hardening, self.uniaxial_strength) {
             (Some(table), _) => table.clone(),
@@ -84,9 +83,8 @@ impl DruckerPragerCap {
         }
     }
 
-    /// The p_b \[Pa\] at which uniaxial compression (p = f/3, q = f) meets the cap at f: with
-    /// D_0 = d + f tan β / 3 and x = f/3 − p_a, the root x ≥ 0 of
-    /// x² + (R f / k)² = R² (D_0 − x tan β)². `None` where f > k D_0: it fails in shear before.
+    /// Returns the p_b \[Pa\] at which uniaxial compression (p = f/3, q = f) meets the cap at f: with D_0 = d + f tan β / 3 and
+    /// x = f/3 − p_a, the root x ≥ 0 of x² + (R f / k)² = R² (D_0 − x tan β)². `None` if f > k D_0: it fails in shear first.
     pub fn hydrostatic_strength(&self, uniaxial: f64) -> Option<f64> {
         let surface = self.surface();
         let Surface { friction, eccentricity: r, roundness: k, .. } = surface;
@@ -102,7 +100,7 @@ impl DruckerPragerCap {
         Some(uniaxial / 3.0 - x + r * (size - x * friction))
     }
 
-    /// Yield surface and flow.
+    /// Returns yield surface and flow.
     pub fn surface(&self) -> Surface {
         Surface::new(
             Isotropic::new(self.young_modulus, self.poisson_ratio),
@@ -113,15 +111,15 @@ impl DruckerPragerCap {
         )
     }
 
-    /// Drop of p_b by crushing \[Pa\], and the crushing w_c \[m\] over which it happens: the triangle
-    /// between them is G_c. `None` where crushing does not soften.
+    /// Returns the drop of p_b by crushing \[Pa\], and the crushing w_c \[m\] over which it happens: the triangle between them is
+    /// G_c. `None` if crushing does not soften.
     pub fn softening(&self) -> Option<[f64; 2]> {
         let energy = self.crushing_fracture_energy?;
         let drop = (1.0 - self.residual_ratio) * self.hardening().last()?[1];
         Some([drop, 2.0 * energy / drop])
     }
 
-    /// The steepest fall −dp_b/dε_v \[Pa\] by crushing that a point can follow (derived on the law's page).
+    /// Returns the steepest fall −dp_b/dε_v \[Pa\] by crushing that a point can follow (derived on the law's page).
     pub fn steepest_softening(&self) -> f64 {
         let surface = self.surface();
         let Surface { friction, roundness: k, eccentricity: r, .. } = surface;
@@ -161,7 +159,7 @@ impl DruckerPragerCap {
         steepest
     }
 
-    /// What is wrong with the parameters taken together.
+    /// Returns the mistakes in the combination of parameters.
     pub fn validate(&self) -> Vec<(String, String)> {
         let mut wrong = Vec::new();
         let mut say = |key: &str, message: String| wrong.push((key.to_string(), message));
@@ -233,7 +231,7 @@ impl DruckerPragerCap {
         wrong
     }
 
-    /// The steepest dp_b/dε_v \[Pa\] for which every return is unique (derived on the law's page).
+    /// Returns the steepest dp_b/dε_v \[Pa\] for which every return is unique (derived on the law's page).
     pub fn steepest_hardening(&self) -> f64 {
         let surface = self.surface();
         let Surface { friction, roundness, eccentricity, transition, tangency, .. } = surface;
@@ -270,7 +268,7 @@ impl BulkMaterial for DruckerPragerCap {
     }
 }
 
-/// Squeezed from all sides beyond a constant p_b, then back with K.
+/// Hydrostatic compression beyond a constant p_b, then unloading with K.
 const KNOWN_PATHS: &[KnownPath] = &[KnownPath {
     table: "young_modulus = 5e9\npoisson_ratio = 0.2\ndensity = 2200.0\ncap_friction_angle = 40.0\ncap_cohesion = 1e7\ncap_eccentricity = 0.3\ntransition = 0.05\nhardening = [[0.0, 1e7]]",
     source: "by hand: p = min(K ε_v, p_b), unloading with K = E / (3 (1 − 2ν))",

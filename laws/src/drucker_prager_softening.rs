@@ -1,4 +1,4 @@
-//! `drucker_prager_softening`: a Drucker–Prager cone that shrinks as it yields.
+//! `drucker_prager_softening`: a Drucker–Prager cone that shrinks by yielding.
 #![doc = include_str!("drucker_prager_softening.md")]
 
 use crate::meridian::{APEX, Returned, SHEAR, Trial, state_names};
@@ -44,8 +44,8 @@ impl DruckerPragerSoftening {
         self.yield_stress - self.residual_stress
     }
 
-    /// The steepest softening −dR/dκ \[Pa\] that a point can follow: the smallest of E (1 − A)²
-    /// (uniaxial compression would snap back), 9 K A² (the tip of the cone) and 3 G + 9 K A².
+    /// Returns the steepest softening −dR/dκ \[Pa\] that a point can follow: the smallest of E (1 − A)² (uniaxial compression would
+    /// snap back), 9 K A² (the tip of the cone) and 3 G + 9 K A².
     pub fn steepest_softening(&self) -> f64 {
         let Isotropic { bulk, shear } = Isotropic::new(self.young_modulus, self.poisson_ratio);
         let a = self.pressure_coefficient;
@@ -53,7 +53,7 @@ impl DruckerPragerSoftening {
         (self.young_modulus * (1.0 - a).powi(2)).min(tip).min(3.0 * shear + 9.0 * bulk * a * a)
     }
 
-    /// What is wrong with the parameters taken together.
+    /// Returns the mistakes in the combination of parameters.
     pub fn validate(&self) -> Vec<(String, String)> {
         let mut wrong = Vec::new();
         if self.residual_stress >= self.yield_stress {
@@ -114,7 +114,7 @@ const KAPPA: usize = 6;
 static STATE: [&str; 7] = state_names(&["cumulated_plastic_strain [-]"]);
 
 impl SofteningUpdate {
-    /// κ_u of a point with this characteristic length \[m\].
+    /// Returns κ_u of a point with this characteristic length \[m\].
     fn ultimate(&self, length: f64) -> f64 {
         match (self.law.ultimate_plastic_strain, self.law.crushing_fracture_energy) {
             (_, Some(energy)) => 2.0 * energy / (length * self.law.drop()),
@@ -122,9 +122,8 @@ impl SofteningUpdate {
         }
     }
 
-    /// The root Δκ ≥ 0 of excess − stiffness Δκ − (R(κ + Δκ) − R(κ)) = 0 with the slope
-    /// dR/dκ there. R falls by `slope` up to κ_u; `stiffness` exceeds it, so the left
-    /// side falls and the root is unique.
+    /// Returns the root Δκ ≥ 0 of excess − stiffness Δκ − (R(κ + Δκ) − R(κ)) = 0 with the slope dR/dκ there. R decreases by
+    /// `slope` up to κ_u; `stiffness` exceeds it, so the left side decreases and the root is unique.
     fn multiplier(&self, excess: f64, stiffness: f64, kappa: f64, ultimate: f64) -> (f64, f64) {
         let slope = -self.law.drop() / ultimate;
         let left = (ultimate - kappa).max(0.0);
@@ -158,7 +157,7 @@ impl StressUpdate for SofteningUpdate {
         new: &mut [f64],
     ) -> Result<StressPoint, UpdateFailure> {
         let length = context.length;
-        // Also refuses a length that is no number.
+        // Also refuses a length that is NaN.
         if self.law.crushing_fracture_energy.is_some() && !(length > 0.0 && length <= self.largest_length) {
             return Err(UpdateFailure::LengthTooLarge);
         }
@@ -207,7 +206,7 @@ impl StressUpdate for SofteningUpdate {
     }
 }
 
-/// Sheared at constant volume, Δκ = (√3 G γ − σ_Y) / (3 G + 9 K A² + dR/dκ), which presses by 3 K A Δκ; then back.
+/// Sheared at constant volume, Δκ = (√3 G γ − σ_Y) / (3 G + 9 K A² + dR/dκ), which gives a pressure of 3 K A Δκ; then back.
 const KNOWN_PATHS: &[KnownPath] = &[KnownPath {
     table: "young_modulus = 5e9\npoisson_ratio = 0.2\ndensity = 2200.0\npressure_coefficient = 0.3\nyield_stress = 1e7\nresidual_stress = 1e6\nultimate_plastic_strain = 0.01",
     source: "by hand: radial return on the cone in pure shear",

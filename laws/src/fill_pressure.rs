@@ -1,4 +1,4 @@
-//! `fill_pressure`: Rankine's pressures, of which shares are mobilised.
+//! `fill_pressure`: mobilised shares of Rankine's pressures.
 #![doc = include_str!("fill_pressure.md")]
 
 use voussoir_core::law::{FillResistance, FillState};
@@ -7,11 +7,11 @@ use voussoir_core::plugin::{Card, Keys, PluginKind};
 /// The least pressure of the fill.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
 pub enum LeastPressure {
-    /// None.
+    /// No pressure.
     Zero,
-    /// Active: the fill follows a ring that moves away.
+    /// Active pressure: the fill follows a ring that moves away.
     Active,
-    /// At rest.
+    /// Pressure at rest.
     AtRest,
 }
 
@@ -32,7 +32,7 @@ pub struct FillPressure {
     pub stiffness: Option<f64>,
 }
 
-/// K_p = (1 + sin φ)/(1 − sin φ).
+/// Returns K_p = (1 + sin φ)/(1 − sin φ).
 fn passive_coefficient(friction_angle: f64) -> f64 {
     let sine = friction_angle.sin();
     (1.0 + sine) / (1.0 - sine)
@@ -47,7 +47,7 @@ impl FillResistance for FillPressure {
         let greatest = self.passive_factor * k_p * vertical_stress + self.cohesion_factor * by_cohesion;
         let least = match self.lower {
             LeastPressure::Zero => 0.0,
-            // K_a = 1/K_p; cohesion holds the fill back: 2 √K_a c.
+            // K_a = 1/K_p; cohesion reduces the pressure by 2 √K_a c.
             LeastPressure::Active => ((vertical_stress - by_cohesion) / k_p).max(0.0),
             LeastPressure::AtRest => (1.0 - friction_angle.sin()) * vertical_stress,
         };
@@ -89,7 +89,7 @@ mod tests {
         FillState { vertical_stress: 1000.0, friction_angle: f64::to_radians(degrees), cohesion }
     }
 
-    /// K_p of 0°, 30° and 45°, and the cohesion's part.
+    /// K_p for 0°, 30° and 45°, and the part of the cohesion.
     #[test]
     fn passive_pressures_are_rankines() {
         for (degrees, k_p) in [(0.0, 1.0), (30.0, 3.0), (45.0, 3.0 + 2.0 * 2f64.sqrt())] {
@@ -99,8 +99,8 @@ mod tests {
         }
     }
 
-    /// Coulomb's wedge: the passive force on a height h is the least, over wedges that rise at θ, of what pushes a
-    /// wedge of weight γ h² cot θ / 2 with cohesion c h / sin θ up its plane. Its minimum is K_p γ h²/2 + 2 c √K_p h.
+    /// Coulomb's wedge: the passive force on a height h is the least force, over wedges that rise at θ, that pushes a wedge of
+    /// weight γ h² cot θ / 2 with cohesion c h / sin θ up its plane. Its minimum is K_p γ h²/2 + 2 c √K_p h.
     #[test]
     fn coulombs_wedge_gives_the_same_force() {
         let (unit_weight, height) = (19000.0, 1.7);
@@ -120,7 +120,7 @@ mod tests {
         }
     }
 
-    /// The least pressure is what it says, and never above the greatest.
+    /// The least pressure has its documented value, and never exceeds the greatest.
     #[test]
     fn least_pressures() {
         let least = |lower, cohesion| law(lower, 1.0).pressures(&state(30.0, cohesion))[0];

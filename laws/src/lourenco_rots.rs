@@ -74,7 +74,7 @@ impl LourencoRots {
         }
     }
 
-    /// What is wrong with the parameters taken together.
+    /// Returns the mistakes in the combination of parameters.
     pub fn validate(&self) -> Vec<(String, String)> {
         let mut wrong = validate_friction(self.friction, self.friction_angle, Some(self.dilatancy_angle));
         let surface = self.surface();
@@ -132,20 +132,20 @@ impl InterfaceLaw for LourencoRots {
     }
 }
 
-/// The bond tears.
+/// The bond fails in tension.
 const CRACKING: UpdateBranch = UpdateBranch::new("cracking", Effect::Softening);
-/// The bond is sheared off.
+/// The bond fails in shear.
 const SHEARING: UpdateBranch = UpdateBranch::new("shearing", Effect::Softening);
-/// Both at the corner of tension cut-off and Coulomb's line.
+/// Cracking and shearing at the corner of tension cut-off and Coulomb's line.
 const CRACKING_SHEARING: UpdateBranch = UpdateBranch::new("cracking_shearing", Effect::Softening);
-/// Nearly nothing is left of the bond, and the joint slides.
+/// The bond is nearly lost, and the joint slides.
 const SLIDING: UpdateBranch = UpdateBranch::new("sliding", Effect::Sliding);
 /// The joint crushes.
 const CRUSHING: UpdateBranch = UpdateBranch::new("crushing", Effect::Yielding);
 /// The joint crushes and slides.
 const CRUSHING_SHEARING: UpdateBranch = UpdateBranch::new("crushing_shearing", Effect::Yielding);
 
-/// Share of the bond below which the joint slides rather than loses its bond.
+/// Share of the bond below which the joint counts as sliding.
 const NO_BOND: f64 = 0.01;
 
 /// The law at a point. State: plastic opening and slip, loss of bond κ, crushing κ_3.
@@ -155,8 +155,8 @@ pub struct CompositeResponse {
 }
 
 impl CompositeResponse {
-    /// Energy that the return dissipates \[J/m²\]: strengths are averaged over the growth of their variables, so that it
-    /// is exact for opening, slip at constant pressure, and closing.
+    /// Returns the energy that the return dissipates \[J/m²\]. Strengths are averaged over the growth of their variables, so that
+    /// the energy is exact for opening, for slip at constant pressure, and for closing.
     fn dissipated(&self, old: &[f64], back: &Returned) -> f64 {
         let Surface { tension, cohesion, dilatancy, cap_shear, .. } = self.surface;
         let ([sigma, tau], [opened, slipped, crushed]) = (back.stress, back.multipliers);
@@ -213,7 +213,7 @@ impl InterfaceResponse for CompositeResponse {
         let trial = [k_n * (gap[0] - old[0]), k_t * (gap[1] - old[1])];
         let stored = |t: [f64; 2]| 0.5 * (t[0] * t[0] / k_n + t[1] * t[1] / k_t);
         let sense = if trial[1] < 0.0 { -1.0 } else { 1.0 };
-        // What the differences above have lost.
+        // Rounding error of the differences above.
         let rounding = 4.0 * f64::EPSILON * (k_n * (gap[0].abs() + old[0].abs()) + k_t * (gap[1].abs() + old[1].abs()));
         let from = Return {
             surface: &self.surface,
@@ -244,8 +244,8 @@ impl InterfaceResponse for CompositeResponse {
     }
 }
 
-/// Joints of the shear walls of Raijmakers & Vermeltfoort (1992) as Lourenço (1996) models them, with his friction, and with
-/// the bond of van der Pluijm's (1993) shear tests, c = 0.8 MPa, μ 1 → 0.75, G_II = 50 J/m².
+/// Joints of the shear walls of Raijmakers & Vermeltfoort (1992) with the model and the friction of Lourenço (1996), and with
+/// the bond of the shear tests of van der Pluijm (1993), c = 0.8 MPa, μ 1 → 0.75, G_II = 50 J/m².
 const WALL: &str = "friction = 0.75\ntensile_strength = 2.5e5\ncohesion = 3.5e5\nnormal_stiffness = 8.2e10\nshear_stiffness = 3.6e10\ntensile_fracture_energy = 18.0\nshear_fracture_energy = 125.0\ncompressive_strength = 1.05e7\ncompressive_fracture_energy = 5000.0\npeak_closing = 9e-5";
 const SHEARED: &str = "friction = 1.0\nresidual_friction = 0.75\ntensile_strength = 2.5e5\ncohesion = 8e5\nnormal_stiffness = 8.2e10\nshear_stiffness = 3.6e10\ntensile_fracture_energy = 18.0\nshear_fracture_energy = 50.0\ncompressive_strength = 1.05e7\ncompressive_fracture_energy = 5000.0\npeak_closing = 9e-5";
 const DILATANT: &str = "friction = 0.8\nresidual_friction = 0.7\ndilatancy_angle = 5.0\ntensile_strength = 2e5\ncohesion = 3e5\nnormal_stiffness = 2e10\nshear_stiffness = 1.2e10\ntensile_fracture_energy = 15.0\nshear_fracture_energy = 90.0\ncompressive_strength = 4e6\ncompressive_fracture_energy = 4000.0\npeak_closing = 2e-4\ncap_shear_factor = 3.0";

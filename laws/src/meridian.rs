@@ -1,8 +1,8 @@
 //! From a return in the meridian plane to stresses in space.
 //!
-//! Isotropic laws whose yield surface and flow potential depend on p = −tr σ / 3 (compression positive)
-//! and q = √(3/2 s:s) alone keep the direction of the trial deviator: with the return (P, Q) → (p, q),
-//! σ = y s_trial − p 1, y = q / Q. Differentiating with n = s_trial / Q, dQ = 3 G n·dε, dP = −K tr dε:
+//! Isotropic laws whose yield surface and flow potential depend only on p = −tr σ / 3 (compression positive) and
+//! q = √(3/2 s:s) keep the direction of the trial deviator: with the return (P, Q) → (p, q), σ = y s_trial − p 1, y = q / Q.
+//! Differentiation with n = s_trial / Q, dQ = 3 G n·dε, dP = −K tr dε gives
 //!
 //! ```text
 //! dσ = 2 G y dev dε + n (dq − y dQ) − 1 dp
@@ -10,7 +10,7 @@
 
 use voussoir_core::law::{Effect, Isotropic, StressPoint, UpdateBranch, UpdateFailure, Voigt, von_mises};
 
-/// On a surface that fails in shear.
+/// On a surface of shear failure.
 pub const SHEAR: UpdateBranch = UpdateBranch::new("shear", Effect::Yielding);
 /// At the tip of a cone in tension.
 pub const APEX: UpdateBranch = UpdateBranch::new("apex", Effect::Tearing);
@@ -24,7 +24,7 @@ const PLASTIC_STRAIN: [&str; 6] = [
     "plastic_strain_zx [-]",
 ];
 
-/// Names of the N numbers of a state: the plastic strain (engineering shears), then a law's own.
+/// Returns the names of the N numbers of a state: the plastic strain (engineering shears), then the law's own names.
 pub const fn state_names<const N: usize>(own: &[&'static str]) -> [&'static str; N] {
     let mut names = [""; N];
     let mut i = 0;
@@ -51,23 +51,23 @@ pub struct Trial {
 pub struct Returned {
     /// p \[Pa\].
     pub pressure: f64,
-    /// q / Q; 1 where Q = 0 and the point is elastic.
+    /// q / Q; 1 if Q = 0 and the point is elastic.
     pub ratio: f64,
     /// Compaction of the step, −tr Δε^p.
     pub compaction: f64,
     /// ∂(p, q) / ∂(P, Q).
     pub jacobian: [[f64; 2]; 2],
-    /// Where it lies.
+    /// Branch of the update.
     pub branch: UpdateBranch,
 }
 
-/// q²/(6 G) + p²/(2 K).
+/// Returns q²/(6 G) + p²/(2 K).
 fn stored(elastic: &Isotropic, pressure: f64, mises: f64) -> f64 {
     mises * mises / (6.0 * elastic.shear) + pressure * pressure / (2.0 * elastic.bulk)
 }
 
 impl Trial {
-    /// From the strain and the plastic strain that begins the state.
+    /// Computes the trial from the strain and the plastic strain at the start of the state.
     pub fn new(elastic: &Isotropic, strain: &Voigt, state: &[f64]) -> Result<Self, UpdateFailure> {
         if !strain.iter().chain(state).all(|x| x.is_finite()) {
             return Err(UpdateFailure::NotFinite);
@@ -84,7 +84,7 @@ impl Trial {
         Ok(Trial { deviator, pressure, mises })
     }
 
-    /// The elastic answer.
+    /// Returns the elastic stress and tangent.
     pub fn elastic(&self, elastic: &Isotropic) -> StressPoint {
         let mut stress = self.deviator;
         stress[..3].iter_mut().for_each(|entry| *entry -= self.pressure);
@@ -97,7 +97,7 @@ impl Trial {
         }
     }
 
-    /// The answer with this return; adds the step's plastic strain to the state.
+    /// Returns stress and tangent for this return; adds the step's plastic strain to the state.
     pub fn returned(&self, elastic: &Isotropic, back: &Returned, state: &mut [f64]) -> StressPoint {
         let Isotropic { bulk, shear } = *elastic;
         let [[p_by_p, p_by_q], [q_by_p, q_by_q]] = back.jacobian;

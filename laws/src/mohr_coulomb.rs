@@ -57,12 +57,13 @@ impl InterfaceLaw for MohrCoulomb {
     }
 }
 
-/// f_c \[Pa\] from which on a joint does not crush: the rounding of a motion times such a strength would outweigh all loads.
+/// Least f_c \[Pa\] at which a joint is treated as uncrushable: the rounding error of a motion times such a strength would
+/// exceed all loads.
 const NO_CRUSHING: f64 = 1e15;
 
 const TABLE: &str = "friction = 0.6\ncohesion = 4e5\ntensile_strength = 2e5\ncompressive_strength = 5e6\ndilatancy_angle = 10.0\nnormal_stiffness = 1e10\nshear_stiffness = 5e9";
 
-/// Torn, closed on what was torn, crushed; and sheared with dilatancy, then back.
+/// Torn, closed on the torn surface, crushed; and sheared with dilatancy, then moved back.
 const KNOWN_PATHS: &[KnownPath] = &[
     KnownPath {
         table: TABLE,

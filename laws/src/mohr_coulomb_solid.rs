@@ -36,7 +36,7 @@ pub struct MohrCoulombSolid {
 }
 
 impl MohrCoulombSolid {
-    /// What is wrong with the parameters taken together.
+    /// Returns the mistakes in the combination of parameters.
     pub fn validate(&self) -> Vec<(String, String)> {
         let mut wrong = Vec::new();
         if self.dilatancy_angle > self.friction_angle {
@@ -58,11 +58,11 @@ impl MohrCoulombSolid {
     }
 }
 
-/// One facet of shear is reached.
+/// One shear facet is active.
 const SHEAR: UpdateBranch = UpdateBranch::new("shear", Effect::Yielding);
-/// Two are: two principal stresses are equal.
+/// Two shear facets are active: two principal stresses are equal.
 const SHEAR_EDGE: UpdateBranch = UpdateBranch::new("shear_edge", Effect::Yielding);
-/// Shear and tension together.
+/// Shear and tension facets are active.
 const SHEAR_TENSION: UpdateBranch = UpdateBranch::new("shear_tension", Effect::Yielding);
 
 fn branch(shear: usize, tension: usize) -> UpdateBranch {
@@ -89,7 +89,7 @@ impl BulkMaterial for MohrCoulombSolid {
     fn inelastic(&self) -> Option<Arc<dyn StressUpdate>> {
         let (sine, cosine) = self.friction_angle.to_radians().sin_cos();
         let dilates = self.dilatancy_angle.to_radians().sin();
-        // σ_i (1 + sin φ) − σ_j (1 − sin φ) ≤ 2 c cos φ; of sorted stresses these three.
+        // σ_i (1 + sin φ) − σ_j (1 − sin φ) ≤ 2 c cos φ; for sorted stresses these three facets are sufficient.
         let shear = [(0, 2), (0, 1), (1, 2)].map(|(major, minor)| {
             let of = |s: f64| {
                 let mut v = [0.0; 3];

@@ -1,4 +1,4 @@
-//! `orthotropic_elastic`: linear elasticity with three axes, such as bedded stone.
+//! `orthotropic_elastic`: linear elasticity with three axes, for example of bedded stone.
 #![doc = include_str!("orthotropic_elastic.md")]
 
 use crate::shared::MaterialKeys;
@@ -39,7 +39,7 @@ pub struct OrthotropicElastic {
 }
 
 impl OrthotropicElastic {
-    /// S × E_1 along the material's own axes.
+    /// Returns S × E_1 along the axes of the material.
     fn compliance(&self) -> [[f64; 6]; 6] {
         let e = self.young_modulus_1;
         let (e_2, e_3, g) = (self.young_modulus_2 / e, self.young_modulus_3 / e, self.shear_modulus_12 / e);
@@ -54,7 +54,7 @@ impl OrthotropicElastic {
         ]
     }
 
-    /// What is wrong with the parameters taken together: the compliance must be positive definite.
+    /// Returns the mistakes in the combination of parameters: the compliance must be positive definite.
     pub fn validate(&self) -> Vec<(String, String)> {
         let pairs = [
             ("poisson_ratio_12", self.poisson_ratio_12, self.young_modulus_1, self.young_modulus_2),

@@ -1,15 +1,15 @@
 //! Perfect plasticity of isotropic materials whose strength is a polyhedron of principal stresses.
 //!
-//! With the principal stresses of the trial σ̂_1 ≥ σ̂_2 ≥ σ̂_3 (tension positive), facets a·σ ≤ b and flow Δε^p = Σ γ d, γ ≥ 0:
-//! the stress keeps the trial's axes, and at most three facets are active. So the answer is the one admissible among
-//! all sets of up to three facets, each a linear problem Aᵀ C D γ = Aᵀ σ̂ − b (Clausen, Damkilde & Andersen 2006,
-//! Comput. Struct. 84). The tangent along the principal axes is
+//! The principal stresses of the trial are σ̂_1 ≥ σ̂_2 ≥ σ̂_3 (tension positive). The facets are a·σ ≤ b with the flow
+//! Δε^p = Σ γ d, γ ≥ 0. The stress keeps the trial's axes, and at most three facets are active. So the result is the only
+//! admissible one among all sets of up to three facets, each a linear problem Aᵀ C D γ = Aᵀ σ̂ − b (Clausen, Damkilde &
+//! Andersen 2006, Comput. Struct. 84). The tangent along the principal axes is
 //!
 //! ```text
 //! C_ep = C − C D (Aᵀ C D)⁻¹ Aᵀ C,    G_ij = G (σ_i − σ_j) / (σ̂_i − σ̂_j) for the shear of axes i and j
 //! ```
 //!
-//! because turning strains turn the stresses with them; where σ̂_i = σ̂_j the shear is the limit of C_ep.
+//! because strains that rotate also rotate the stresses; if σ̂_i = σ̂_j, the shear is the limit of C_ep.
 
 use crate::meridian::state_names;
 use voussoir_core::law::{Elasticity, StressPoint, StressUpdate, UpdateBranch, UpdateContext, UpdateFailure, Voigt};
@@ -25,7 +25,7 @@ pub struct PrincipalFacet {
     pub bound: f64,
     /// d.
     pub flow: Vector,
-    /// Whether it bounds tension.
+    /// True if the facet bounds tension.
     pub tension: bool,
 }
 
@@ -40,16 +40,16 @@ pub struct PrincipalUpdate {
 
 static STATE: [&str; 6] = state_names(&[]);
 
-/// Share of the trial stress by which facets may be exceeded: rounding.
+/// Share of the trial stress by which facets may be exceeded due to rounding.
 const ROUNDING: f64 = 1e-11;
-/// Principal stresses closer than this share of the greatest are equal, and their axes arbitrary.
+/// Principal stresses are equal, and their axes arbitrary, if their difference is below this share of the greatest stress.
 const EQUAL: f64 = 1e-9;
 
 fn dot(a: &Vector, b: &Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// An active set: facets with multipliers, and the stress they give.
+/// An active set: facets with multipliers, and the resulting stress.
 #[derive(Clone, Copy)]
 struct Active {
     facets: [usize; 3],
@@ -60,7 +60,7 @@ struct Active {
 }
 
 impl PrincipalUpdate {
-    /// From E \[Pa\], ν, the facets, and names of branches by the numbers of active facets (shear, tension).
+    /// Creates the law from E \[Pa\], ν, the facets, and names of branches by the numbers of active facets (shear, tension).
     pub fn new(
         young_modulus: f64,
         poisson_ratio: f64,
@@ -70,13 +70,13 @@ impl PrincipalUpdate {
         PrincipalUpdate { young_modulus, poisson_ratio, facets, branch }
     }
 
-    /// λ and G of Lamé \[Pa\].
+    /// Returns Lamé's λ and G \[Pa\].
     fn lame(&self) -> [f64; 2] {
         let (e, nu) = (self.young_modulus, self.poisson_ratio);
         [e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), e / (2.0 * (1.0 + nu))]
     }
 
-    /// C v.
+    /// Returns C v.
     fn pull(&self, v: &Vector) -> Vector {
         let [lambda, shear] = self.lame();
         let trace = lambda * (v[0] + v[1] + v[2]);
@@ -87,7 +87,7 @@ impl PrincipalUpdate {
         self.facets.iter().map(|f| dot(&f.normal, stress) - f.bound).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// The return with these facets active; `None` where they depend on each other or a multiplier is negative.
+    /// Returns the result with these active facets; `None` if they depend on each other or a multiplier is negative.
     fn with(&self, trial: &Vector, facets: [usize; 3], count: usize) -> Option<Active> {
         let inverse = self.inverse(&facets, count)?;
         let over: Vector = std::array::from_fn(|i| match self.facets.get(facets[i]) {
@@ -106,7 +106,7 @@ impl PrincipalUpdate {
         Some(Active { facets, count, steps, stress, excess: self.excess(&stress) })
     }
 
-    /// (Aᵀ C D)⁻¹ in its first `count` rows and columns.
+    /// Returns (Aᵀ C D)⁻¹ in its first `count` rows and columns.
     fn inverse(&self, facets: &[usize; 3], count: usize) -> Option<[Vector; 3]> {
         let mut m = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         for i in 0..count {
@@ -133,7 +133,7 @@ impl PrincipalUpdate {
         }))
     }
 
-    /// The admissible return of a trial outside.
+    /// Returns the admissible result for a trial outside the surface.
     fn returned(&self, trial: &Vector) -> Result<Active, UpdateFailure> {
         let size = trial.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
         let mut best: Option<Active> = None;
@@ -158,7 +158,7 @@ impl PrincipalUpdate {
         }
     }
 
-    /// C_ep along the principal axes, shears by the turning of the axes.
+    /// Returns C_ep along the principal axes; shears follow from the rotation of the axes.
     fn tangent(&self, trial: &Vector, active: &Active) -> [Voigt; 6] {
         let [lambda, shear] = self.lame();
         let mut tangent = [[0.0; 6]; 6];
@@ -169,7 +169,7 @@ impl PrincipalUpdate {
                 let mut entry = lambda + if i == j { 2.0 * shear } else { 0.0 };
                 for (k, one) in set.iter().enumerate() {
                     for (l, other) in set.iter().enumerate() {
-                        // C is symmetric: row of Aᵀ C is C a.
+                        // C is symmetric: a row of Aᵀ C is C a.
                         let (pull, row) = (self.pull(&self.facets[*one].flow), self.pull(&self.facets[*other].normal));
                         entry -= pull[i] * inverse[k][l] * row[j];
                     }
@@ -190,13 +190,13 @@ impl PrincipalUpdate {
     }
 }
 
-/// Principal values in falling order, with their axes as rows: Jacobi rotations, which keep axes orthogonal also where
+/// Returns the principal values in descending order, with their axes as rows. Jacobi rotations keep axes orthogonal also if
 /// values are equal.
 fn principal(stress: &Voigt) -> (Vector, [Vector; 3]) {
     let mut m =
         [[stress[0], stress[3], stress[5]], [stress[3], stress[1], stress[4]], [stress[5], stress[4], stress[2]]];
     let mut axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    // Convergence is quadratic: six sweeps reach rounding; twelve are safe.
+    // Convergence is quadratic: six sweeps are sufficient, twelve are safe.
     for _ in 0..12 {
         for (p, q) in [(0, 1), (0, 2), (1, 2)] {
             if m[p][q] == 0.0 {
@@ -223,7 +223,7 @@ fn principal(stress: &Voigt) -> (Vector, [Vector; 3]) {
     (order.map(|i| m[i][i]), order.map(|i| axes[i]))
 }
 
-/// Σ v_i n_i ⊗ n_i; `shear` is 2 for strains, whose shears are engineering shears.
+/// Returns Σ v_i n_i ⊗ n_i; `shear` is 2 for strains, because they have engineering shears.
 fn in_space(v: &Vector, axes: &[Vector; 3], shear: f64) -> Voigt {
     let entry = |i: usize, j: usize| (0..3).map(|k| v[k] * axes[k][i] * axes[k][j]).sum::<f64>();
     [entry(0, 0), entry(1, 1), entry(2, 2), shear * entry(0, 1), shear * entry(1, 2), shear * entry(2, 0)]

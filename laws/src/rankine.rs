@@ -1,4 +1,4 @@
-//! `rankine`: a material that tears where its greatest principal stress reaches a strength.
+//! `rankine`: a material that tears if its greatest principal stress reaches the strength.
 #![doc = include_str!("rankine.md")]
 
 use crate::principal::{PrincipalFacet, PrincipalUpdate};
@@ -7,7 +7,7 @@ use std::sync::Arc;
 use voussoir_core::law::{BulkMaterial, Effect, Elasticity, StressUpdate, UpdateBranch};
 use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, PluginKind, Property, Sample};
 
-/// Greatest principal stress, perfectly plastic.
+/// Limit of the greatest principal stress, perfectly plastic.
 #[derive(Debug, Clone, Keys)]
 pub struct Rankine {
     /// E \[Pa\].
@@ -24,7 +24,7 @@ pub struct Rankine {
     pub tensile_strength: f64,
 }
 
-/// σ_i ≤ f_t with associated flow, for each principal stress.
+/// Returns σ_i ≤ f_t with associated flow, for each principal stress.
 pub(crate) fn cut_offs(strength: f64) -> [PrincipalFacet; 3] {
     [0, 1, 2].map(|i| {
         let normal: [f64; 3] = std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 });
@@ -34,9 +34,9 @@ pub(crate) fn cut_offs(strength: f64) -> [PrincipalFacet; 3] {
 
 /// One principal stress is at the strength.
 pub(crate) const TENSION: UpdateBranch = UpdateBranch::new("tension", Effect::Tearing);
-/// Two are.
+/// Two principal stresses are at the strength.
 pub(crate) const TENSION_EDGE: UpdateBranch = UpdateBranch::new("tension_edge", Effect::Tearing);
-/// All three are.
+/// All three principal stresses are at the strength.
 pub(crate) const TENSION_CORNER: UpdateBranch = UpdateBranch::new("tension_corner", Effect::Tearing);
 
 fn branch(_: usize, tension: usize) -> UpdateBranch {
@@ -59,7 +59,7 @@ impl BulkMaterial for Rankine {
     }
 }
 
-/// E = 4 GPa, ν = 0: each axis on its own. Torn along x, back, squeezed; then torn in shear, along its diagonal.
+/// E = 4 GPa, ν = 0: the axes are independent. Torn along x, unloaded, compressed; then torn in shear, along its diagonal.
 const KNOWN_PATHS: &[KnownPath] = &[
     KnownPath {
         table: "young_modulus = 4e9\npoisson_ratio = 0.0\ndensity = 2200.0\ntensile_strength = 1e6",

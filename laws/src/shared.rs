@@ -1,4 +1,4 @@
-//! Keys that several laws share, each described once: a law's field names them by `#[key(like = …)]`.
+//! Keys that several laws share, each described once: the field of a law refers to them by `#[key(like = …)]`.
 
 use voussoir_core::plugin::Keys;
 
@@ -36,22 +36,22 @@ pub struct MaterialKeys {
     density: f64,
 }
 
-/// μ from whichever of the two keys is given.
+/// Returns μ from the key that is given.
 pub fn friction(friction: Option<f64>, friction_angle: Option<f64>) -> f64 {
     friction.or(friction_angle.map(tangent)).unwrap_or(0.0)
 }
 
-/// tan of an angle in degrees.
+/// Returns the tangent of an angle in degrees.
 pub fn tangent(degrees: f64) -> f64 {
     degrees.to_radians().tan()
 }
 
-/// \[k_n, k_t\] where either is given; a stiff direction is ∞.
+/// Returns \[k_n, k_t\] if one of them is given; a rigid direction is ∞.
 pub fn stiffness(normal: Option<f64>, shear: Option<f64>) -> Option<[f64; 2]> {
     (normal.is_some() || shear.is_some()).then(|| [normal.unwrap_or(f64::INFINITY), shear.unwrap_or(f64::INFINITY)])
 }
 
-/// Exactly one of `friction` and `friction_angle`, and dilatancy at most friction.
+/// Checks that exactly one of `friction` and `friction_angle` is given, and that dilatancy does not exceed friction.
 pub fn validate_friction(
     coefficient: Option<f64>,
     angle: Option<f64>,

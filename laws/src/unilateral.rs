@@ -1,20 +1,20 @@
-//! `unilateral`: contact that cannot pull; tangentially free or stuck.
+//! `unilateral`: contact without tension; in the tangential direction free or stuck.
 #![doc = include_str!("unilateral.md")]
 
 use crate::shared::*;
 use voussoir_core::law::{Facet, InterfaceLaw};
 use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, PluginKind, Property, Sample};
 
-/// What a closed joint does along itself.
+/// Tangential behaviour of a closed joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
 pub enum TangentialContact {
-    /// Never slides.
+    /// The joint never slides.
     Stuck,
-    /// Slides without resistance.
+    /// The joint slides without resistance.
     Free,
 }
 
-/// No tension.
+/// A joint without tension.
 #[derive(Debug, Clone, Keys)]
 pub struct Unilateral {
     /// along the joint: "stuck" never slides, "free" slides without resistance
@@ -43,7 +43,7 @@ impl InterfaceLaw for Unilateral {
     }
 }
 
-/// Slips freely and closes further; stuck it carries shear even where it is open.
+/// Free: slips and closes further. Stuck: carries shear even if it is open.
 const KNOWN_PATHS: &[KnownPath] = &[
     KnownPath {
         table: "tangential = \"free\"\nnormal_stiffness = 1e10\nshear_stiffness = 5e9",

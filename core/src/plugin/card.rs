@@ -1,20 +1,20 @@
-//! Cards: what a plug-in says of itself, and the registry of all of them.
+//! Cards describe plug-ins; the registry contains all cards.
 //!
-//! A plug-in registers twice, next to its type: `#[typetag::serde]` makes it readable from a
-//! configuration, `inventory::submit!` hands in its [`Card`]. Lists, help pages, the JSON Schema,
-//! the check of study files and the conformance tests read cards only.
+//! A plug-in registers twice, next to its type: `#[typetag::serde]` makes it readable from a configuration, and
+//! `inventory::submit!` registers its [`Card`]. Lists, help pages, the JSON Schema, the check of study files and the
+//! conformance tests read only cards.
 
 use super::keys::Keys;
 use super::schema::{Parameter, PluginKind};
 use std::sync::OnceLock;
 
-/// Something that a plug-in offers and a solver may ask for; compared when a study is loaded. The list
-/// is open: a law or solver with something new declares a constant of its own.
+/// A feature that a plug-in offers and a solver may require; compared when a study is loaded. The list is open: a law or
+/// solver with a new feature declares a new constant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Capability {
     /// The kind of plug-in that offers it.
     pub of: PluginKind,
-    /// In words.
+    /// Description in words.
     pub words: &'static str,
 }
 
@@ -27,71 +27,70 @@ impl Capability {
     pub const STRESS_UPDATE: Self = Self::new(PluginKind::BulkMaterial, "stresses from strains at a point");
     /// The material is linear elastic, or rigid.
     pub const LINEAR: Self = Self::new(PluginKind::BulkMaterial, "a linear law");
-    /// Bodies may be read as rigid without changing the answer.
+    /// Bodies may be treated as rigid without changing the result.
     pub const RIGID_LIMIT: Self = Self::new(PluginKind::BulkMaterial, "a rigid limit");
     /// Equilibrium in displaced positions.
     pub const FINITE_DISPLACEMENTS: Self = Self::new(PluginKind::PathSolver, "finite displacements");
     /// Imposed movements of supports.
     pub const SETTLEMENT: Self = Self::new(PluginKind::PathSolver, "settlements");
-    /// The bounds of limit analysis for flow that is not associated.
+    /// The bounds of limit analysis for non-associated flow.
     pub const NON_ASSOCIATED: Self = Self::new(PluginKind::LimitSolver, "flow that is not associated");
 
-    /// One that plug-ins of a kind offer.
+    /// Creates a capability of a kind of plug-ins.
     pub const fn new(of: PluginKind, words: &'static str) -> Self {
         Capability { of, words }
     }
 }
 
-/// What a solver asks of a law: one of these.
+/// A requirement of a solver on a law: the law must offer one of these.
 pub type Requirement = &'static [Capability];
 
-/// A requirement in words.
+/// Describes a requirement in words.
 pub fn describe(requirement: Requirement) -> String {
     requirement.iter().map(|capability| capability.words).collect::<Vec<_>>().join(" or ")
 }
 
-/// What a law claims of itself whatever its parameters. The conformance tests check every claim that they
-/// know on every sample; the list is open.
+/// A property that a law claims for all its parameters. The conformance tests check every known property on every sample;
+/// the list is open.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Property(pub &'static str);
 
 impl Property {
-    /// Flow is normal to the facet it happens on: the bound theorems of limit analysis hold.
+    /// Flow is normal to its facet: the bound theorems of limit analysis hold.
     pub const ASSOCIATED: Self = Self("associated");
-    /// No update creates energy: what is dissipated is never negative.
+    /// No update creates energy: the dissipation is never negative.
     pub const DISSIPATIVE: Self = Self("dissipative");
-    /// The material has no axes: turned strains give turned stresses.
+    /// The material has no axes: rotated strains give rotated stresses.
     pub const ISOTROPIC: Self = Self("isotropic");
     /// The tangent of an update is symmetric.
     pub const SYMMETRIC_TANGENT: Self = Self("symmetric_tangent");
 }
 
-/// A law with numbers, for the conformance tests: walks of steps about as large as `size` meet every branch
-/// in `branches`.
+/// A law with numbers, for the conformance tests: walks with steps of about `size` must meet every branch in `branches`.
 #[derive(Debug, Clone, Copy)]
 pub struct Sample {
     /// The law's keys in TOML, without the tag.
     pub table: &'static str,
-    /// Strain, or gap \[m\], at which something happens.
+    /// Strain, or gap \[m\], at which the law changes its branch.
     pub size: f64,
     /// Names of branches that the walks must meet.
     pub branches: &'static [&'static str],
 }
 
 impl Sample {
-    /// From its three parts.
+    /// Creates a sample from its three parts.
     pub const fn new(table: &'static str, size: f64, branches: &'static [&'static str]) -> Self {
         Sample { table, size, branches }
     }
 }
 
-/// A path of one point whose answer is known from elsewhere than the law's own code: derived by hand, or published.
-/// Generic checks cannot see a memory that is missing in a consistent way; such a path does.
+/// A path of one point with a known result that does not come from the law's code: derived by hand, or published. Generic
+/// checks cannot find a memory that is missing in a consistent way; such a path can.
 #[derive(Debug, Clone, Copy)]
 pub struct KnownPath {
     /// The law's keys in TOML, without the tag.
     pub table: &'static str,
-    /// Whose numbers they are, or how they follow.
+    /// Source or derivation of the numbers.
     pub source: &'static str,
     /// Steps in order: gaps (n, t) \[m\] or strains (xx, yy, zz, xy, yz, zx) at the end of each, with the tractions or
     /// stresses there \[Pa\].
@@ -117,45 +116,45 @@ macro_rules! package {
     };
 }
 
-/// What a plug-in says of itself. A card states what it has; the rest is that of [`Card::BLANK`].
+/// The description of a plug-in. Omitted fields are those in [`Card::BLANK`].
 #[derive(Debug)]
 pub struct Card {
-    /// Which trait it implements.
+    /// The kind of plug-in, which has one trait.
     pub kind: PluginKind,
-    /// Its name in study files, and of its source file.
+    /// Its name in study files, which is also the name of its source file.
     pub tag: &'static str,
-    /// One line.
+    /// Summary in one line.
     pub summary: &'static str,
     /// Its keys, without the tag key.
     pub parameters: &'static [Parameter],
-    /// What it offers.
+    /// Capabilities that it offers.
     pub provides: &'static [Capability],
-    /// What it asks of the laws it meets: all of these. Where a law offers several capabilities of one
-    /// requirement, the solver takes the first.
+    /// Requirements on the laws: all must be met. If a law offers several capabilities of one requirement, the solver uses the
+    /// first.
     pub requires: &'static [Requirement],
-    /// What a law claims of itself.
+    /// Properties that a law claims.
     pub claims: &'static [Property],
-    /// Laws: numbers for the conformance tests.
+    /// For laws: samples for the conformance tests.
     pub samples: &'static [Sample],
-    /// Laws: paths whose answers are known; a law with state needs one that goes back after something irreversible.
+    /// For laws: paths with known results. A law with state needs one that unloads after an irreversible change.
     pub known_paths: &'static [KnownPath],
-    /// Solvers: `auto` takes the cheapest that fits; `None` is for those taken by name only.
+    /// For solvers: `auto` chooses the least cost among those that support the case; `None` if a solver is used only by name.
     pub cost: Option<u32>,
-    /// Where its equations come from.
+    /// Sources of its equations.
     pub sources: &'static [&'static str],
     /// Its source file (`file!()`).
     pub file: &'static str,
-    /// The crate that brings it, with its version (`package!()`).
+    /// Its crate, with the version (`package!()`).
     pub package: Package,
     /// Its page: purpose, equations, regimes, state, validity (Markdown).
     pub page: &'static str,
-    /// Checks of the whole table that single keys cannot show, for the concrete type:
-    /// pairs of key and what is wrong with it. The table has passed the check of its keys.
+    /// Checks the combination of keys for the concrete type. Returns pairs of key and mistake. The single keys of the table are
+    /// already checked.
     pub check: fn(&serde_json::Value) -> Vec<(String, String)>,
 }
 
 impl Card {
-    /// Nothing but defaults, for `..Card::BLANK`.
+    /// A card with defaults only, for `..Card::BLANK`.
     pub const BLANK: Card = Card {
         kind: PluginKind::Scene,
         tag: "",
@@ -174,22 +173,22 @@ impl Card {
         check: |_| Vec::new(),
     };
 
-    /// Nothing but the keys of a type and their check, for `..Card::of::<Law>()`.
+    /// A card with the keys of a type and their check only, for `..Card::of::<Law>()`.
     pub const fn of<T: Keys>() -> Card {
         Card { parameters: T::PARAMETERS, check: |value| check_as::<T>(value, T::check), ..Card::BLANK }
     }
 
-    /// Whether it offers a capability.
+    /// Returns true if it offers a capability.
     pub fn offers(&self, capability: Capability) -> bool {
         self.provides.contains(&capability)
     }
 
-    /// Whether it meets a requirement of a solver; one that concerns other kinds of plug-in is met.
+    /// Returns true if it meets a requirement of a solver; requirements on other kinds of plug-in are always met.
     pub fn meets(&self, requirement: Requirement) -> bool {
         requirement.iter().all(|one| one.of != self.kind) || requirement.iter().any(|one| self.offers(*one))
     }
 
-    /// Whether it claims a property.
+    /// Returns true if it claims a property.
     pub fn claims(&self, property: Property) -> bool {
         self.claims.contains(&property)
     }
@@ -197,7 +196,7 @@ impl Card {
 
 inventory::collect!(Card);
 
-/// The checks of a concrete type with `fn validate(&self) -> Vec<(String, String)>`.
+/// Runs the check of a concrete type with `fn validate(&self) -> Vec<(String, String)>`.
 pub fn check_as<T: serde::de::DeserializeOwned>(
     value: &serde_json::Value,
     validate: impl Fn(&T) -> Vec<(String, String)>,
@@ -208,9 +207,9 @@ pub fn check_as<T: serde::de::DeserializeOwned>(
     }
 }
 
-/// All cards, sorted by kind and tag.
+/// Returns all cards, sorted by kind and tag.
 pub fn cards() -> &'static [&'static Card] {
-    // They are registered before the program starts, and asked for by every key of every case.
+    // Sorted once: cards are registered before the program starts, and every key of every case needs them.
     static CARDS: OnceLock<Vec<&'static Card>> = OnceLock::new();
     CARDS.get_or_init(|| {
         let mut all: Vec<_> = inventory::iter::<Card>.into_iter().collect();
@@ -219,19 +218,19 @@ pub fn cards() -> &'static [&'static Card] {
     })
 }
 
-/// The cards of one kind, sorted by tag.
+/// Returns the cards of one kind, sorted by tag.
 pub fn cards_of(kind: PluginKind) -> Vec<&'static Card> {
     cards().iter().copied().filter(|card| card.kind == kind).collect()
 }
 
-/// The card with this kind and tag.
+/// Returns the card with this kind and tag.
 pub fn card(kind: PluginKind, tag: &str) -> Option<&'static Card> {
     let place = cards().binary_search_by(|card| (card.kind, card.tag).cmp(&(kind, tag))).ok()?;
     Some(cards()[place])
 }
 
-/// The cards that may stand in the place of one kind: `[solver] solver = …` names a limit solver or a
-/// path solver. Sorted by kind and tag.
+/// Returns the cards that a tag of this kind may name: `[solver] solver = …` names a limit solver or a path solver. Sorted by
+/// kind and tag.
 pub fn candidates(kind: PluginKind) -> Vec<&'static Card> {
     candidates_of(kind).collect()
 }
@@ -241,12 +240,12 @@ fn candidates_of(kind: PluginKind) -> impl Iterator<Item = &'static Card> {
     cards().iter().copied().filter(move |card| place(card.kind) == place(kind))
 }
 
-/// The card with this tag among those that may stand in the place of one kind.
+/// Returns the card with this tag among the [`candidates`] of a kind.
 pub fn candidate(kind: PluginKind, tag: &str) -> Option<&'static Card> {
     candidates_of(kind).find(|card| card.tag == tag)
 }
 
-/// The name nearest to `wrong` among `names`, if any is near enough to be meant.
+/// Returns the name nearest to `wrong` among `names`, if one is near enough.
 pub fn nearest<'a>(wrong: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     names
         .into_iter()
@@ -256,8 +255,8 @@ pub fn nearest<'a>(wrong: &str, names: impl IntoIterator<Item = &'a str>) -> Opt
         .map(|(_, name)| name)
 }
 
-/// What is wrong with the registry: a kind without plug-ins (a crate that no source names
-/// registers nothing), or two plug-ins of one kind with the same tag. Empty when sound.
+/// Returns the mistakes in the registry: a kind without plug-ins (a crate that no source names registers nothing), or two
+/// plug-ins of one kind with the same tag. Empty if there are no mistakes.
 pub fn audit() -> Vec<String> {
     audit_of(cards())
 }

@@ -1,5 +1,4 @@
-//! What is wrong with an input, and where: a key path that the reader of the file turns into
-//! file, line and column.
+//! Mistakes in an input, each at a key path. The reader of the file converts the path into file, line and column.
 
 use std::fmt;
 
@@ -8,19 +7,19 @@ use std::fmt;
 pub struct Diagnostic {
     /// Dotted path from the study's root, list entries by index: `stages.1.loads.0.force`.
     pub path: String,
-    /// What is wrong.
+    /// Description of the mistake.
     pub message: String,
-    /// What to do, where that can be said.
+    /// Advice, if possible.
     pub help: Option<String>,
 }
 
 impl Diagnostic {
-    /// A mistake at `path`.
+    /// Creates a mistake at `path`.
     pub fn new(path: impl Into<String>, message: impl Into<String>) -> Self {
         Diagnostic { path: path.into(), message: message.into(), help: None }
     }
 
-    /// With advice.
+    /// Adds advice.
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self

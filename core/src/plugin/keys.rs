@@ -1,4 +1,4 @@
-//! Keys that a struct declares: the typed side of [`Parameter`].
+//! Keys declared by a struct: the typed form of [`Parameter`].
 
 use super::schema::{Need, Parameter, Shape};
 use super::units::same;
@@ -71,12 +71,12 @@ pub trait Keys: serde::Serialize + serde::de::DeserializeOwned {
     /// The keys, in the order of the fields.
     const PARAMETERS: &'static [Parameter];
 
-    /// What is wrong with the table as a whole: pairs of key and sentence. Single keys are right already.
+    /// Returns the mistakes in the combination of keys: pairs of key and sentence. Single keys are already checked.
     fn check(&self) -> Vec<(String, String)> {
         Vec::new()
     }
 
-    /// The table without any key.
+    /// Returns the table without any key.
     ///
     /// # Panics
     /// A key must be given.
@@ -84,10 +84,10 @@ pub trait Keys: serde::Serialize + serde::de::DeserializeOwned {
         read_default("{}")
     }
 
-    /// The default of a key.
+    /// Returns the default of a key.
     ///
     /// # Panics
-    /// There is no such key, or it has no default, or one of another type.
+    /// There is no such key, or it has no default, or its default has another type.
     fn default_of<T: serde::de::DeserializeOwned>(key: &str) -> T {
         read_default(shared_default(like(Self::PARAMETERS, key)))
     }
@@ -107,7 +107,7 @@ impl KeyValue for serde_json::Map<String, serde_json::Value> {
     const SHAPE: Shape = Shape::Map(&Shape::Free);
 }
 
-/// A default as the compiler sees it.
+/// A default in the form that the compiler can check.
 #[doc(hidden)]
 #[derive(Debug, Clone, Copy)]
 pub enum Literal {
@@ -116,7 +116,7 @@ pub enum Literal {
     Other,
 }
 
-/// The parameter of this name.
+/// Returns the parameter of this name.
 #[doc(hidden)]
 pub const fn like(parameters: &'static [Parameter], name: &str) -> Parameter {
     let mut i = 0;
@@ -129,7 +129,7 @@ pub const fn like(parameters: &'static [Parameter], name: &str) -> Parameter {
     panic!("`like` names a struct that has no key of this name")
 }
 
-/// What happens without a key that another struct describes.
+/// Returns the need of an optional key that another struct describes.
 #[doc(hidden)]
 pub const fn otherwise(like: Parameter) -> Need {
     match like.need {
@@ -138,7 +138,7 @@ pub const fn otherwise(like: Parameter) -> Need {
     }
 }
 
-/// The default of a key that another struct describes.
+/// Returns the default of a key that another struct describes.
 #[doc(hidden)]
 pub const fn shared_default(like: Parameter) -> &'static str {
     match like.need {
@@ -147,7 +147,7 @@ pub const fn shared_default(like: Parameter) -> &'static str {
     }
 }
 
-/// Refuses a default that its key would not take.
+/// Refuses a default that its key does not accept.
 #[doc(hidden)]
 pub const fn check_default(shape: &Shape, default: Literal) {
     match (shape, default) {
@@ -171,7 +171,7 @@ pub const fn check_default(shape: &Shape, default: Literal) {
     }
 }
 
-/// The default of an absent key.
+/// Returns the default of an absent key.
 #[doc(hidden)]
 pub fn read_default<T: serde::de::DeserializeOwned>(text: &str) -> T {
     serde_json::from_str(text).unwrap_or_else(|error| panic!("the default {text} does not fit its key: {error}"))
@@ -190,7 +190,7 @@ mod tests {
         PartlyJointed,
     }
 
-    /// Told apart by a word.
+    /// Distinguished by a word.
     #[derive(Debug, Clone, PartialEq, crate::plugin::Keys)]
     #[keys(tag = "shape")]
     enum Profile {
@@ -207,7 +207,7 @@ mod tests {
         Flat,
     }
 
-    /// Told apart by form.
+    /// Distinguished by their form.
     #[derive(Debug, Clone, PartialEq, crate::plugin::Keys)]
     #[keys(untagged)]
     enum Thickness {

@@ -1,5 +1,4 @@
-//! Registry and configuration of plug-ins: cards, the schema of their keys, units, diagnostics. Knows
-//! no mechanics.
+//! Registry and configuration of plug-ins: cards, the schema of their keys, units, diagnostics. It contains no mechanics.
 
 mod card;
 mod diagnostic;

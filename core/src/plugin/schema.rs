@@ -1,21 +1,20 @@
-//! What a configuration table may hold: keys, shapes, units, ranges.
+//! The schema of configuration tables: keys, shapes, units, ranges.
 //!
-//! One description serves the check of a study file, its JSON Schema and the pages of
-//! `voussoir explain`. It lives beside the traits because every plug-in's card carries one.
-//! Reading files is not done here.
+//! One description is used for the check of a study file, its JSON Schema and the pages of `voussoir explain`. It is beside
+//! the traits because every plug-in's card contains one. Files are read elsewhere.
 
 use super::units::Quantity;
 
-/// The values a number may take.
+/// The values that a number may have.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
     /// Least value.
     pub min: f64,
-    /// Whether the least value itself is excluded.
+    /// True if the least value is excluded.
     pub min_open: bool,
     /// Greatest value.
     pub max: f64,
-    /// Whether the greatest value itself is excluded.
+    /// True if the greatest value is excluded.
     pub max_open: bool,
 }
 
@@ -27,19 +26,19 @@ impl Range {
     /// `≥ 0`.
     pub const NON_NEGATIVE: Range = Range::new(0.0, false, f64::INFINITY, true);
 
-    /// An interval; `*_open` excludes its end.
+    /// Creates an interval; `*_open` excludes its end.
     pub const fn new(min: f64, min_open: bool, max: f64, max_open: bool) -> Self {
         Range { min, min_open, max, max_open }
     }
 
-    /// Whether the finite number `x` lies in the range.
+    /// Returns true if the finite number `x` is in the range.
     pub const fn contains(&self, x: f64) -> bool {
         x.is_finite()
             && (if self.min_open { x > self.min } else { x >= self.min })
             && (if self.max_open { x < self.max } else { x <= self.max })
     }
 
-    /// In words: `greater than 0`, `from 0 to 0.5 (excluded)`.
+    /// Describes the range in words: `greater than 0`, `from 0 to 0.5 (excluded)`.
     pub fn describe(&self) -> String {
         let lower = (self.min != f64::NEG_INFINITY)
             .then(|| format!("{} {}", if self.min_open { "greater than" } else { "at least" }, self.min));
@@ -63,19 +62,19 @@ pub enum PluginKind {
     BulkMaterial,
     /// Geometry: `[scene] scene = …`.
     Scene,
-    /// Limit analysis: `[solver] solver = …`.
+    /// Limit solver: `[solver] solver = …`.
     LimitSolver,
-    /// Paths of loads: `[solver] solver = …`.
+    /// Path solver: `[solver] solver = …`.
     PathSolver,
-    /// How a path goes on: `[solver] continuation = { strategy = … }`.
+    /// Continuation of a path: `[solver] continuation = { strategy = … }`.
     Continuation,
     /// A load of a stage: `loads = [{ kind = … }]`.
     LoadKind,
-    /// How a live load spreads: `dispersion = { law = … }`.
+    /// Spread of a live load: `dispersion = { law = … }`.
     Dispersion,
-    /// How fill resists the ring: `resistance = { law = … }`.
+    /// Resistance of the fill: `resistance = { law = … }`.
     FillResistance,
-    /// What is done with the cases: `kind = …`.
+    /// Use of the cases: `kind = …`.
     StudyKind,
     /// A kind of result file.
     Writer,
@@ -97,7 +96,7 @@ impl PluginKind {
         PluginKind::Writer,
     ];
 
-    /// The key whose value is the tag.
+    /// Returns the key whose value is the tag.
     pub fn tag_key(self) -> &'static str {
         match self {
             PluginKind::InterfaceLaw
@@ -112,7 +111,7 @@ impl PluginKind {
         }
     }
 
-    /// In words, singular.
+    /// Describes the kind in words, in the singular.
     pub fn describe(self) -> &'static str {
         match self {
             PluginKind::InterfaceLaw => "interface law",
@@ -129,7 +128,7 @@ impl PluginKind {
         }
     }
 
-    /// The word `voussoir list` takes.
+    /// Returns the plural, which is the argument of `voussoir list`.
     pub fn plural(self) -> &'static str {
         match self {
             PluginKind::InterfaceLaw => "laws",
@@ -152,13 +151,13 @@ impl PluginKind {
 pub struct Variant {
     /// The tag's value.
     pub tag: &'static str,
-    /// One line.
+    /// Description in one line.
     pub doc: &'static str,
     /// Its keys.
     pub parameters: &'static [Parameter],
 }
 
-/// What a value may look like.
+/// The form of a value.
 #[derive(Debug, Clone, Copy)]
 pub enum Shape {
     /// A number in `quantity`'s unit, or a string with a unit.
@@ -198,24 +197,24 @@ pub enum Shape {
         /// The alternatives.
         variants: &'static [Variant],
     },
-    /// The first alternative whose outer form fits.
+    /// The first alternative whose outer form matches.
     Either(&'static [Shape]),
     /// A table that configures a plug-in of this kind.
     Plugin(PluginKind),
     /// A table from free names to values of one shape.
     Map(&'static Shape),
-    /// Anything: its reader checks it.
+    /// Any value; its reader checks it.
     Free,
 }
 
-/// Whether a key must be given.
+/// The need of a key.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Need {
-    /// It must.
+    /// The key must be given.
     Required,
-    /// It need not, and there is no single default; the text says what happens then.
+    /// The key may be absent. There is no single default; the text describes the effect.
     Optional(&'static str),
-    /// It need not: then it is this TOML value.
+    /// The key may be absent; its default is this TOML value.
     Default(&'static str),
 }
 
@@ -224,26 +223,26 @@ pub enum Need {
 pub struct Parameter {
     /// The key.
     pub name: &'static str,
-    /// One line: what it means, its sign convention.
+    /// Meaning and sign convention in one line.
     pub doc: &'static str,
-    /// What its value may look like.
+    /// Form of its value.
     pub shape: Shape,
-    /// Whether it must be given.
+    /// Required, optional or with a default.
     pub need: Need,
 }
 
 impl Parameter {
-    /// A number that must be given.
+    /// Creates a number that must be given.
     pub const fn number(name: &'static str, quantity: Quantity, range: Range, doc: &'static str) -> Self {
         Parameter { name, doc, shape: Shape::Number(quantity, range), need: Need::Required }
     }
 
-    /// The same parameter, not compulsory.
+    /// Makes the parameter optional.
     pub const fn optional(self, otherwise: &'static str) -> Self {
         Parameter { need: Need::Optional(otherwise), ..self }
     }
 
-    /// The same parameter with a default, a TOML value.
+    /// Gives the parameter a default, a TOML value.
     pub const fn default(self, value: &'static str) -> Self {
         Parameter { need: Need::Default(value), ..self }
     }

@@ -1,30 +1,30 @@
-//! Quantities and their units. Inside the program every number is in the unit of its [`Quantity`]
-//! (SI; angles in degrees where the key says so); strings with a unit are converted on reading.
+//! Quantities and their units. In the program every number has the unit of its [`Quantity`]: SI units, or degrees if the
+//! description of the key has them. Texts with a unit are converted when they are read.
 
-/// What a number measures, which fixes the unit of a plain number.
+/// The quantity of a number, which determines the unit of a plain number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
     /// A pure number.
     Ratio,
-    /// m.
+    /// Length \[m\].
     Length,
-    /// Degrees.
+    /// Angle \[°\].
     Degrees,
-    /// Radians.
+    /// Angle \[rad\].
     Radians,
-    /// N.
+    /// Force \[N\].
     Force,
-    /// Pa.
+    /// Stress \[Pa\].
     Stress,
-    /// Pa/m.
+    /// Stiffness of a joint \[Pa/m\].
     Stiffness,
-    /// kg/m³; a specific weight (kN/m³) is divided by the study's gravity.
+    /// Density \[kg/m³\]; a specific weight (kN/m³) is divided by the study's gravity.
     Density,
-    /// m/s².
+    /// Acceleration \[m/s²\].
     Acceleration,
-    /// J/m².
+    /// Energy per area \[J/m²\].
     EnergyPerArea,
-    /// K.
+    /// Temperature \[K\].
     Temperature,
 }
 
@@ -47,7 +47,7 @@ pub(super) const fn same(one: &str, other: &str) -> bool {
 const POUND_FORCE: f64 = 4.448_221_615_260_5; // exact: 0.45359237 kg × 9.80665 m/s²
 const FOOT: f64 = 0.3048; // exact
 const INCH: f64 = 0.0254; // exact
-/// Standard gravity \[m/s²\], used for specific weights only where a study has no gravity.
+/// Standard gravity \[m/s²\], used for specific weights only if a study has no gravity.
 pub const STANDARD_GRAVITY: f64 = 9.80665;
 
 const LENGTHS: &[(&str, f64)] = &[("m", 1.0), ("mm", 1e-3), ("cm", 1e-2), ("ft", FOOT), ("in", INCH)];
@@ -71,7 +71,7 @@ const SPECIFIC_WEIGHTS: &[(&str, f64)] =
 const ACCELERATIONS: &[(&str, f64)] = &[("m/s2", 1.0), ("g", STANDARD_GRAVITY), ("ft/s2", FOOT)];
 
 impl Quantity {
-    /// The quantity with this SI unit; `"-"` is that of a pure number.
+    /// Returns the quantity with this SI unit; `"-"` is the unit of a pure number.
     ///
     /// # Panics
     /// No quantity has this unit.
@@ -104,7 +104,7 @@ impl Quantity {
         Quantity::Temperature,
     ];
 
-    /// The unit of a plain number; empty for a ratio.
+    /// Returns the unit of a plain number; empty for a ratio.
     pub const fn unit(self) -> &'static str {
         match self {
             Quantity::Ratio => "",
@@ -121,8 +121,8 @@ impl Quantity {
         }
     }
 
-    /// Unit names with the factor that turns a number in them into the quantity's own unit.
-    /// `gravity` \[m/s²\] turns a specific weight into a density.
+    /// Returns the unit names, each with the factor that converts a number into the quantity's own unit. `gravity` \[m/s²\]
+    /// converts a specific weight into a density.
     fn table(self, gravity: f64) -> Vec<(&'static str, f64)> {
         match self {
             Quantity::Ratio => vec![("%", 0.01)],
@@ -145,7 +145,7 @@ impl Quantity {
         }
     }
 
-    /// Reads `"5 GPa"`. The unit may be left out. Errors say what is wrong, with the units that fit.
+    /// Reads `"5 GPa"`. The unit may be omitted. Errors describe the mistake and list the valid units.
     pub fn parse(self, text: &str, gravity: f64) -> Result<f64, String> {
         let text = text.trim();
         let split = text
@@ -164,7 +164,7 @@ impl Quantity {
         let unit = unit.replace('²', "2").replace('³', "3").replace('^', "");
         let table = self.table(gravity);
         match table.iter().find(|(name, _)| *name == unit) {
-            // Dividing by an inverse power of ten is exact to rounding; multiplying by 1e-3 is not.
+            // Division by an inverse power of ten is correctly rounded; multiplication by 1e-3 is not.
             Some(&(_, factor)) if factor < 1.0 && (1.0 / factor).fract() == 0.0 => Ok(number / (1.0 / factor)),
             Some(&(_, factor)) => Ok(number * factor),
             None if unit.starts_with(',') => {
@@ -205,9 +205,9 @@ mod tests {
         assert!((read(Quantity::Radians, "180 deg") - std::f64::consts::PI).abs() < 1e-15);
     }
 
-    /// Every unit of every quantity with its value in the quantity's own unit, from its definition: the international yard
-    /// and pound of 1959 (0.9144 m, 0.45359237 kg), standard gravity of 1901 (9.80665 m/s²), π. A specific weight counts
-    /// with the gravity of the study, 10 m/s² here.
+    /// Every unit of every quantity with its value in the quantity's own unit, from its definition: the international yard and
+    /// pound of 1959 (0.9144 m, 0.45359237 kg), standard gravity of 1901 (9.80665 m/s²), π. The value of a specific weight depends
+    /// on the gravity of the study, 10 m/s² here.
     const UNITS: &[(Quantity, &[(&str, f64)])] = &[
         (Quantity::Ratio, &[("%", 0.01)]),
         (Quantity::Length, &[("m", 1.0), ("mm", 0.001), ("cm", 0.01), ("ft", 0.3048), ("in", 0.0254)]),

@@ -8,22 +8,22 @@
 //! shear        beyond    q + x tan β = D
 //! ```
 //!
-//! and both flow potentials, √((x/R)² + (q/k)²) and √((x tan β)² + (q/k)²), give flow
+//! The flow potentials √((x/R)² + (q/k)²) and √((x tan β)² + (q/k)²) give the flow
 //!
 //! ```text
 //! Δε_q = η q / k²        |Δε_v| = w = η a x,   a = 1/R² (cap) or tan² β (shear, transition)
 //! q = Q / (1 + 3 G η / k²)            x = |P − p_a(ε_v ± w)| − K w
 //! ```
 //!
-//! (ε_v: compaction, growing on the cap, falling on the other side.) So a trial point with P > p_a
-//! returns to the cap, one with P < p_a to the other two, the point of meeting flows without change of
-//! volume, and at the tip of the cone the potential is smooth: no corner needs an equation of its own.
-//! One unknown, η ≥ 0, remains. p_a is piecewise linear in ε_v, so w(η) is explicit in each piece. Let t
-//! be the factor that takes (x, q) to the surface along its ray: ψ(η) = t − 1 is negative at η = 0 and
-//! tends to ∞. For a fixed surface x and q are inverses of affine functions of η, ψ is a concave mean of
-//! them on shear and cap, and Newton from η = 0 climbs to the root without overshooting; a bracket
-//! guards the rest. (The rational form is Moré's for the secular equation of trust regions: Moré &
-//! Sorensen 1983.)
+//! (ε_v: compaction, growing on the cap, decreasing on the other side.) A trial point with P > p_a returns to the cap, one
+//! with P < p_a to the other two surfaces. At the point where they meet, flow does not change the volume, and at the tip of
+//! the cone the potential is smooth: no corner needs a separate equation.
+//!
+//! One unknown, η ≥ 0, remains. p_a is piecewise linear in ε_v, so w(η) is explicit in each piece. Let t be the factor that
+//! moves (x, q) to the surface along its ray: ψ(η) = t − 1 is negative at η = 0 and tends to ∞. For a fixed surface x and q
+//! are inverses of affine functions of η, and ψ is a concave mean of them on shear and cap. Newton's method from η = 0
+//! increases to the root without overshooting; a bracket covers the other cases. (The rational form is the form of Moré for
+//! the secular equation of trust regions: Moré & Sorensen 1983.)
 
 use crate::meridian::{APEX, Returned, SHEAR};
 use voussoir_core::law::{Effect, Isotropic, UpdateBranch, UpdateFailure};
@@ -42,21 +42,21 @@ const ITERATIONS: usize = 200;
 /// A piece of the hardening table: from `strain` on, p_a = `centre` + `slope` (ε_v − `strain`).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Piece {
-    /// ε_v where it begins.
+    /// ε_v at the start of the piece.
     pub strain: f64,
-    /// p_a there \[Pa\].
+    /// p_a at the start \[Pa\].
     pub centre: f64,
     /// dp_a/dε_v \[Pa\].
     pub slope: f64,
 }
 
-/// How p_a moves as the cap yields.
+/// Change of p_a as the cap yields.
 #[derive(Debug, Clone, Copy)]
 pub struct Table<'a> {
-    /// Pieces by growing `strain`; the first begins at −∞ with slope 0, the last has slope 0.
+    /// Pieces in order of `strain`; the first starts at −∞ with slope 0, the last has slope 0.
     pub pieces: &'a [Piece],
-    /// Whether flow on shear and transition, which loosens the material, goes back along the table:
-    /// so for hardening. Crushed material does not heal.
+    /// True if flow on shear and transition, which loosens the material, goes back along the table. This is the case for
+    /// hardening; crushed material does not recover.
     pub reversible: bool,
 }
 
@@ -77,13 +77,13 @@ pub struct Surface {
     pub roundness: f64,
     /// κ.
     pub middle: f64,
-    /// Where transition meets shear: (x, q) / D.
+    /// Point at which transition and shear meet: (x, q) / D.
     pub tangency: [f64; 2],
 }
 
 impl Table<'_> {
-    /// The piece at ε_v, its index, and p_a there. At a joint of two pieces the one ahead in the sense
-    /// of flow counts.
+    /// Returns the piece at ε_v, its index, and p_a there. At the boundary of two pieces the next one in the direction of flow is
+    /// used.
     fn piece(&self, compaction: f64, side: Side) -> (usize, f64) {
         let before = match side {
             Side::Cap => self.pieces.partition_point(|piece| piece.strain <= compaction),
@@ -94,12 +94,12 @@ impl Table<'_> {
         (index, if slope == 0.0 { centre } else { centre + slope * (compaction - strain) })
     }
 
-    /// dp_a/dε_v of a piece for flow on a side.
+    /// Returns dp_a/dε_v of a piece for flow on a side.
     fn slope(&self, index: usize, side: Side) -> f64 {
         if side == Side::Shear && !self.reversible { 0.0 } else { self.pieces[index].slope }
     }
 
-    /// How much flow on a side leads from ε_v to the next piece, its index, and p_a there.
+    /// Returns the flow on a side from ε_v to the next piece, the index of that piece, and p_a there.
     fn next(&self, index: usize, side: Side, compaction: f64) -> Option<(f64, usize, f64)> {
         match side {
             Side::Cap => self.pieces.get(index + 1).map(|next| (next.strain - compaction, index + 1, next.centre)),
@@ -112,24 +112,24 @@ impl Table<'_> {
     }
 }
 
-/// Which side of p_a a point returns on.
+/// The side of p_a on which a point returns.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Side {
     Cap,
     Shear,
 }
 
-/// A point on the way, with the derivatives of t.
+/// A point during the iteration, with the derivatives of t.
 #[derive(Debug, Clone, Copy)]
 struct Gauge {
-    /// t: > 1 inside.
+    /// t, greater than 1 inside the surface.
     factor: f64,
     /// ∂t/∂x, ∂t/∂q, ∂t/∂D.
     gradient: [f64; 3],
     branch: UpdateBranch,
 }
 
-/// x, q and D at some η with what Newton needs.
+/// x, q and D at some η, with the derivatives for Newton's method.
 #[derive(Debug, Clone, Copy)]
 struct Way {
     x: f64,
@@ -146,7 +146,7 @@ struct Way {
 }
 
 impl Surface {
-    /// From β \[deg\], d, R and α.
+    /// Creates the surface from β \[deg\], d, R and α.
     pub fn new(elastic: Isotropic, angle: f64, cohesion: f64, eccentricity: f64, transition: f64) -> Self {
         let (sine, cosine) = angle.to_radians().sin_cos();
         let friction = sine / cosine;
@@ -163,7 +163,7 @@ impl Surface {
         }
     }
 
-    /// p_a over compaction from (ε_v, p_b) pairs with growing ε_v.
+    /// Returns p_a over compaction from (ε_v, p_b) pairs in order of ε_v.
     pub fn pieces(&self, hardening: &[[f64; 2]]) -> Vec<Piece> {
         let centre = |strength: f64| self.centre_of(strength);
         let first = hardening.first().map_or(0.0, |[_, strength]| centre(*strength));
@@ -178,7 +178,7 @@ impl Surface {
         pieces
     }
 
-    /// p_a = (p_b − R d) / (1 + R tan β) \[Pa\].
+    /// Returns p_a = (p_b − R d) / (1 + R tan β) \[Pa\].
     pub fn centre_of(&self, strength: f64) -> f64 {
         (strength - self.eccentricity * self.cohesion) / (1.0 + self.eccentricity * self.friction)
     }
@@ -201,7 +201,7 @@ impl Surface {
                 Gauge { factor, gradient: [by_x, by_q, 1.0 / length], branch: CAP }
             }
             Side::Shear if self.in_transition(x, q) => {
-                // The larger root of (t x)² + (t q − κ D)² = (α D)²; x, q relative to the ray's length.
+                // The larger root of (t x)² + (t q − κ D)² = (α D)², with x and q relative to the length of the ray.
                 let ray = x.hypot(q);
                 let (a, b) = (x / ray, q / ray);
                 let (m, r) = (self.middle, self.transition);
@@ -228,7 +228,7 @@ impl Surface {
         }
     }
 
-    /// Everything at some η.
+    /// Returns the point and its derivatives at some η.
     fn way(&self, table: Table, side: Side, trial: [f64; 2], compaction: f64, eta: f64) -> Way {
         let [p_trial, q_trial] = trial;
         let sign = if side == Side::Cap { 1.0 } else { -1.0 };
@@ -270,7 +270,7 @@ impl Surface {
         Way { x, q, ratio, w, centre, slope, gauge, stiffening, rates: [w_rate, q_rate, rate] }
     }
 
-    /// Returns a trial point (P, Q) at some ε_v of the table; `None` where it is elastic.
+    /// Returns a trial point (P, Q) at some ε_v of the table to the surface; `None` if it is elastic.
     pub fn project(&self, table: Table, trial: [f64; 2], compaction: f64) -> Result<Option<Returned>, UpdateFailure> {
         let side = if trial[0] >= table.piece(compaction, Side::Cap).1 { Side::Cap } else { Side::Shear };
         let at = |eta: f64| self.way(table, side, trial, compaction, eta);
@@ -278,8 +278,8 @@ impl Surface {
         if start.gauge.factor >= 1.0 {
             return Ok(None);
         }
-        // Dilatancy may weaken the surface faster than stress falls at first: then Newton has no step and
-        // the search begins where the shear stress is about halved.
+        // Dilatancy may weaken the surface faster than the stress falls at first: then Newton has no step, and the search starts at
+        // the η that halves the shear stress approximately.
         let unit = self.roundness * self.roundness / (3.0 * self.elastic.shear);
         let (mut eta, mut low, mut high, mut way) = (0.0, 0.0, f64::INFINITY, start);
         for _ in 0..ITERATIONS {
@@ -297,7 +297,7 @@ impl Surface {
                 next = if high.is_finite() { 0.5 * (low + high) } else { 4.0 * eta + unit };
             }
             if next <= low || next >= high || next == eta {
-                // Nothing left between two neighbouring numbers.
+                // The bracket cannot be divided further in floating-point numbers.
                 let met = psi.abs() <= 1e-12;
                 return if met { Ok(Some(self.finished(side, eta, &way))) } else { Err(NO_RETURN) };
             }

@@ -1,4 +1,4 @@
-//! The law at a point: which strength the surface has, and the state it leaves.
+//! The law at a point: the current strength of the surface, and the state after the update.
 
 use super::surface::{Piece, Surface, Table};
 use crate::meridian::{Trial, state_names};
@@ -12,24 +12,24 @@ const CRUSHING: usize = 7;
 
 static STATE: [&str; 8] = state_names(&["compaction [-]", "crushing [-]"]);
 
-/// How p_a changes as the material flows.
+/// The change of p_a by flow.
 #[derive(Debug, Clone)]
 pub(super) enum Strength {
     /// By a table over the compaction ε_v, which starts at `initial_compaction`.
     Hardening { pieces: Vec<Piece>, initial_compaction: f64 },
-    /// Linearly over the crushing: the compaction by flow on the cap, which never falls.
+    /// Linear in the crushing: the compaction by flow on the cap, which never decreases.
     Softening {
-        /// p_a of intact material, and its fall by crushing \[Pa\].
+        /// p_a of intact material, and its decrease by crushing \[Pa\].
         intact: f64,
         drop: f64,
         /// w_c \[m\].
         crushing: f64,
-        /// \[m\]
+        /// Greatest characteristic length \[m\].
         largest_length: f64,
     },
 }
 
-/// The law at a point. State: plastic strain (engineering shears), compaction ε_v and, where it softens, crushing.
+/// The law at a point. State: plastic strain (engineering shears), compaction ε_v and, if the law softens, crushing.
 #[derive(Debug, Clone)]
 pub(super) struct CapUpdate {
     pub surface: Surface,
@@ -37,7 +37,7 @@ pub(super) struct CapUpdate {
 }
 
 impl CapUpdate {
-    /// The update by a table over one entry of the state.
+    /// Returns the update by a table over one entry of the state.
     fn by_table(
         &self,
         table: Table,
@@ -99,7 +99,7 @@ impl StressUpdate for CapUpdate {
             }
             Strength::Softening { intact, drop, crushing, largest_length } => {
                 let length = context.length;
-                // Also refuses a length that is no number.
+                // Also refuses a length that is NaN.
                 if !(length > 0.0 && length <= *largest_length) {
                     return Err(UpdateFailure::LengthTooLarge);
                 }

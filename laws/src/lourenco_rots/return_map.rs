@@ -1,13 +1,13 @@
 //! Return of a trial stress to the three surfaces, backward Euler, with the consistent tangent.
 //!
-//! For a given bond and a given multiplier of the cap the return to the tension cut-off and to Coulomb's line has a closed
-//! form. The multiplier of the cap is then the root of one equation, and the loss of bond that of another around it. Both
-//! roots are bracketed, so the return does not depend on a start and has no step that is too long.
+//! For a given bond and a given multiplier of the cap, the return to the tension cut-off and to Coulomb's line has a closed
+//! form. The multiplier of the cap is then the root of one equation, and the loss of bond is the root of an outer equation.
+//! Both roots are bracketed, so the return does not depend on a start value and no step is too long.
 
 use super::surface::Surface;
 use voussoir_core::law::UpdateFailure;
 
-/// What happened along the return. Stresses are positive in tension, σ along the normal, τ ≥ 0 along the joint.
+/// The result of the return. Stresses are positive in tension, σ along the normal, τ ≥ 0 along the joint.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Returned {
     /// (σ, τ) \[Pa\].
@@ -25,8 +25,8 @@ pub(super) struct Returned {
 /// Iterations of a bracketed root; bisection alone needs about sixty.
 const ITERATIONS: usize = 200;
 
-/// A root of f between `low` and `high`, where f(low) > 0 ≥ f(high), to rounding: inverse quadratic interpolation where
-/// it is safe and bisection elsewhere (Chandrupatla 1997).
+/// Returns a root of f between `low` and `high`, with f(low) > 0 ≥ f(high), within rounding. Uses inverse quadratic
+/// interpolation if it is safe and bisection otherwise (Chandrupatla 1997).
 fn root(mut f: impl FnMut(f64) -> f64, low: [f64; 2], high: [f64; 2]) -> Option<f64> {
     let ([mut b, mut f_b], [mut a, mut f_a], mut share) = (low, high, 0.5);
     for _ in 0..ITERATIONS {
@@ -56,7 +56,7 @@ fn root(mut f: impl FnMut(f64) -> f64, low: [f64; 2], high: [f64; 2]) -> Option<
     None
 }
 
-/// Where `f` is not positive any more, doubling from `start`, with the last place where it was.
+/// Doubles a step from `start` until `f` is not positive. Returns that point and the last point at which `f` was positive.
 fn bracket(mut f: impl FnMut(f64) -> f64, low: [f64; 2], start: f64) -> Option<[[f64; 2]; 2]> {
     let (mut low, mut high) = (low, start);
     while high.is_finite() && high > low[0] {
@@ -74,7 +74,7 @@ pub(super) struct Return<'a> {
     pub surface: &'a Surface,
     /// (σ, τ ≥ 0) \[Pa\].
     pub trial: [f64; 2],
-    /// Share of the bond that is left, e^−κ.
+    /// Remaining share of the bond, e^−κ.
     pub bond: f64,
     /// κ_3 \[m\].
     pub crushing: f64,
@@ -88,7 +88,7 @@ struct Place {
 }
 
 impl Return<'_> {
-    /// The return; `None` where the trial stress lies within all surfaces but for `rounding` \[Pa\].
+    /// Returns the stress to the surfaces; `None` if the trial stress is inside all surfaces within `rounding` \[Pa\].
     pub fn solve(&self, rounding: f64) -> Result<Option<Returned>, UpdateFailure> {
         let Surface { tension, cohesion, cap, .. } = *self.surface;
         let [sigma, tau] = self.trial;
@@ -103,7 +103,7 @@ impl Return<'_> {
         let first = self.loss(&fresh.multipliers);
         let mut loss = 0.0;
         if first > 0.0 {
-            // What remains to be lost; a return that fails is not a number, which ends the search.
+            // Remaining loss of bond; a return that fails gives NaN, which ends the search.
             let rest = |loss: f64| self.crushed(loss).map_or(f64::NAN, |place| self.loss(&place.multipliers) - loss);
             let [low, high] = bracket(rest, [0.0, first], first).ok_or(UpdateFailure::NoConvergence)?;
             loss = root(rest, low, high).ok_or(UpdateFailure::NoConvergence)?;
@@ -112,22 +112,22 @@ impl Return<'_> {
         Ok(Some(self.returned(&place, loss)))
     }
 
-    /// Growth of κ that multipliers bring.
+    /// Returns the growth of κ due to multipliers.
     fn loss(&self, multipliers: &[f64; 3]) -> f64 {
         (self.surface.loss[0] * multipliers[0]).hypot(self.surface.loss[1] * multipliers[1])
     }
 
-    /// √(σ² + C τ²).
+    /// Returns √(σ² + C τ²).
     fn norm(&self, [sigma, tau]: [f64; 2]) -> f64 {
         sigma.hypot(self.surface.cap_shear.sqrt() * tau)
     }
 
-    /// Growth of κ_3: 2 λ_3 √(σ² + C² τ²).
+    /// Returns the growth of κ_3: 2 λ_3 √(σ² + C² τ²).
     fn crushing(&self, place: &Place) -> f64 {
         2.0 * place.multipliers[2] * place.stress[0].hypot(self.surface.cap_shear * place.stress[1])
     }
 
-    /// The return with a given growth of κ.
+    /// Returns the point for a given growth of κ.
     fn crushed(&self, loss: f64) -> Result<Place, UpdateFailure> {
         let bond = self.bond * (-loss).exp();
         let excess = |multiplier: f64| {
@@ -139,7 +139,7 @@ impl Return<'_> {
         if above <= 0.0 {
             return Ok(none);
         }
-        // The elastic cap alone would give about this multiplier.
+        // Estimate: the multiplier of the elastic cap alone.
         let [k_n, k_t] = self.surface.stiffness;
         let start = above / (self.norm(none.stress) * 2.0 * k_n.max(self.surface.cap_shear * k_t));
         let [low, high] = bracket(excess, [0.0, above], start).ok_or(UpdateFailure::NoConvergence)?;
@@ -147,7 +147,7 @@ impl Return<'_> {
         Ok(self.sheared(bond, multiplier))
     }
 
-    /// The return to tension cut-off and Coulomb's line where bond and multiplier of the cap are given.
+    /// Returns the point on tension cut-off and Coulomb's line for a given bond and a given multiplier of the cap.
     fn sheared(&self, bond: f64, crushed: f64) -> Place {
         let Surface { stiffness, tension, cohesion, dilatancy, cap_shear, .. } = *self.surface;
         let soft = [1.0 + 2.0 * stiffness[0] * crushed, 1.0 + 2.0 * cap_shear * stiffness[1] * crushed];
@@ -182,8 +182,8 @@ impl Return<'_> {
         Returned { stress, multipliers, loss, crushing: self.crushing(place), by_trial }
     }
 
-    /// The equations of the surfaces that are reached, differentiated. Unknowns dσ, dτ, k_n dλ_1, k_t dλ_2,
-    /// k_n σ̄ dλ_3; a multiplier that is 0 stays 0.
+    /// Solves the differentiated equations of the active surfaces. Unknowns dσ, dτ, k_n dλ_1, k_t dλ_2, k_n σ̄ dλ_3; a multiplier
+    /// that is 0 stays 0.
     fn tangent(&self, place: &Place, loss: f64) -> [[f64; 2]; 2] {
         let Surface { stiffness: [k_n, k_t], tension, cohesion, dilatancy, cap_shear, .. } = *self.surface;
         let ([sigma, tau], [opened, slipped, crushed]) = (place.stress, place.multipliers);

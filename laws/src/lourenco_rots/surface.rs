@@ -1,13 +1,13 @@
-//! Strengths of the composite joint over its two internal variables: the loss of its bond and its crushing.
+//! Strengths of the composite joint over its two internal variables: loss of bond and crushing.
 
-/// Shares of the compressive strength at which the cap begins to yield, at which its fall turns from a parabola into an
-/// exponential, and which it keeps (Lourenço 1996).
+/// Shares of the compressive strength: at the start of yielding, at the change from the parabola to the exponential, and the
+/// residual share (Lourenço 1996).
 const INITIAL: f64 = 1.0 / 3.0;
 const MIDDLE: f64 = 1.0 / 2.0;
 const RESIDUAL: f64 = 1.0 / 7.0;
 
-/// Area beyond the peak and above the residual strength, of a fall from 1 over a width of 1:
-/// 5/6 − 1/7 under the parabola and (1/2 − 1/7)² under the exponential.
+/// Area beyond the peak and above the residual strength of a fall from 1 over a width of 1: 5/6 − 1/7 under the parabola and
+/// (1/2 − 1/7)² under the exponential.
 const FALL_AREA: f64 = 5.0 / 6.0 - RESIDUAL + (MIDDLE - RESIDUAL) * (MIDDLE - RESIDUAL);
 
 /// The strength σ̄ of the cap over its equivalent plastic closing κ.
@@ -15,24 +15,24 @@ const FALL_AREA: f64 = 5.0 / 6.0 - RESIDUAL + (MIDDLE - RESIDUAL) * (MIDDLE - RE
 pub(super) struct Cap {
     /// f_m \[Pa\].
     pub strength: f64,
-    /// κ_p, at the peak \[m\].
+    /// κ_p at the peak \[m\].
     pub peak: f64,
-    /// κ_m, at half the strength beyond the peak \[m\].
+    /// κ_m at half the strength beyond the peak \[m\].
     pub middle: f64,
 }
 
 impl Cap {
-    /// From strength \[Pa\], κ_p \[m\] and G_fc \[J/m²\].
+    /// Creates the cap from strength \[Pa\], κ_p \[m\] and G_fc \[J/m²\].
     pub fn new(strength: f64, peak: f64, energy: f64) -> Self {
         Cap { strength, peak, middle: peak + energy / (FALL_AREA * strength) }
     }
 
-    /// Greatest fall −dσ̄/dκ \[Pa/m\], at κ_m.
+    /// Returns the greatest fall −dσ̄/dκ \[Pa/m\], at κ_m.
     pub fn steepest(&self) -> f64 {
         2.0 * (1.0 - MIDDLE) * self.strength / (self.middle - self.peak)
     }
 
-    /// σ̄(κ) and dσ̄/dκ.
+    /// Returns σ̄(κ) and dσ̄/dκ.
     pub fn at(&self, crushing: f64) -> [f64; 2] {
         let width = self.middle - self.peak;
         let [share, slope] = if crushing <= self.peak {
@@ -49,7 +49,7 @@ impl Cap {
         [self.strength * share, self.strength * slope]
     }
 
-    /// ∫σ̄ dκ from 0 \[J/m²\].
+    /// Returns ∫σ̄ dκ from 0 \[J/m²\].
     pub fn energy(&self, crushing: f64) -> f64 {
         let rising = |x: f64| {
             let root = (2.0 * x - x * x).max(0.0).sqrt();
@@ -69,13 +69,13 @@ impl Cap {
         self.strength * shares
     }
 
-    /// Rate of the exponential \[1/m\]: the slope of the parabola goes on.
+    /// Returns the rate of the exponential \[1/m\], which continues the slope of the parabola.
     fn decay(&self) -> f64 {
         2.0 * (1.0 - MIDDLE) / (MIDDLE - RESIDUAL) / (self.middle - self.peak)
     }
 }
 
-/// All that the return map asks of the law: stiffnesses, strengths and how they fall.
+/// Parameters of the return map: stiffnesses, strengths and their softening.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Surface {
     /// \[k_n, k_t\] \[Pa/m\].
@@ -90,20 +90,20 @@ pub(super) struct Surface {
     pub dilatancy: f64,
     /// Loss of bond per plastic opening, f_t / G_I, and per plastic slip, c / G_II \[1/m\].
     pub loss: [f64; 2],
-    /// C_ss.
+    /// Weight C_ss of shear in the cap.
     pub cap_shear: f64,
-    /// σ̄.
+    /// Strength σ̄ of the cap.
     pub cap: Cap,
 }
 
 impl Surface {
-    /// μ where a share b of the bond is left.
+    /// Returns μ if a share b of the bond remains.
     pub fn friction_at(&self, bond: f64) -> f64 {
         self.friction[1] + (self.friction[0] - self.friction[1]) * bond
     }
 
-    /// Greatest fall of the shear strength with slip at constant pressure \[Pa/m\], over all pressures that the cap
-    /// carries at its peak, with the bond b at which it is met: (c / G_II) b (c + p (μ_0 − μ_r)).
+    /// Returns the greatest fall of the shear strength with slip at constant pressure \[Pa/m\], over all pressures that the cap
+    /// carries at its peak, with the bond b at this fall: (c / G_II) b (c + p (μ_0 − μ_r)).
     pub fn steepest_shear(&self) -> f64 {
         let [fresh, residual] = self.friction;
         let (squared, strength) = (self.cap_shear, self.cap.strength);
@@ -118,7 +118,7 @@ impl Surface {
         (1..=64).map(|step| at(f64::from(step) / 64.0)).fold(0.0, f64::max)
     }
 
-    /// Least k of the joint along the normal of the cap, to be more than its [`steepest`](Cap::steepest) fall \[Pa/m\]:
+    /// Returns the least k of the joint along the normal of the cap \[Pa/m\]. It must exceed the [`steepest`](Cap::steepest) fall:
     /// (k_n σ² + k_t C² τ²) / (σ̄ √(σ² + C² τ²)) over the ellipse.
     pub fn least_stiffness_at_the_cap(&self) -> f64 {
         let [k_n, k_t] = self.stiffness;
@@ -135,7 +135,7 @@ mod tests {
 
     const CAP: Cap = Cap { strength: 10.5, peak: 0.09, middle: 0.68 };
 
-    /// Value and slope go on at κ_p and κ_m; the energy is the integral, and its part beyond the peak and above the
+    /// Value and slope are continuous at κ_p and κ_m. The energy is the integral, and its part beyond the peak and above the
     /// residual strength is G_fc.
     #[test]
     fn the_cap_hardens_and_softens_smoothly_over_its_energy() {

@@ -1,4 +1,4 @@
-//! The cases of a study, solved one after another or in parts whose results are put together again.
+//! The cases of a study, solved one after another or in parts whose results are merged.
 
 use super::kind::kind;
 use crate::results::{CaseLabel, CaseResult};
@@ -7,7 +7,7 @@ use crate::solve::Observer;
 use crate::study::{Case, Study};
 use std::borrow::Cow;
 
-/// Cases that are solved before their results are handed over, for each of those side by side.
+/// Number of cases, for each parallel job, that are solved before their results are passed on.
 const AT_ONCE: usize = 64;
 
 impl Study {
@@ -16,7 +16,7 @@ impl Study {
         kind(&self.kind)?.case(self, label)
     }
 
-    /// Returns true if the study's kind makes cases besides those of the file.
+    /// Returns true if the study's kind makes cases besides the cases in the file.
     pub fn makes_cases(&self) -> bool {
         kind(&self.kind).is_some_and(|kind| kind.makes_cases())
     }
@@ -29,8 +29,8 @@ impl Study {
         Some(((hash >> 64) % count as u128) as usize)
     }
 
-    /// Solves cases, `jobs` of them side by side, and hands the results over: those of a few cases in order of id, with
-    /// those that the study's kind makes of them, then those of the next. No more are held than are solved at once.
+    /// Solves cases, `jobs` of them in parallel, and passes the results on in groups: the results of a few cases in order of id,
+    /// with the cases that the study's kind makes from them, then the next group. Only one group is in memory.
     pub fn solve(
         &self,
         ids: &[usize],
@@ -42,7 +42,7 @@ impl Study {
         self.solve_quietly(ids, jobs, observer, take);
     }
 
-    /// The same, without telling the observer how many cases there are.
+    /// Like [`solve`](Self::solve), without reporting the number of cases to the observer.
     pub(super) fn solve_quietly(
         &self,
         ids: &[usize],
@@ -51,7 +51,7 @@ impl Study {
         take: &mut (dyn FnMut(CaseResult) + Send),
     ) {
         let Some(kind) = kind(&self.kind) else { return };
-        // A kind that makes cases works side by side on those of one case.
+        // A kind that makes cases solves the cases made from one case in parallel.
         let at_once = if kind.makes_cases() { 1 } else { AT_ONCE * jobs.max(1) };
         side_by_side(jobs, || {
             for ids in ids.chunks(at_once) {

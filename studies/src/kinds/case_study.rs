@@ -1,5 +1,5 @@
-//! Studies with a scene as commands and programs see them: their cases are solved as their kind says, certified, and
-//! written by all writers.
+//! Studies with a scene, as commands and programs use them: their kind decides how cases are solved; results are certified and
+//! passed to all writers.
 
 use super::kind::{LoadedStudy, Piece, RunOutput, RunRequest, Verification};
 use super::stored_results::StoredResults;
@@ -99,13 +99,13 @@ impl LoadedStudy for Study {
     }
 }
 
-/// The same files, those that results.json names before it.
+/// Returns the same files, with results.json last, after the files that it names.
 fn results_last(mut files: Vec<(String, Vec<u8>)>) -> Vec<(String, Vec<u8>)> {
     files.sort_by_key(|(name, _)| name == "results.json");
     files
 }
 
-/// What the run of one case of a folder says about the others.
+/// Returns the remark of a run of one case about the other cases in the folder.
 pub fn one_case(id: usize, of: usize, others: usize) -> String {
     let words = if others == 0 { "no other case is there".into() } else { format!("{others} other(s) are kept") };
     format!("case {id} of {of} was solved; of the study as it stands {words}")

@@ -109,12 +109,12 @@ pub trait LoadedStudy: Send + Sync {
         Err("this study has no scene".into())
     }
 
-    /// The study, if it has cases with a scene, which are solved and stored one by one.
+    /// Returns the study if it has cases with a scene, which are solved and stored one by one.
     fn with_cases(&self) -> Option<&Study> {
         None
     }
 
-    /// Solves what is wanted and turns it into files, all of them held.
+    /// Solves the requested cases and returns all files in memory.
     fn run(&self, request: &RunRequest, observer: &dyn Observer) -> RunOutput;
 
     /// Checks stored results; an error if they cannot be read.
@@ -159,7 +159,7 @@ pub struct RunRequest {
     pub wanted: Vec<usize>,
     /// Number of cases in parallel.
     pub jobs: usize,
-    /// The results.json that is there, if stored cases that are not wanted stay in the results.
+    /// The existing results.json, if stored cases that are not requested stay in the results.
     pub kept: Option<String>,
     /// Version of the program, for results.json.
     pub version: String,

@@ -1,4 +1,4 @@
-//! From finished cases to files: the cases are read twice, and no more of them are held than readers are shown.
+//! From finished cases to files. The cases are read twice; only those that readers see are kept in memory.
 
 use super::kind::{OwnResults, RunRequest, kind};
 use super::stored_results::RESULTS;
@@ -17,10 +17,10 @@ use serde_json::{Map, Value as Json};
 use std::borrow::Cow;
 use std::io;
 
-/// The files that were made of finished cases.
+/// The files made from finished cases.
 #[derive(Debug, Clone)]
 pub struct Made {
-    /// Returns the names of the files beside results.json, sorted.
+    /// Names of the files beside results.json, sorted.
     pub names: Vec<String>,
     /// The table for the terminal.
     pub table: String,
@@ -28,7 +28,7 @@ pub struct Made {
     pub totals: Totals,
 }
 
-/// What is known of all cases after they were read once.
+/// Data of all cases after the first reading.
 struct Gathered {
     totals: Totals,
     own: OwnResults,
@@ -42,7 +42,7 @@ impl Study {
         StudyResults { cases, ..self.results_of(version, &Gathered { totals, own }) }
     }
 
-    /// Results without their cases.
+    /// Returns results without their cases.
     fn results_of(&self, version: &str, gathered: &Gathered) -> StudyResults {
         let ids: Vec<usize> = gathered.totals.ids().filter(|id| *id < self.count()).collect();
         StudyResults {
@@ -56,7 +56,7 @@ impl Study {
         }
     }
 
-    /// What the study's kind adds to the results of the cases.
+    /// Returns the additions of the study's kind to the results of the cases.
     pub(super) fn own_results(&self, cases: &[CaseResult]) -> OwnResults {
         kind(&self.kind).map(|kind| kind.own_results(self, cases)).unwrap_or_default()
     }
@@ -64,7 +64,7 @@ impl Study {
     /// Reads all cases once.
     fn gathered(&self, finished: &(impl FinishedCases + ?Sized)) -> io::Result<Gathered> {
         let (mut totals, mut brief) = (Totals::default(), Vec::new());
-        // Kinds that add nothing need no list.
+        // Kinds without additions need no list.
         let adds = self.kind != "run";
         finished.each(&mut |cases| {
             cases.iter().for_each(|case| totals.add(case));
@@ -75,7 +75,7 @@ impl Study {
         Ok(Gathered { totals, own })
     }
 
-    /// The results that readers are shown, with everything that is drawn of them.
+    /// Returns the results that readers see, with everything that is drawn.
     fn shown(
         &self,
         request: &RunRequest,
@@ -90,7 +90,7 @@ impl Study {
         })?;
         let mut results =
             StudyResults { date: request.date.clone(), cases, ..self.results_of(&request.version, gathered) };
-        // Meshes and moving loads show every case, others those that are drawn.
+        // Meshes and moving loads show every case, other figures only the drawn cases.
         let all = self.output.vtu || self.output.animation || self.output.figures == Drawn::All;
         let whole = if all { ids } else { drawn(self.output.figures, &results).unwrap_or_default() };
         finished.each_of(&whole, &mut |few| {
@@ -103,11 +103,11 @@ impl Study {
         Ok(results)
     }
 
-    /// Writes results.json and all other files of finished cases, which are in order of id. `names` is given the names of
-    /// the other files before any is written.
+    /// Writes results.json and all other files of finished cases, which are in order of id. `names` gets the names of the other
+    /// files before any file is written.
     ///
     /// # Errors
-    /// If cases cannot be read or files cannot be written, and those of `names`.
+    /// Cases cannot be read, files cannot be written, or `names` returns an error.
     pub fn write_files(
         &self,
         request: &RunRequest,
@@ -149,7 +149,7 @@ impl Study {
             only_cases: results.only_cases.clone(),
             files: listed.clone(),
         };
-        // What is worth most comes first: a disk may be full.
+        // The most important file is first, because a disk may be full.
         let mut json = match files.begin(RESULTS)? {
             Some(out) => Some(ResultsText::begin(out, &head)?),
             None => None,

@@ -14,11 +14,11 @@ pub fn read_stored_cases(file: impl Read, take: Take) -> Result<Map<String, Json
     Ok(whole)
 }
 
-/// The entries before the cases; what can be read of them.
+/// Returns the entries before the cases, as far as they can be read.
 pub fn read_head(file: impl Read) -> Map<String, Json> {
     let mut head = Map::new();
     let mut text = serde_json::Deserializer::from_reader(BufReader::with_capacity(1 << 16, file));
-    // The error says that the cases are not read.
+    // This ends with an error, because the cases are not read.
     drop(Head(&mut head).deserialize(&mut text));
     head
 }

@@ -1,4 +1,4 @@
-//! The files of a results folder as `verify` is given them, and their comparison with those that results give.
+//! The files of a results folder, as `verify` gets them, and their comparison with the files made from the results.
 
 use super::same_bytes::SameBytes;
 use crate::verify::Agreement;
@@ -31,7 +31,7 @@ impl StoredResults<'_> {
         Ok(text)
     }
 
-    /// Findings about the files beside results.json: each that is there must be the one that is made from it.
+    /// Returns findings about the files beside results.json: each existing file must be equal to the file made from results.json.
     pub fn altered<'a>(&self, made: impl Iterator<Item = (&'a str, &'a [u8])>, agreement: Agreement) -> Vec<String> {
         let files = Comparison::new(self, agreement, None);
         for (name, bytes) in made {
@@ -46,22 +46,22 @@ pub(super) fn not_made(name: &str) -> String {
     format!("{name} is not what {RESULTS} gives")
 }
 
-/// Compares the files of a folder with those that its results give.
+/// Compares the files in a folder with the files made from its results.
 pub(super) struct Comparison<'a> {
     stored: &'a StoredResults<'a>,
     agreement: Agreement,
-    /// A file that is checked in another way.
+    /// A file that is checked separately.
     apart: Option<&'static str>,
     altered: RefCell<Vec<String>>,
 }
 
 impl<'a> Comparison<'a> {
-    /// A comparison with nothing found yet.
+    /// Starts a comparison without findings.
     pub fn new(stored: &'a StoredResults<'a>, agreement: Agreement, apart: Option<&'static str>) -> Self {
         Comparison { stored, agreement, apart, altered: RefCell::default() }
     }
 
-    /// The findings.
+    /// Returns the findings.
     pub fn altered(self) -> Vec<String> {
         self.altered.into_inner()
     }
@@ -78,7 +78,7 @@ impl<'a> Comparison<'a> {
     }
 }
 
-/// A file as it should be, against the one that is there.
+/// The expected content of a file and the stored file.
 struct ComparedFile<'a> {
     files: &'a Comparison<'a>,
     name: String,
@@ -88,9 +88,9 @@ struct ComparedFile<'a> {
 enum Against {
     /// Byte by byte.
     Bits(SameBytes<Box<dyn Read>>),
-    /// Numbers may differ by rounding: the whole file is held.
+    /// Numbers may differ by rounding: the whole file is in memory.
     Rounding(Vec<u8>),
-    /// It is known to be another one.
+    /// The file is known to differ.
     Differs,
 }
 

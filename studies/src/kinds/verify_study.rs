@@ -1,5 +1,5 @@
-//! `verify` of a study with cases: results.json is read from its beginning to its end, and no more of its cases are held
-//! than are checked at once. If they hold, its other files are made again from it and compared.
+//! `verify` of a study with cases: results.json is read from its beginning to its end, and only the cases that are checked at
+//! the same time are in memory. If they pass, the other files are made again from it and compared.
 
 use super::kind::{RunRequest, Verification};
 use super::stored_cases::read_stored_cases;
@@ -29,7 +29,7 @@ Not checked: counters, seconds, version";
 /// Keys of results.json that are neither its origin nor added by a study kind.
 const OWN_KEYS: [&str; 6] = ["study", "version", "date", "only_cases", "files", "comparison"];
 
-/// A check while it goes on.
+/// The state of a check.
 struct Check<'a> {
     study: &'a Study,
     observer: &'a dyn Observer,
@@ -42,15 +42,15 @@ struct Check<'a> {
     /// Ids of the study's own cases that were found, in order.
     ids: Vec<usize>,
     missing: Vec<usize>,
-    /// The results for what the study's kind adds.
+    /// The results from which the additions of the study's kind are made.
     brief: Vec<CaseResult>,
     made: MadeCases,
 }
 
-/// The cases that the study's kind makes, solved again for one case of the study after another.
+/// The cases that the study's kind makes, solved again separately for each case of the study.
 #[derive(Default)]
 struct MadeCases {
-    /// The number of the study's own cases in the results from which they were made.
+    /// Number of the study's own cases in the results from which they were made.
     bases: usize,
     expected: VecDeque<CaseResult>,
 }
@@ -160,7 +160,7 @@ impl Check<'_> {
         }
     }
 
-    /// Solves cases of the study again. Those that its kind makes of them unannounced are compared later.
+    /// Solves cases of the study again. Cases that its kind makes from them are collected and compared later.
     fn solved_again(&mut self, ids: &[usize]) -> BTreeMap<usize, CaseResult> {
         let mut again = Vec::new();
         if self.study.makes_cases() {
@@ -188,7 +188,7 @@ impl Check<'_> {
         }
     }
 
-    /// Checks cases that the study's kind makes, against those that it makes again.
+    /// Checks cases that the study's kind makes against the cases that it makes again.
     fn made_cases(&mut self, pairs: &[(&Json, &CaseResult)]) {
         for (entry, result) in pairs {
             let id = result.label.id;
@@ -211,7 +211,7 @@ impl Check<'_> {
         }
     }
 
-    /// The id of the next case that the study's kind makes; `None` after the last.
+    /// Returns the id of the next case that the study's kind makes; `None` after the last.
     fn next_made(&mut self) -> Option<usize> {
         while self.made.expected.is_empty() && self.study.makes_cases() && self.made.bases < self.ids.len() {
             let base = self.ids[self.made.bases];
@@ -225,7 +225,7 @@ impl Check<'_> {
         self.made.expected.front().map(|case| case.label.id)
     }
 
-    /// Checks what is beside the cases, and finds missing cases.
+    /// Checks the entries beside the cases, and finds missing cases.
     fn end(mut self, beside: &Map<String, Json>) -> Verification {
         while self.next_made().is_some() {
             let absent = self.made.expected.pop_front();
@@ -274,7 +274,7 @@ impl Check<'_> {
     }
 }
 
-/// How results are checked.
+/// The settings of a check.
 #[derive(Clone, Copy)]
 struct How<'a> {
     study: &'a Study,
@@ -289,7 +289,7 @@ struct Checked {
     is_case: bool,
     /// True if its path is proved.
     proved: bool,
-    /// The proved result that takes the place of solving again.
+    /// The proved result, which replaces a second solution.
     instead: Option<CaseResult>,
     wrong: Vec<String>,
 }
@@ -304,7 +304,7 @@ impl How<'_> {
                 wrong.push(why);
                 None
             });
-            // A search starts from all cases, so that its kind solves them again anyway.
+            // A search starts from all cases, so its kind solves them again in any case.
             let is_enough = |own: &ProvedCase| !self.study.makes_cases() && own.is_enough(&case, self.agreement);
             Checked {
                 is_case: true,
@@ -316,7 +316,7 @@ impl How<'_> {
         caught(check).unwrap_or_else(|why| Checked { is_case: true, wrong: vec![why], ..Checked::default() })
     }
 
-    /// The differences of an entry from its case solved again.
+    /// Returns the differences between an entry and its case solved again.
     fn against(&self, entry: (&Json, &CaseResult), again: &CaseResult, agreement: Agreement) -> Vec<String> {
         caught(|| against(self.study, agreement, entry, again)).unwrap_or_else(|why| vec![why])
     }
@@ -347,7 +347,7 @@ impl FinishedCases for StoredCases<'_> {
     }
 }
 
-/// Makes all files again from confirmed results and compares them with those that are there.
+/// Makes all files again from confirmed results and compares them with the existing files.
 fn compare_files(study: &Study, stored: &StoredResults, beside: &Map<String, Json>, found: &mut Verification) {
     let text = |key: &str| beside.get(key).and_then(Json::as_str).map(String::from);
     let request = RunRequest {
@@ -367,7 +367,7 @@ fn compare_files(study: &Study, stored: &StoredResults, beside: &Map<String, Jso
         }
     };
     found.files.extend(files.altered());
-    // The lines of the stored paths are checked by themselves, not made from results.json.
+    // The lines of the stored paths are checked separately; they are not made from results.json.
     let listed = beside.get("files").and_then(Json::as_array).into_iter().flatten();
     let listed: Vec<&str> = listed.filter_map(Json::as_str).filter(|name| *name != PATH_PROOFS).collect();
     let own = names.iter().filter(|name| *name != PATH_PROOFS);
