@@ -16,7 +16,7 @@ pub trait StudyKind: Sync {
     /// Reads a study file of this kind.
     fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, StudyError>;
 
-    /// Like [`read`](Self::read), if the study may name other files: `read` opens them, with paths relative to the study file.
+    /// Like [`StudyKind::read`], if the study may name other files: `read` opens them, with paths relative to the study file.
     fn read_beside(&self, source: StudySource, read: ReadFile) -> Result<Box<dyn LoadedStudy>, StudyError> {
         let _ = read;
         self.read(source)
