@@ -24,7 +24,7 @@ pub struct FillPressure {
     /// m_c, share of the passive pressure by cohesion that is mobilised; 0 switches it off
     #[key(unit = "-", range = ">= 0", default = 0.05)]
     pub cohesion_factor: f64,
-    /// what the fill presses with at least: nothing, the active pressure, or that at rest
+    /// least pressure of the fill: zero, the active pressure, or the pressure at rest
     #[key(default = "zero")]
     pub lower: LeastPressure,
     /// pressure by displacement into the fill before it yields; limit loads do not depend on it

@@ -23,7 +23,7 @@ pub struct Node {
 /// A TOML value.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
-    /// Text.
+    /// A text.
     String(String),
     /// A whole number.
     Integer(i64),

@@ -14,7 +14,7 @@ struct Map;
 struct MapTable {
     #[key(like = CompareTable)]
     reference: Option<String>,
-    /// name of the variant whose load over that of the reference is drawn as contours
+    /// name of the variant whose load, divided by the load of the reference, is drawn as contours
     #[key(optional = "the first that is not the reference")]
     contours: Option<String>,
     /// name of the variant whose kinds of mechanism are coloured

@@ -14,7 +14,7 @@ pub struct PointLoad {
     /// place on the extrados of an arch, along the span from the left
     #[key(unit = "-", optional = "block and point are given")]
     pub span_fraction: Option<f64>,
-    /// Or the block …
+    /// The block, instead of `span_fraction`.
     #[key(like = LoadKeys, optional = "span_fraction is given")]
     pub block: Option<BlockName>,
     /// point in or on the block
@@ -23,7 +23,7 @@ pub struct PointLoad {
     /// force, x to the right and y upwards
     #[key(names = ["x", "y"], unit = "N")]
     pub force: [f64; 2],
-    /// How it spreads on its way to the extrados.
+    /// Law of dispersion on the way to the extrados.
     #[key(like = LoadKeys)]
     pub dispersion: Option<Box<dyn Dispersion>>,
 }

@@ -20,7 +20,7 @@ pub struct Strip {
     /// on the plan area, downwards
     #[key(unit = "Pa")]
     pub pressure: f64,
-    /// How it spreads on its way to the extrados.
+    /// Law of dispersion on the way to the extrados.
     #[key(like = LoadKeys)]
     pub dispersion: Option<Box<dyn Dispersion>>,
 }

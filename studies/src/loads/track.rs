@@ -4,7 +4,7 @@ use super::dispersion::Patch;
 use super::vehicle_axles::Axle;
 use voussoir_core::plugin::Keys;
 
-/// What carries an axle to the road. The road is the level under the ballast.
+/// Rails, sleepers and ballast between an axle and the road. The road is the level under the ballast.
 #[derive(Debug, Clone, Copy, PartialEq, Keys)]
 pub struct Track {
     /// distance of sleepers

@@ -9,21 +9,21 @@ use super::track::{Track, footprints, loaded_width};
 use super::vehicle_axles::Axle;
 use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind};
 
-/// Which way the axles stand.
+/// Direction of the vehicle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
 pub enum Direction {
     /// As in the vehicle's table.
     Forward,
-    /// Turned round.
+    /// Reversed.
     Backward,
 }
 
-/// How much of the bridge's width carries a wheel.
+/// The part of the bridge's width that carries an axle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
 pub enum Across {
-    /// All of it.
+    /// The whole width.
     FullWidth,
-    /// The wheel's width, spread on both sides like its length.
+    /// The wheel width, spread on both sides like its length.
     Effective,
 }
 

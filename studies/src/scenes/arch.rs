@@ -10,7 +10,7 @@ use voussoir_core::model::geometry::bounding_box;
 use voussoir_core::model::{ArchLayout, Assembly, Body, Bond, Catalogue, Gap, Joint, Scene, find_joints};
 use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind, Range};
 
-/// How the ring meets its supports.
+/// Connection of the ring with its supports.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
 pub enum Ends {
     /// The springing faces move with the supports.
@@ -30,7 +30,7 @@ pub struct Arch {
     /// thickness of the ring, along the joints; { crown, springing } grows with the arc length between them
     #[key(optional = "the profile is a list of points")]
     pub thickness: Option<Thickness>,
-    /// Out of plane \[m\].
+    /// Width out of plane \[m\].
     #[key(like = SceneKeys)]
     pub width: f64,
     /// Stress state of deformable voussoirs.

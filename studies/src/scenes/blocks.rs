@@ -21,15 +21,15 @@ pub struct Block {
     /// held by the ground
     #[key(default = false)]
     pub fixed: bool,
-    /// Instead of the scene's.
+    /// Material instead of the scene's material.
     #[key(like = SceneKeys, optional = "the scene's")]
     pub material: Option<String>,
-    /// Law of its joints, instead of the scene's.
+    /// Law of its joints instead of the scene's law.
     #[key(like = SceneKeys, optional = "the scene's")]
     pub joint: Option<String>,
 }
 
-/// What is special about the joints between two blocks.
+/// Law or gap of the joints between two blocks.
 #[derive(Debug, Clone, PartialEq, Keys)]
 pub struct Pair {
     /// names of two blocks
@@ -42,26 +42,26 @@ pub struct Pair {
     pub gap: Gap,
 }
 
-/// A free assembly.
+/// An assembly of blocks.
 #[derive(Debug, Clone, PartialEq, Keys)]
 #[keys(check = Blocks::validate)]
 pub struct Blocks {
-    /// Out of plane \[m\].
+    /// Width out of plane \[m\].
     #[key(like = SceneKeys)]
     pub width: f64,
     /// Stress state of deformable blocks.
     #[key(like = SceneKeys, default)]
     pub plane: PlaneState,
-    /// Material of blocks that name none.
+    /// Material of blocks that do not name one.
     #[key(like = SceneKeys, optional = "every block names its own")]
     pub material: Option<String>,
-    /// Law of joints for which none is named.
+    /// Law of joints without another law.
     #[key(like = SceneKeys, optional = "every joint has a law from its blocks or its pair")]
     pub joint: Option<String>,
     /// the blocks
     #[key(len = ">= 1")]
     pub blocks: Vec<Block>,
-    /// joints with a law or gap of their own
+    /// joints with another law or with a gap
     #[key(default = [])]
     pub pairs: Vec<Pair>,
     /// Mesh of deformable blocks.

@@ -27,16 +27,16 @@ use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind, Range};
 #[derive(Debug, Keys)]
 #[keys(check = BridgeScene::validate)]
 pub struct BridgeScene {
-    /// Out of plane \[m\].
+    /// Width out of plane \[m\].
     #[key(like = SceneKeys)]
     pub width: f64,
     /// Stress state of deformable blocks.
     #[key(like = SceneKeys, default)]
     pub plane: PlaneState,
-    /// Material of blocks that name none.
+    /// Material of blocks that do not name one.
     #[key(like = SceneKeys)]
     pub material: String,
-    /// Interface law of all joints but those between rings.
+    /// Interface law of all joints except the joints between rings.
     #[key(like = SceneKeys)]
     pub joint: String,
     /// interface law of the joints between rings

@@ -23,10 +23,10 @@ pub struct Mesh {
 #[derive(Debug, Clone, Copy, PartialEq, Keys)]
 #[keys(untagged)]
 pub enum Grading {
-    /// The same both ways.
+    /// One grading for all edges.
     #[key(unit = "-", range = GRADING)]
     Both(f64),
-    /// Along, across; as `elements`.
+    /// Gradings along and across, in the order of `elements`.
     #[key(names = ["along", "across"], unit = "-", range = GRADING)]
     Each([f64; 2]),
 }

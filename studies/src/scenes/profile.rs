@@ -85,7 +85,7 @@ pub enum Profile {
         /// Rise of the intrados \[m\].
         #[key(like = ProfileKeys)]
         rise: f64,
-        /// radius of the crown arc, more than that of the segmental arc of this span and rise
+        /// radius of the crown arc, more than the radius of the segmental arc with this span and rise
         #[key(unit = "m", range = "> 0")]
         crown_radius: f64,
     },
@@ -97,7 +97,7 @@ pub enum Profile {
         /// extrados end of each joint
         #[key(names = ["x", "y"], unit = "m", len = ">= 2", optional = "file is given")]
         extrados: Vec<[f64; 2]>,
-        /// Read before, and replaced by the points.
+        /// Replaced by the points before this table is read.
         #[key(like = ProfileKeys)]
         file: Option<String>,
     },
@@ -109,7 +109,7 @@ pub enum Profile {
         /// points of the extrados, beginning and ending at the springing faces
         #[key(names = ["x", "y"], unit = "m", len = ">= 2", optional = "file is given")]
         extrados: Vec<[f64; 2]>,
-        /// Read before, and replaced by the points.
+        /// Replaced by the points before this table is read.
         #[key(like = ProfileKeys)]
         file: Option<String>,
     },

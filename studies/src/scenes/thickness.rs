@@ -3,11 +3,11 @@
 use super::lookup::out_of_range;
 use voussoir_core::plugin::{Diagnostic, Keys, Range};
 
-/// Of a ring, along its joints.
+/// Thickness of a ring, along its joints.
 #[derive(Debug, Clone, Copy, PartialEq, Keys)]
 #[keys(untagged)]
 pub enum Thickness {
-    /// The same all along \[m\].
+    /// Constant thickness \[m\].
     #[key(unit = "m", range = "> 0")]
     Even(f64),
     /// Linear in the arc length of the intrados.

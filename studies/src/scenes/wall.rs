@@ -8,10 +8,10 @@ use voussoir_core::model::geometry::{Vec2, bounding_box};
 use voussoir_core::model::{Assembly, Body, Bond, Catalogue, Gap, Scene, find_joints};
 use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind, Range};
 
-/// How courses are staggered.
+/// Bond of the courses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
 pub enum BondPattern {
-    /// By half a brick.
+    /// Staggered by half a brick.
     Running,
 }
 
@@ -30,7 +30,7 @@ pub struct Opening {
 #[derive(Debug, Clone, PartialEq, Keys)]
 #[keys(check = Wall::validate)]
 pub struct Wall {
-    /// Out of plane \[m\].
+    /// Width out of plane \[m\].
     #[key(like = SceneKeys)]
     pub width: f64,
     /// Stress state of deformable bricks.

@@ -1,4 +1,4 @@
-//! A study file whose axes are read: the cases are made from here.
+//! A study file with its axes: makes the cases.
 
 use super::case::{build_case, shared_key};
 use super::diagnostics::located;
@@ -29,7 +29,7 @@ const SMALL_PATH_PROOF: usize = 200_000;
 const MAX_MISTAKES: usize = 100;
 /// Number of cases that are made before they are passed on.
 const AT_ONCE: usize = 64;
-/// Greatest number of cases that are held while a command works. More are made one after another, each when it is needed.
+/// Greatest number of cases that a command keeps in memory. Further cases are made one at a time when they are needed.
 pub const HELD: usize = 1000;
 /// Greatest number of different notes of a study that are kept.
 const MAX_NOTES: usize = 100;
@@ -82,17 +82,17 @@ impl StudyFile {
         self.expansion.count()
     }
 
-    /// The study with all its cases; every mistake at once.
+    /// Returns the study with all its cases. The error contains all mistakes.
     pub fn study(self) -> Result<Study, StudyError> {
         self.made(usize::MAX)
     }
 
-    /// The study, every case made once, so that every mistake is told at once; the cases are held if there are few.
+    /// Returns the study. Each case is made once, so that the error contains all mistakes; the cases are kept if there are few.
     pub fn study_in_turn(self) -> Result<Study, StudyError> {
         self.made(HELD)
     }
 
-    /// Makes each case once and holds up to so many, or none.
+    /// Makes each case once. Keeps all cases if there are at most `most`, otherwise none.
     fn made(mut self, most: usize) -> Result<Study, StudyError> {
         let (mut cases, mut first, mut notes) = (Vec::new(), None, Vec::new());
         let count = self.expansion.count();
@@ -118,15 +118,14 @@ impl StudyFile {
         Ok(Study { cases, notes, ..study })
     }
 
-    /// The study with none of its cases made but the first: for those who know that [`StudyFile::study_in_turn`]
-    /// accepts it.
+    /// Returns the study; only the first case is made. The caller must know that [`StudyFile::study_in_turn`] accepts the study.
     pub fn study_unchecked(mut self) -> Result<Study, StudyError> {
         let first = self.expansion.case(0).and_then(|expanded| build_case(0, expanded, &|_| None));
         let first = first.map_err(|wrong| self.diagnostics.extend(wrong)).ok();
         self.study_of(first.as_ref())
     }
 
-    /// What does not depend on the cases but the first, or all mistakes.
+    /// Returns the part of the study that does not depend on cases other than the first, or all mistakes.
     fn study_of(mut self, first: Option<&Case>) -> Result<Study, StudyError> {
         if !self.diagnostics.is_empty() {
             sort(&mut self.diagnostics);

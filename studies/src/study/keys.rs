@@ -99,7 +99,7 @@ struct StudyTable {
     /// stages of loading, \[\[stages\]\], in order
     #[key(len = ">= 1")]
     stages: Vec<StageTable>,
-    /// how the cases are answered
+    /// solver of the cases
     #[key(shape = Shape::Plugin(PluginKind::LimitSolver), default = {})]
     solver: Json,
     /// vehicles by name, for loads of kind "vehicle"

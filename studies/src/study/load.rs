@@ -26,17 +26,17 @@ impl Study {
         StudyFile::read(source)?.study()
     }
 
-    /// The same, which holds no case of a study of more than [`super::HELD`] cases.
+    /// Like [`Study::from_source`], but keeps no cases of a study with more than [`super::HELD`] cases.
     pub fn from_source_in_turn(source: StudySource) -> Result<Study, StudyError> {
         StudyFile::read(source)?.study_in_turn()
     }
 
-    /// Number of cases.
+    /// Returns the number of cases.
     pub fn count(&self) -> usize {
         self.expansion.count()
     }
 
-    /// A case, made now if it is not held; `None` beyond the last.
+    /// Returns a case, which is made now if it is not in memory; `None` beyond the last.
     pub fn case(&self, id: usize) -> Option<Cow<'_, Case>> {
         if let Some(case) = self.cases.get(id) {
             return Some(Cow::Borrowed(case));
@@ -45,25 +45,25 @@ impl Study {
         build_case(id, expanded, &|name| shared_key(&self.checked, &self.expansion, name)).ok().map(Cow::Owned)
     }
 
-    /// Variant, scene and swept values of a case, without its hash; `None` beyond the last.
+    /// Returns variant, scene and swept values of a case, without its hash; `None` beyond the last.
     pub fn label(&self, id: usize) -> Option<CaseLabel> {
         let Expanded { variant, scene, parameters, .. } =
             (id < self.count()).then(|| self.expansion.case(id).ok())??;
         Some(CaseLabel { id, case_hash: String::new(), variant, scene, parameters })
     }
 
-    /// The values of a swept key in the order of its axis.
+    /// Returns the values of a swept key in the order of its axis.
     pub fn values(&self, key: &str) -> Vec<Json> {
         self.expansion.values(key)
     }
 
-    /// Swept keys, outermost first.
+    /// Returns the swept keys, outermost first.
     pub fn keys(&self) -> Vec<String> {
         self.expansion.swept().map(String::from).collect()
     }
 
-    /// Case `id` with other values of some keys, numbers or texts, as a study kind needs it that chooses values itself. Its `id`
-    /// and `parameters` are those of the case, with the keys that are set.
+    /// Returns case `id` with other values of some keys, numbers or texts, for study kinds that choose values themselves. Its
+    /// `id` and `parameters` are those in the case, with the changed keys.
     pub fn at(&self, id: usize, values: &[(String, Json)]) -> Result<Case, StudyError> {
         let mut expanded = self.expansion.case(id)?;
         for (key, value) in values {

@@ -170,14 +170,13 @@ pub struct Study {
     pub outline: Outline,
     /// Output settings.
     pub output: Output,
-    /// All cases in order, if they are held. Of studies that were read one case at a time, this list is empty:
+    /// All cases in order, if they are kept in memory. The list is empty if the study was read one case at a time:
     /// [`Study::case`] makes a case.
     pub cases: Vec<Case>,
-    /// Different notes of the cases, up to a hundred.
+    /// Different notes of the cases, at most 100.
     pub notes: Vec<String>,
-    /// The file with `--set` applied. Values stand as they were written and defaults are not filled
-    /// in, because a variant may change what a default or a specific weight means; read again, it
-    /// makes exactly the same cases.
+    /// The file with `--set` applied. Values are unchanged and defaults are not filled in, because a variant may change the
+    /// meaning of a default or of a specific weight. If this file is read again, it gives exactly the same cases.
     pub resolved: toml::Value,
     /// Base, variants, scenes and axes, from which cases are made.
     pub(crate) expansion: Expansion,

@@ -18,10 +18,10 @@ use voussoir_core::plugin::{Keys, PluginKind, card, nearest};
 #[derive(Debug, Clone, Keys)]
 #[keys(untagged)]
 pub enum LoadFactors {
-    /// One for all stages.
+    /// One factor for all stages.
     #[key(unit = "-", range = "> 0")]
     All(f64),
-    /// By the names of stages.
+    /// Factors by the names of stages.
     #[key(unit = "-", range = "> 0")]
     Stages(BTreeMap<String, f64>),
 }

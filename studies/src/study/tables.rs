@@ -23,10 +23,10 @@ pub struct SettlementTable {
 #[derive(Debug, Clone, Copy, Keys)]
 #[keys(untagged)]
 pub enum Gravity {
-    /// It acts downwards.
+    /// Gravity downwards.
     #[key(unit = "m/s2", range = ">= 0")]
     Down(f64),
-    /// By its components.
+    /// Components of gravity.
     #[key(names = ["x", "y"], unit = "m/s2")]
     Vector([f64; 2]),
 }
@@ -112,7 +112,7 @@ pub struct Axis {
     pub count: Option<usize>,
 }
 
-/// An axis, or several that change together.
+/// An axis, or several axes that change together.
 #[derive(Debug, Clone, Keys)]
 #[keys(untagged)]
 pub enum Axes {
@@ -135,9 +135,9 @@ pub struct VariantTable {
 /// The cases that are drawn, by a word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
 pub enum DrawnWord {
-    /// Every one.
+    /// All cases.
     All,
-    /// The worst of each variant.
+    /// The worst case of each variant.
     Worst,
     /// No case is drawn.
     None,
@@ -153,10 +153,10 @@ pub enum Figures {
     These(DrawnWord),
 }
 
-/// The way to find the error of the load factor.
+/// Method for the error of the load factor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
 pub enum Accuracy {
-    /// By solving again.
+    /// Estimate by solving again.
     Estimate,
 }
 
@@ -169,7 +169,7 @@ pub struct OutputKeys {
     /// figures: of all cases, of the worst of each variant, of none; true: of all up to 50 cases, else of the worst
     #[key(default = true)]
     pub figures: Figures,
-    /// of each path so many states are kept, for the drawing that moves in the report
+    /// number of states of each path that are kept, for the drawing that moves in the report
     #[key(range = ">= 2, <= 500", optional = "no states are kept")]
     pub states: Option<usize>,
     /// derivatives of the load factor of limit analysis with respect to every number, on both sides

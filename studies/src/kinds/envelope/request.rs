@@ -10,11 +10,11 @@ const MAX_SCAN: usize = 100_000;
 /// The directions of vehicles that are tried.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
 pub enum Directions {
-    /// One after the other.
+    /// Both directions, one after the other.
     Both,
     /// As in the vehicle's table.
     Forward,
-    /// Turned round.
+    /// Reversed.
     Backward,
 }
 
@@ -46,7 +46,7 @@ pub(super) struct Request {
     /// number of places on an even scan; places where axles enter or edges of patches meet joints are added
     #[key(range = ">= 2, <= MAX_SCAN", default = 41)]
     pub scan: usize,
-    /// which way vehicles stand
+    /// direction of the vehicles
     #[key(optional = "both for a load of kind \"vehicle\", forward for others")]
     pub directions: Option<Directions>,
     /// entries of \[vehicles\] that are tried in turn

@@ -45,7 +45,7 @@ pub(super) struct Request {
     /// greatest value, in the unit of the key
     #[key(unit = "-")]
     pub to: f64,
-    /// which way is better
+    /// maximise or minimise
     #[key(default = "maximise")]
     pub goal: Goal,
     /// what is optimised

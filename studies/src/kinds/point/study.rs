@@ -138,9 +138,9 @@ pub enum PointKind {
 pub struct PointFile {
     /// name of the study
     name: String,
-    /// what is done
+    /// kind of the study
     kind: PointKind,
-    /// what is driven, and how
+    /// driven law and its path
     point: PointTable,
     /// materials by name
     #[key(of = MATERIAL, default = {})]

@@ -12,18 +12,18 @@ use voussoir_core::plugin::Keys;
 pub struct Claim {
     /// number or name of the claim
     pub id: String,
-    /// what is claimed
+    /// text of the claim
     pub claim: String,
-    /// where it stands
+    /// place of the claim in its source
     #[key(default = "")]
     pub source: String,
-    /// what the tests differ in, named where some hold and some do not
+    /// difference between the tests, named if some hold and some do not
     #[key(optional = "one test")]
     pub depends_on: Option<String>,
-    /// what a reader should know besides, in Markdown
+    /// notes for the reader, in Markdown
     #[key(default = "")]
     pub remark: String,
-    /// what decides, test by test
+    /// tests that decide about the claim
     #[key(len = ">= 1, <= 100")]
     pub tests: Vec<Test>,
 }
@@ -31,14 +31,14 @@ pub struct Claim {
 /// A test of a claim.
 #[derive(Debug, Clone, PartialEq, Keys)]
 pub struct Test {
-    /// what is tested: a model, a rise, a settlement
+    /// subject of the test: a model, a rise, a settlement
     pub of: String,
     /// expression of series: the number behind the test
     pub value: String,
     /// its unit
     #[key(default = "")]
     pub unit: String,
-    /// condition of `value` and series under which what is claimed is true here
+    /// condition on `value` and series under which the claim holds in this test
     pub holds: String,
 }
 

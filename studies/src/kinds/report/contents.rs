@@ -23,13 +23,13 @@ pub struct Contents {
     /// study files, relative to this one
     #[key(len = ">= 1, <= 200")]
     pub studies: Vec<String>,
-    /// Markdown before each study; one more stands at the end
+    /// Markdown before each study; one more text is at the end
     #[key(len = "<= 201", default = [])]
     pub text: Vec<String>,
     /// Markdown at the head of the page
     #[key(default = "")]
     pub introduction: String,
-    /// results that claims, charts and tables speak of, by name
+    /// results that claims, charts and tables refer to, by name
     #[key(default = {})]
     pub series: BTreeMap<String, Selection>,
     /// \[\[report.claims\]\], in order
@@ -204,9 +204,9 @@ pub enum ReportKind {
 pub struct ReportFile {
     /// name of the study
     pub name: String,
-    /// what is done
+    /// kind of the study
     pub kind: ReportKind,
-    /// which studies, and what is said of them
+    /// studies, and claims about them
     pub report: Contents,
     /// what is written besides the results
     #[key(default = {})]

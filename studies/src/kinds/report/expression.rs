@@ -26,23 +26,23 @@ pub enum Operator {
     And,
     /// Logical or.
     Or,
-    /// Sum.
+    /// Sum of two values.
     Add,
-    /// Difference.
+    /// Difference of two values.
     Subtract,
-    /// Product.
+    /// Product of two values.
     Multiply,
-    /// Quotient.
+    /// Quotient of two values.
     Divide,
-    /// Equal.
+    /// Equality.
     Equal,
-    /// Not equal.
+    /// Inequality.
     Unequal,
-    /// Less.
+    /// Less than.
     Less,
     /// Less or equal.
     AtMost,
-    /// Greater.
+    /// Greater than.
     Greater,
     /// Greater or equal.
     AtLeast,

@@ -12,7 +12,7 @@ const PARTS: usize = 40;
 /// The vertical stress of an elastic half-plane.
 #[derive(Debug, Keys)]
 pub struct Boussinesq {
-    /// from the vertical: beyond it nothing is carried, and what is within is scaled up to the whole load
+    /// from the vertical: beyond it no load is carried, and the load within it is scaled up to the whole load
     #[key(unit = "deg", range = ">= 0, < 90")]
     pub angle: f64,
     /// at which the stress is taken

@@ -3,7 +3,7 @@
 use super::law::{Dispersion, Patch, Through};
 use voussoir_core::plugin::{Card, Keys, PluginKind};
 
-/// A load reaches the extrados as it stands.
+/// A load reaches the extrados unchanged.
 #[derive(Debug, Keys)]
 pub struct Undispersed {}
 

@@ -20,7 +20,7 @@ pub enum Face {
     Right,
 }
 
-/// Keys that pieces of damage share.
+/// Keys that all kinds of damage share.
 #[derive(Debug, Keys)]
 pub(super) struct DamageKeys {
     /// span, from 0 at the left
@@ -47,57 +47,57 @@ pub(super) struct DamageKeys {
 #[derive(Debug, Clone, PartialEq, Keys)]
 #[keys(tag = "kind")]
 pub enum Damage {
-    /// joints across a ring or a pier that touch no longer down to a depth
+    /// joints across a ring or a pier that do not touch down to a depth
     LostMortar {
-        /// From 0 at the left; of a ring.
+        /// Span, from 0 at the left.
         #[key(like = DamageKeys)]
         span: Option<usize>,
-        /// From 0 at the inside.
+        /// Ring, from 0 at the inside.
         #[key(like = DamageKeys)]
         ring: Option<usize>,
-        /// Instead of a ring.
+        /// Pier instead of a ring.
         #[key(like = DamageKeys)]
         pier: Option<usize>,
-        /// All where they are not given.
+        /// Numbers of joints; all if they are not given.
         #[key(like = DamageKeys)]
         joints: Option<Vec<usize>>,
         /// The face from which the depth counts.
         #[key(like = DamageKeys)]
         side: Option<Face>,
-        /// \[m\].
+        /// Depth \[m\].
         #[key(like = DamageKeys)]
         depth: f64,
     },
     /// joints across a ring or a pier that follow another law down to a depth
     Repointed {
-        /// From 0 at the left; of a ring.
+        /// Span, from 0 at the left.
         #[key(like = DamageKeys)]
         span: Option<usize>,
-        /// From 0 at the inside.
+        /// Ring, from 0 at the inside.
         #[key(like = DamageKeys)]
         ring: Option<usize>,
-        /// Instead of a ring.
+        /// Pier instead of a ring.
         #[key(like = DamageKeys)]
         pier: Option<usize>,
-        /// All where they are not given.
+        /// Numbers of joints; all if they are not given.
         #[key(like = DamageKeys)]
         joints: Option<Vec<usize>>,
         /// The face from which the depth counts.
         #[key(like = DamageKeys)]
         side: Option<Face>,
-        /// \[m\].
+        /// Depth \[m\].
         #[key(like = DamageKeys)]
         depth: f64,
         /// interface law of the part that is repointed
         #[key(reference = "joints")]
         joint: String,
     },
-    /// voussoirs that are gone; the fill then stands on the ring below
+    /// lost voussoirs; the fill then rests on the ring below
     LostVoussoir {
-        /// From 0 at the left.
+        /// Span, from 0 at the left.
         #[key(like = DamageKeys)]
         span: Option<usize>,
-        /// From 0 at the inside.
+        /// Ring, from 0 at the inside.
         #[key(like = DamageKeys)]
         ring: Option<usize>,
         /// numbers of the voussoirs, from 0 at the left

@@ -11,7 +11,7 @@ use voussoir_core::plugin::{Diagnostic, Keys, Range};
 /// Number of parts of the fill on a deformable block; each part has two points.
 const PARTS: usize = 16;
 
-/// How far the fill reaches to both sides.
+/// Extent of the fill on both sides.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
 pub enum Extent {
     /// Over the whole extrados.
@@ -63,13 +63,13 @@ pub struct Fill {
     /// points of the road from left to right, level beyond them
     #[key(names = ["x", "y"], unit = "m", len = ">= 1", optional = "level, by cover")]
     pub road: Option<Vec<[f64; 2]>>,
-    /// \[kg/m³\].
+    /// Density \[kg/m³\].
     #[key(like = Layer)]
     pub density: f64,
-    /// \[deg\].
+    /// Angle of internal friction \[deg\].
     #[key(like = Layer, optional = "no resistance is asked for")]
     pub friction_angle: Option<f64>,
-    /// \[Pa\].
+    /// Cohesion \[Pa\].
     #[key(like = Layer, default = 0.0)]
     pub cohesion: f64,
     /// extrados: fill stands on the whole extrados; springings: it ends above the outermost intrados

@@ -8,12 +8,12 @@ use voussoir_core::plugin::{Diagnostic, Keys, Range};
 /// Greatest number of courses.
 pub(super) const MAX_COURSES: usize = 1000;
 
-/// What a pier stands on.
+/// Foundation of a pier.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
 pub enum Footing {
     /// On fixed ground, with a joint like any other.
     Fixed,
-    /// Its lowest course is one with the ground.
+    /// The lowest course belongs to the ground.
     Bonded,
 }
 
@@ -48,7 +48,7 @@ pub struct PierBlocks {
     pub cap: Option<Vec<Vec2>>,
     /// Courses from the top down.
     pub courses: Vec<Vec<Vec2>>,
-    /// Upper ends (left, right) of each course, then those of the ground.
+    /// Upper ends (left, right) of each course, then of the ground.
     pub levels: Vec<[Vec2; 2]>,
     /// Free top of the cap or of the pier, from left to right.
     pub top: Option<[Vec2; 2]>,

@@ -18,12 +18,12 @@ pub(super) const MAX_RINGS: usize = 50;
 /// Number of voussoirs of the polygon that approximates the length of a ring.
 const FINE: usize = 2000;
 
-/// Whether radial joints of neighbouring rings meet.
+/// Position of the radial joints of neighbouring rings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
 pub enum RadialJoints {
-    /// They meet.
+    /// The joints meet.
     Aligned,
-    /// Every other ring begins with half a voussoir.
+    /// Every other ring starts with half a voussoir.
     Offset,
 }
 
@@ -31,10 +31,10 @@ pub enum RadialJoints {
 #[derive(Debug, Clone, PartialEq, Eq, Keys)]
 #[keys(untagged)]
 pub enum Counts {
-    /// The same in every ring.
+    /// The same number in every ring.
     #[key(range = ">= 1, <= MAX_VOUSSOIRS")]
     Each(usize),
-    /// By ring.
+    /// A number for each ring.
     #[key(range = ">= 1, <= MAX_VOUSSOIRS", len = ">= 1, <= MAX_RINGS")]
     Rings(Vec<usize>),
 }
