@@ -31,19 +31,19 @@ enum Command {
         /// Study files (TOML)
         #[arg(required = true)]
         studies: Vec<PathBuf>,
-        /// Where results go; with several studies, a folder each inside \[default: results/NAME\]
+        /// Folder for results; several studies get one folder each inside it \[default: results/NAME\]
         #[arg(long)]
         out: Option<PathBuf>,
         /// Override a key of the study, e.g. --set joints.dry.friction=0.5
         #[arg(long, value_name = "KEY=VALUE")]
         set: Vec<String>,
-        /// Cases worked on side by side
+        /// Number of cases in parallel
         #[arg(long, default_value_t = 1)]
         jobs: usize,
         /// Solve only the case with this id
         #[arg(long)]
         case: Option<usize>,
-        /// Go on from the finished cases of an interrupted run
+        /// Continue from the finished cases of an interrupted run
         #[arg(long)]
         resume: bool,
         /// Print nothing but errors
@@ -62,22 +62,22 @@ enum Command {
         #[arg(long)]
         open: bool,
     },
-    /// Put the parts of a study together that were solved with `run --shard`
+    /// Merge the parts of a study that were solved with `run --shard`
     Merge {
         /// Folders with parts, or parts
         #[arg(required = true, value_name = "DIR")]
         dirs: Vec<PathBuf>,
-        /// Where the results go \[default: the folder, where only one is given\]
+        /// Folder for the results \[default: the given folder, if there is only one\]
         #[arg(long)]
         out: Option<PathBuf>,
-        /// Cases checked side by side
+        /// Number of cases checked in parallel
         #[arg(long, default_value_t = 1)]
         jobs: usize,
         /// Print nothing but errors
         #[arg(long)]
         quiet: bool,
     },
-    /// Measure a study's variants side by side, or all solvers that can answer it: processor time and error
+    /// Compare a study's variants, or all compatible solvers: processor time and error
     Bench {
         /// Study file (TOML)
         study: PathBuf,
@@ -87,13 +87,13 @@ enum Command {
         /// Override a key of the study
         #[arg(long, value_name = "KEY=VALUE")]
         set: Vec<String>,
-        /// Runs of each, of which the fastest counts
+        /// Runs of each contestant; the fastest counts
         #[arg(long, default_value_t = 3)]
         runs: usize,
-        /// What errors are measured from: a variant, a contestant, or a load factor that is known
+        /// Reference of the errors: a variant, a contestant, or a known load factor
         #[arg(long, value_name = "NAME|NUMBER")]
         reference: Option<String>,
-        /// Relative error within which a problem counts as answered in the performance profile
+        /// Greatest relative error of a solved problem in the performance profile
         #[arg(long, default_value_t = 1e-3)]
         within: f64,
         /// Print nothing but errors
@@ -111,9 +111,9 @@ enum Command {
         #[arg(long)]
         open: bool,
     },
-    /// Write a commented study that runs as it stands, or a law
+    /// Write a commented study that runs without changes, or a law
     New {
-        /// What it is about
+        /// Kind of the new study
         #[command(subcommand)]
         what: New,
     },
@@ -126,13 +126,13 @@ enum Command {
         #[arg(long, value_name = "KEY=VALUE")]
         set: Vec<String>,
     },
-    /// The same as `run`, which takes studies of every kind
+    /// Same as `run`, which accepts studies of every kind
     #[command(hide = true)]
     Point {
         /// Study files (TOML) with kind = "point"
         #[arg(required = true)]
         studies: Vec<PathBuf>,
-        /// Where results go; with several studies, a folder each inside \[default: results/NAME\]
+        /// Folder for results; several studies get one folder each inside it \[default: results/NAME\]
         #[arg(long)]
         out: Option<PathBuf>,
         /// Override a key of the study, e.g. --set point.length=0.1
@@ -154,22 +154,22 @@ enum Command {
     Conform {
         /// Tags of laws, solvers or strategies; without tags all laws
         tags: Vec<String>,
-        /// Folder for studies that show what was found
+        /// Folder for studies that reproduce the findings
         #[arg(long)]
         out: Option<PathBuf>,
     },
     /// List plug-ins
     List {
-        /// laws, materials, scenes, solvers, kinds, writers …; all where it is left out
+        /// laws, materials, scenes, solvers, kinds, writers …; all if it is omitted
         kind: Option<String>,
     },
     /// Print the JSON Schema of study files
     Schema,
-    /// Check results against the study they answer
+    /// Check results against their study
     Verify {
         /// Folder written by `run`
         dir: PathBuf,
-        /// Study file that the folder must answer
+        /// Study file to which the folder must belong
         study: Option<PathBuf>,
         /// Change one value of the study file, as in `run`; may be given several times
         #[arg(long, value_name = "KEY=VALUE", requires = "study")]
@@ -177,13 +177,13 @@ enum Command {
         /// Accept a folder that holds only some cases of its study
         #[arg(long)]
         partial: bool,
-        /// Cases worked on side by side
+        /// Number of cases in parallel
         #[arg(long, default_value_t = 1)]
         jobs: usize,
     },
     /// Print the completions of a shell
     Completions {
-        /// Which shell
+        /// Name of the shell
         shell: clap_complete::Shell,
     },
     /// Print the manual page (`voussoir man | man -l -`)
@@ -245,9 +245,9 @@ enum New {
     Paper(NewStudy),
     /// A law of joints: its file, its page and its test
     Law {
-        /// Its tag, which is the name of its file
+        /// Tag of the law, which is also the name of its file
         tag: String,
-        /// Folder of the crate that it goes into
+        /// Folder of its crate
         #[arg(long, default_value = ".")]
         out: PathBuf,
     },
@@ -255,7 +255,7 @@ enum New {
 
 #[derive(Args)]
 struct NewStudy {
-    /// Its name; the file is NAME.toml \[default: the word itself\]
+    /// Name of the study; the file is NAME.toml \[default: the word itself\]
     name: Option<String>,
 }
 

@@ -22,7 +22,7 @@ pub struct ProfileKeys {
     /// rise of the intrados
     #[key(unit = "m", range = "> 0")]
     rise: f64,
-    /// a table of them beside the study: a line a point, columns curve, x, y, or a line a joint, columns intrados_x,
+    /// a table of these points beside the study: one line per point, columns curve, x, y, or one line per joint, columns intrados_x,
     /// intrados_y, extrados_x, extrados_y; a unit may follow a name: x \[mm\]
     #[key(optional = "intrados and extrados are given")]
     file: Option<String>,

@@ -147,7 +147,7 @@ pub enum DrawnWord {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
 #[keys(untagged)]
 pub enum Figures {
-    /// Some or none.
+    /// True or false.
     Any(bool),
     /// The cases of this word.
     These(DrawnWord),
@@ -175,10 +175,10 @@ pub struct OutputKeys {
     /// derivatives of the load factor of limit analysis with respect to every number, on both sides
     #[key(default = false)]
     pub sensitivities: bool,
-    /// "estimate": how far the load factor may be off, by solving again on a mesh twice as fine and with half the step
+    /// "estimate": estimated error of the load factor, by solving again on a mesh twice as fine and with half the step
     #[key(optional = "errors are not estimated")]
     pub accuracy: Option<Accuracy>,
-    /// of an envelope: figures/moving-load.svg, the load on its way with the mechanism at each place
+    /// for an envelope: figures/moving-load.svg, the moving load with the mechanism at each position
     #[key(default = false)]
     pub animation: bool,
     /// files for ParaView of the end of each path

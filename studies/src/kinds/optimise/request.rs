@@ -48,7 +48,7 @@ pub(super) struct Request {
     /// maximise or minimise
     #[key(default = "maximise")]
     pub goal: Goal,
-    /// what is optimised
+    /// result that is optimised
     #[key(optional = "load_factor for small displacements, first_limit_point for finite ones")]
     pub result: Option<Optimised>,
     /// number of even values that are tried first

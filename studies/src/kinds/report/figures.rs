@@ -15,7 +15,7 @@ use voussoir_core::plugin::Keys;
 /// `[[report.charts]]`, read.
 #[derive(Debug, Clone, Keys)]
 pub struct Chart {
-    /// name: in texts the chart stands where !\[caption\](chart:NAME) is written
+    /// name: the chart replaces !\[caption\](chart:NAME) in texts
     pub name: String,
     /// its heading
     pub title: String,
@@ -43,7 +43,7 @@ pub struct Chart {
 /// `[[report.tables]]`, read.
 #[derive(Debug, Clone, Keys)]
 pub struct Table {
-    /// name: in texts the table stands where !\[caption\](table:NAME) is written
+    /// name: the table replaces !\[caption\](table:NAME) in texts
     pub name: String,
     /// words and unit of the abscissa, the first column
     pub x_label: String,

@@ -72,8 +72,7 @@ pub struct Fill {
     /// Cohesion \[Pa\].
     #[key(like = Layer, default = 0.0)]
     pub cohesion: f64,
-    /// extrados: fill stands on the whole extrados; springings: it ends above the outermost intrados
-    /// springings
+    /// extrados: fill covers the whole extrados; springings: it ends above the outermost intrados springings
     #[key(default = "extrados")]
     pub extent: Extent,
     /// how live loads spread: { law = "uniform", angle = 30.0 }
@@ -85,7 +84,7 @@ pub struct Fill {
     /// solid backing in the haunches up to a level
     #[key(optional = "none")]
     pub haunching: Option<Haunching>,
-    /// layers from the lowest; above the last stands the fill itself
+    /// layers from bottom to top; the fill itself is above the last one
     #[key(default = [])]
     pub layers: Vec<Layer>,
 }
