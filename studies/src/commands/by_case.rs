@@ -1,4 +1,5 @@
-//! Solving the cases of a study into lines of a journal, so that nothing is held and nothing finished is lost.
+//! Solves the cases of a study and writes each as a line of a journal. Finished cases need no memory, and they survive
+//! an interrupted run.
 
 use super::case_lines::{CaseLines, LineHead};
 use super::error::CliError;
@@ -19,18 +20,18 @@ use std::collections::BTreeSet;
 use std::io::{self, Write};
 use voussoir_core::limit::Status;
 
-/// Cases of a folder after a run.
+/// The cases of a result folder after a run.
 pub struct Solved {
-    /// All of them, in order of id.
+    /// All cases, in order of id.
     pub lines: CaseLines,
-    /// What a user should know of stored cases, line by line.
+    /// Remarks on stored cases for the user, one per line.
     pub remarks: Vec<String>,
-    /// Number of stored cases that were not asked for and stay.
+    /// Number of stored cases that were not requested and are kept.
     pub others: usize,
 }
 
-/// Solves cases; with `--resume` only those that are not finished in the folder. With `--case` the other cases of the
-/// folder stay.
+/// Solves cases; with `--resume`, only those that are not finished in the folder. With `--case`, the other cases of the
+/// folder are kept.
 pub fn solve_into_journal(
     study: &Study,
     ids: &[usize],
@@ -48,7 +49,7 @@ pub fn solve_into_journal(
     let before = journal.metadata().map_err(unusable)?.len();
     let wanted = |id: usize| ids.binary_search(&id).is_ok();
     if options.resume || keep {
-        // A finished case does not tell which cases its kind has made from it.
+        // A finished case does not show which further cases its kind made from it.
         let resume = options.resume && !study.makes_cases();
         let mut take = |head: &LineHead| match wanted(head.id) {
             true => resume && head.status != Status::Stalled,
@@ -63,7 +64,7 @@ pub fn solve_into_journal(
     progress.writes(journal);
     let mut failed = None;
     study.solve(&rest, useful_jobs(options.jobs), progress, &mut |case| {
-        // Those of the study are in the journal since they were answered.
+        // The cases of the study itself are in the journal already.
         if case.label.id >= study.count() {
             let line = sealed(&CaseWithPath(&case)).map_err(io::Error::from);
             failed = line.and_then(|line| own.write_all(&line)).err().or(failed.take());
@@ -78,8 +79,8 @@ pub fn solve_into_journal(
     Ok(Solved { lines, remarks, others })
 }
 
-/// Writes the cases of results.json as lines before those of the journal, so that all finished cases of a folder are in one
-/// file. Of a file that is no results.json, and of its part that cannot be read, nothing is taken.
+/// Writes the cases of results.json as lines before those of the journal, so that one file contains all finished cases
+/// of a folder. Ignores a file that is not a valid results.json, and any unreadable part of it.
 pub fn refill(folder: &ResultFolder) -> Result<(), CliError> {
     let Some(results) = folder.opened("results.json") else { return Ok(()) };
     let proofs = folder.opened(PATH_PROOFS).map(|file| Box::new(file) as Box<dyn io::Read>);
@@ -101,10 +102,10 @@ pub fn refill(folder: &ResultFolder) -> Result<(), CliError> {
     written.and_then(|()| Box::new(aside).done()).map_err(CliError::of_io)
 }
 
-/// Stored cases that are checked at once, for each of those side by side.
+/// Number of stored cases that each thread checks at once.
 const AT_ONCE: usize = 64;
 
-/// Checks each stored case of lines by its own proof, `jobs` of them side by side.
+/// Checks each stored case by its own proof, on `jobs` threads.
 pub fn backings(study: &Study, lines: &CaseLines, jobs: usize) -> io::Result<Vec<Result<Backing, Vec<String>>>> {
     let count = lines.ids().count();
     side_by_side(jobs, || {
@@ -120,8 +121,8 @@ pub fn backings(study: &Study, lines: &CaseLines, jobs: usize) -> io::Result<Vec
     })
 }
 
-/// Keeps the lines of cases that hold by their own proof. Returns their number and the number of cases that are solved again,
-/// in words.
+/// Keeps the cases that their own proof confirms. Returns remarks with their number and the number of cases to solve
+/// again.
 fn keep_proved(study: &Study, lines: &mut CaseLines, damaged: usize, jobs: usize) -> io::Result<Vec<String>> {
     lines.sort();
     let found = backings(study, lines, jobs)?;

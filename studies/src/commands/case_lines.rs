@@ -1,4 +1,4 @@
-//! Finished cases as lines of files: found by id, none of them held.
+//! Finished cases as lines of files. Lines are found by id; they are not held in memory.
 
 use crate::regular_file::open_regular;
 use crate::results::case_with_path::read_case;
@@ -12,31 +12,31 @@ use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 use voussoir_core::limit::Status;
 
-/// Greatest length of a line: a case of a million blocks has half a gigabyte.
+/// Greatest length of a line; a case of a million blocks has half a gigabyte.
 const MAX_LINE_BYTES: u64 = 2 << 30;
 /// Greatest length of a file with lines.
 const MAX_FILE_BYTES: u64 = 1 << 40;
 
-/// Cases that are read at once, for each of those side by side.
+/// Number of cases that each thread reads at once.
 const AT_ONCE: usize = 64;
-/// Bytes of lines that are read at once.
+/// Number of bytes after which no more lines are read at once.
 const BYTES_AT_ONCE: usize = 4 << 20;
 
-/// What tells one line from another.
+/// The keys of a line that are needed to sort it.
 #[derive(Debug, Deserialize)]
 pub struct LineHead {
-    /// Of the case.
+    /// Id of the case.
     pub id: usize,
-    /// How the case ends.
+    /// Status of the case.
     pub status: Status,
-    /// Whether it is proven.
+    /// The certificate.
     pub certificate: Certified,
 }
 
-/// Of a certificate what exit codes ask for.
+/// The part of a certificate that decides the exit code.
 #[derive(Debug, Deserialize)]
 pub struct Certified {
-    /// Whether every residual is within its tolerance.
+    /// True if every residual is within its tolerance.
     pub passed: bool,
 }
 
@@ -57,9 +57,9 @@ pub struct CaseLines {
 }
 
 impl CaseLines {
-    /// Adds the lines of a file, from a byte on, that are cases and that `take` wants. Returns the number of damaged lines:
-    /// those that were cut short, whose checksum is wrong or that are no case. Blank lines and the first and last line of
-    /// a part are not counted.
+    /// Adds the lines of a file, from a byte on, that are cases and that `take` accepts. Returns the number of damaged
+    /// lines: lines that were cut short, have a wrong checksum or do not contain a case. Blank lines and the first and
+    /// last line of a part are not counted.
     pub fn add(&mut self, path: &Path, from: u64, take: &mut dyn FnMut(&LineHead) -> bool) -> io::Result<usize> {
         let file = self.files.len() as u32;
         self.files.push(open_regular(path, MAX_FILE_BYTES)?);
@@ -89,13 +89,14 @@ impl CaseLines {
         }
     }
 
-    /// Keeps those lines, by their places in the order, for which `keep` is true.
+    /// Keeps the lines for which `keep` is true, by their position in the order.
     pub fn retain(&mut self, keep: &[bool]) {
         let mut keep = keep.iter();
         self.places.retain(|_| keep.next().copied().unwrap_or(false));
     }
 
-    /// Puts the lines in order of id; of several lines of a case the last counts. Ids that stood there more than once.
+    /// Sorts the lines by id. If a case has several lines, the last one is kept. Returns the ids that had more than one
+    /// line.
     pub fn sort(&mut self) -> Vec<usize> {
         self.places.sort_by_key(|place| place.id);
         self.places.reverse();
@@ -116,7 +117,7 @@ impl CaseLines {
         self.places.iter().map(|place| place.id)
     }
 
-    /// The text of a case, by its place in the order.
+    /// Returns the text of a case, by its position in the order.
     pub fn line(&self, index: usize) -> io::Result<Vec<u8>> {
         let place = self.places.get(index).ok_or(io::ErrorKind::NotFound)?;
         let mut file = &self.files[place.file as usize];
@@ -126,7 +127,7 @@ impl CaseLines {
         Ok(line)
     }
 
-    /// Hands over the cases at these places, as many at once as are read together.
+    /// Passes the cases at these positions to `take`, in batches.
     fn hand_over(&self, places: impl Iterator<Item = usize>, take: TakeCases) -> io::Result<()> {
         let (mut texts, mut bytes) = (Vec::new(), 0);
         let mut read = |texts: &mut Vec<Vec<u8>>| {
@@ -138,7 +139,7 @@ impl CaseLines {
             let text = self.line(place)?;
             bytes += text.len();
             texts.push(text);
-            // Of long cases no more are held than are read side by side.
+            // Long cases: a batch has at most one case per thread.
             if texts.len() >= threads() && (bytes >= BYTES_AT_ONCE || texts.len() >= AT_ONCE * threads()) {
                 read(&mut texts)?;
                 bytes = 0;

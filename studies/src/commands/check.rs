@@ -5,7 +5,7 @@ use super::files;
 use super::print::say;
 use std::path::{Path, PathBuf};
 
-/// Checks studies; prints what they hold.
+/// Checks studies and prints their contents.
 pub fn check(paths: &[PathBuf], sets: &[String]) -> Outcome {
     let sets = files::overrides(sets)?;
     let one = |path: &Path| {

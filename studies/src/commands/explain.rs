@@ -35,10 +35,10 @@ pub fn schema() -> Outcome {
     Ok(Verdict::Proved)
 }
 
-/// Forms in which a study can be written.
+/// Formats for the export of a study.
 pub const EXPORTS: [&str; 1] = ["blocks"];
 
-/// Prints the first case of a study in another form.
+/// Prints the first case of a study in another format.
 pub fn export(path: &Path) -> Outcome {
     let text = files::study(path, &[])?
         .as_blocks()
@@ -47,7 +47,7 @@ pub fn export(path: &Path) -> Outcome {
     Ok(Verdict::Proved)
 }
 
-/// Explains a plug-in by its tag, or a study file by the plan of its solution.
+/// Explains a plug-in by its tag, or shows how a study file will be solved.
 pub fn explain(what: &str) -> Outcome {
     if what.ends_with(".toml") || Path::new(what).is_file() {
         say(files::study(Path::new(what), &[])?.explain());

@@ -1,5 +1,6 @@
-//! A result folder: one run at a time, files whole or not at all, nothing through symbolic links. The list of files in
-//! results.json says which files are those of a run; all others stay as they are.
+//! A result folder. Only one run at a time can write to it. Each file is written completely or not at all, and symbolic
+//! links are never followed. The list of files in results.json names the files of a run; all other files are left
+//! unchanged.
 
 use super::error::CliError;
 use crate::kinds::read_head;
@@ -11,26 +12,26 @@ use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, BufWriter, ErrorKind, Read, Write};
 use std::path::{Component, Path, PathBuf};
 
-/// Cases that are finished, a line of JSON each, while a run is under way.
+/// Finished cases during a run, one line of JSON each.
 pub const JOURNAL: &str = "unfinished.jsonl";
-/// Held by the run that writes; the operating system lets go of it however that run ends.
+/// Lock file of the run that writes. The operating system releases the lock when the process ends for any reason.
 const LOCK: &str = ".voussoir.lock";
-/// Files that every run writes; no list names them.
+/// Files that every run writes; they are not in the list of files.
 const OWN: [&str; 2] = ["results.json", "resolved.toml"];
-/// Greatest length of a file that is read as a whole.
+/// Greatest length of a file that is read into memory.
 const MAX_HELD_BYTES: u64 = 4 << 30;
-/// Greatest length of a file that is read from its beginning to its end.
+/// Greatest length of a file that is read in one pass.
 const MAX_BYTES: u64 = 1 << 40;
 
-/// The folder that a run writes into; no other run can, while this one lives.
+/// The folder that a run writes into. While this value exists, no other run can write there.
 pub struct ResultFolder {
     path: PathBuf,
     lock: File,
-    /// Files of the run before this one; `None` if its results.json is gone, but not its study.
+    /// Files of the run before this one; `None` if its study is there but its results.json is missing.
     earlier: Option<BTreeSet<String>>,
 }
 
-/// Refuses a symbolic link, a pipe and a device. A path that does not exist passes.
+/// Refuses symbolic links, pipes and devices. Accepts a path that does not exist.
 fn no_link(path: &Path) -> io::Result<()> {
     let refused = |why: &str| Err(io::Error::other(format!("cannot write {}: {why}", path.display())));
     match fs::symlink_metadata(path) {
@@ -42,12 +43,12 @@ fn no_link(path: &Path) -> io::Result<()> {
     }
 }
 
-/// An error with the file that it is about.
+/// Adds the name of the file to an error.
 fn about(path: &Path) -> impl Fn(io::Error) -> io::Error {
     move |error| io::Error::new(error.kind(), format!("cannot write {}: {error}", path.display()))
 }
 
-/// Names of the entries of a folder, in order; none where it cannot be read.
+/// Names of the entries of a folder, in order; empty if the folder cannot be read.
 fn entries(path: &Path) -> Vec<String> {
     let listed = fs::read_dir(path).into_iter().flatten().flatten();
     let mut names: Vec<String> = listed.filter_map(|entry| entry.file_name().into_string().ok()).collect();
@@ -55,10 +56,10 @@ fn entries(path: &Path) -> Vec<String> {
     names
 }
 
-/// The lock on a folder: an error where another run has it.
+/// Locks a folder. Returns an error if another run has the lock.
 fn locked(path: &Path) -> Result<File, CliError> {
     let place = path.join(LOCK);
-    // A run that ends removes the file: a lock on what is no longer there is none.
+    // A run removes the lock file when it ends: a lock on a removed file is not valid.
     for _ in 0..100 {
         let open = OpenOptions::new().create(true).append(true).open(&place);
         let file = open.map_err(|error| CliError::unwritten(&place, error))?;
@@ -68,7 +69,7 @@ fn locked(path: &Path) -> Result<File, CliError> {
                 let why = "another run is writing into it; wait for it, or give another --out";
                 return Err(CliError::unwritten(path, why));
             }
-            // A file system without locks.
+            // The file system does not support locks.
             Err(TryLockError::Error(error)) if error.kind() == ErrorKind::Unsupported => {}
             Err(TryLockError::Error(error)) => return Err(CliError::unwritten(&place, error)),
         }
@@ -91,8 +92,8 @@ fn is_same(_: &File, place: &Path) -> bool {
     place.exists()
 }
 
-/// The files that the results.json of a folder names: relative, below the folder, and not those of every run. `None` if there
-/// is no such file beside the study of an earlier run.
+/// The files that the results.json of a folder names: relative paths below the folder, without the files of every run.
+/// `None` if results.json is missing beside the study of an earlier run.
 fn listed(path: &Path) -> Option<BTreeSet<String>> {
     let head = open_regular(&path.join("results.json"), MAX_BYTES).map(read_head).unwrap_or_default();
     if !head.contains_key("files") && path.join("resolved.toml").exists() {
@@ -107,19 +108,19 @@ fn listed(path: &Path) -> Option<BTreeSet<String>> {
 }
 
 impl ResultFolder {
-    /// Opens a folder for a run, and makes it if need be.
+    /// Opens a folder for a run and creates it if necessary.
     pub fn open(path: &Path) -> Result<Self, CliError> {
         no_link(path).map_err(CliError::of_io)?;
         fs::create_dir_all(path).map_err(|error| CliError::unwritten(path, error))?;
         entries(path).iter().try_for_each(|name| no_link(&path.join(name))).map_err(CliError::of_io)?;
         let lock = locked(path)?;
         let folder = ResultFolder { path: path.into(), lock, earlier: listed(path) };
-        // Found now, not after hours of solving.
+        // Checked now, so that the error is reported before hours of solving.
         folder.earlier.iter().flatten().try_for_each(|name| folder.no_link_to(name)).map_err(CliError::of_io)?;
         Ok(folder)
     }
 
-    /// Where it is.
+    /// The path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -137,7 +138,7 @@ impl ResultFolder {
         open_regular(&self.path.join(name), MAX_BYTES).ok()
     }
 
-    /// Makes a part that is not whole the journal of its run, unless there is one.
+    /// Renames an incomplete part to the journal of its run, unless there is a journal.
     pub fn part_becomes_journal(&self, part: &str) {
         let journal = self.path.join(JOURNAL);
         if !journal.exists() {
@@ -145,7 +146,7 @@ impl ResultFolder {
         }
     }
 
-    /// Refuses a symbolic link at a file or on the way to it.
+    /// Refuses a symbolic link in any part of the path of a file.
     fn no_link_to(&self, name: &str) -> io::Result<()> {
         let mut place = self.path.clone();
         Path::new(name).components().try_for_each(|part| {
@@ -154,12 +155,12 @@ impl ResultFolder {
         })
     }
 
-    /// Writes a file whole or not at all; folders on the way are made.
+    /// Writes a file completely or not at all; creates missing folders.
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), CliError> {
         Files::write(self, name, bytes).map_err(CliError::of_io)
     }
 
-    /// Begins a file that gets its name when it is done; folders on the way are made.
+    /// Begins a file under a temporary name; it is renamed when it is complete. Creates missing folders.
     pub fn aside(&self, name: &str) -> io::Result<Aside> {
         let place = self.path.join(name);
         self.no_link_to(name)?;
@@ -167,18 +168,18 @@ impl ResultFolder {
             fs::create_dir_all(folder).map_err(about(folder))?;
         }
         let aside = self.path.join(format!("{name}.tmp"));
-        // Left behind by a run that was killed; a link is removed, not followed.
+        // A killed run may have left the temporary file. A link is removed, not followed.
         drop(fs::remove_file(&aside));
         let file = OpenOptions::new().write(true).create_new(true).open(&aside).map_err(about(&place))?;
         Ok(Aside { file: BufWriter::with_capacity(1 << 16, file), aside, place })
     }
 
-    /// Removes a file that a run before this one has left.
+    /// Removes a file of the previous run.
     pub fn remove(&self, name: &str) {
         drop(fs::remove_file(self.path.join(name)));
     }
 
-    /// Opens the journal; what a run before it left stays if `keep`.
+    /// Opens the journal; keeps the lines of the previous run if `keep` is true.
     pub fn journal(&self, keep: bool) -> io::Result<File> {
         let place = self.path.join(JOURNAL);
         if !keep {
@@ -188,9 +189,10 @@ impl ResultFolder {
         OpenOptions::new().create(true).append(true).open(&place)
     }
 
-    /// Makes room for the files of a run: those that the run before this one has written and this one does not write are
-    /// removed. A file that is there and is not named by results.json is somebody's own; without results.json the two cannot
-    /// be told apart, and nothing is removed.
+    /// Prepares the folder for the files of a run: removes the files that the previous run wrote and this run does not
+    /// write.
+    /// A file that results.json does not name belongs to the user. Without results.json the two cannot be told apart,
+    /// and nothing is removed.
     ///
     /// # Errors
     /// If a file of this run would overwrite such a file.
@@ -207,10 +209,10 @@ impl ResultFolder {
         for name in earlier.iter().filter(|name| !names.contains(name)) {
             self.remove(name);
             let folders = Path::new(name).ancestors().skip(1).filter(|folder| *folder != Path::new(""));
-            // Those that are not empty stay.
+            // Folders that are not empty are kept.
             folders.for_each(|folder| drop(fs::remove_dir(self.path.join(folder))));
         }
-        // Left behind by a run that was killed while it wrote.
+        // Temporary files of a run that was killed while writing.
         earlier.iter().for_each(|name| self.remove(&format!("{name}.tmp")));
         Ok(())
     }
@@ -222,7 +224,7 @@ impl Files for ResultFolder {
     }
 }
 
-/// A file under another name until it is whole.
+/// A file under a temporary name until it is complete.
 pub struct Aside {
     file: BufWriter<File>,
     aside: PathBuf,
@@ -234,7 +236,7 @@ impl Write for Aside {
         self.file.write(bytes).map_err(about(&self.place))
     }
 
-    // Text comes in pieces of a few bytes.
+    // Text arrives in pieces of a few bytes.
     #[inline]
     fn write_all(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.file.write_all(bytes).map_err(about(&self.place))
@@ -254,7 +256,7 @@ impl OutputFile for Aside {
 }
 
 impl Drop for Aside {
-    /// A file that was not done is removed.
+    /// Removes an incomplete file.
     fn drop(&mut self) {
         drop(fs::remove_file(&self.aside));
     }

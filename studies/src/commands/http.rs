@@ -1,8 +1,8 @@
-//! The server of `voussoir serve`: its gate, its limits, and the headers of its answers.
+//! The server of `voussoir serve`: access check, limits and response headers.
 //!
-//! It is written over `std::net` because `tiny_http`, which it replaces, is unmaintained and reserves memory for a body of any
-//! announced length. `hyper` would need an asynchronous runtime (about thirty crates) for a page with one reader on this machine.
-//! One connection carries one request, bodies have a length, and everything has a limit:
+//! It uses `std::net` directly. `tiny_http` is unmaintained and reserves memory for a body of any announced length.
+//! `hyper` would need an asynchronous runtime (about thirty crates) for a page with one local reader. One connection
+//! carries one request, bodies have a length, and everything has a limit:
 //!
 //! | part | limit |
 //! |---|---|
@@ -11,7 +11,8 @@
 //! | sending the answer | 5 s in total |
 //! | connections | 32; a new one closes the oldest that has not passed the gate |
 //!
-//! A page that was opened with the token passes the gate. A foreign site does not, even if its name leads to this machine.
+//! A page that was opened with the token passes the access check. A page of another site is refused, even if its host
+//! name resolves to this machine.
 
 mod answer;
 mod connections;
@@ -29,28 +30,28 @@ use wire::{Limits, Wire};
 
 /// Limits of a request.
 const LIMITS: Limits = Limits { head: 16 * 1024, body: 64 * 1024, time: Duration::from_secs(5) };
-/// Connections at a time.
+/// Greatest number of open connections.
 const MAX_CONNECTIONS: usize = 32;
 /// Pause after a connection could not be accepted, for example because too many files are open.
 const ACCEPT_PAUSE: Duration = Duration::from_millis(20);
 
-/// The conditions under which a request is let in.
+/// The access check: a request must meet these conditions.
 pub struct Gate {
-    /// The port that it must name.
+    /// The port that the request must name.
     pub port: u16,
-    /// The token that it must bring.
+    /// The token that the request must contain.
     pub token: String,
-    /// The Content-Security-Policy of every answer.
+    /// The Content-Security-Policy of every response.
     pub policy: String,
 }
 
-/// Returns true if two texts are equal, in a time that depends on their lengths only.
+/// Compares two texts in a time that depends only on their lengths.
 fn equal(a: &str, b: &str) -> bool {
     a.len() == b.len() && a.bytes().zip(b.bytes()).fold(0, |differs, (a, b)| differs | (a ^ b)) == 0
 }
 
 impl Gate {
-    /// The reason why a request is not let in.
+    /// Returns the reason to refuse a request.
     fn refuses(&self, request: &Request) -> Option<Answer> {
         let own = [format!("127.0.0.1:{}", self.port), format!("localhost:{}", self.port)];
         let [host] = request.header("Host")[..] else { return Some(Answer::text(403, "one Host is needed")) };
@@ -70,7 +71,7 @@ impl Gate {
     }
 }
 
-/// The work of a server: method, path, query and body give an answer.
+/// Handles requests: computes a response from method, path, query and body.
 pub type Route<'a> = &'a (dyn Fn(&str, &str, &[(String, String)], &[u8]) -> Answer + Sync);
 
 /// Answers requests until the process ends.
@@ -87,7 +88,7 @@ pub fn serve(listener: &TcpListener, gate: &Gate, route: Route) {
                 refuse(&stream, gate);
                 continue;
             };
-            // Without a thread for it the connection is dropped.
+            // If no thread can be started, the connection is closed.
             drop(std::thread::Builder::new().spawn_scoped(scope, move || {
                 let wire = Wire::new(connection.stream(), LIMITS);
                 converse(wire, &connection, gate, route);
@@ -96,7 +97,7 @@ pub fn serve(listener: &TcpListener, gate: &Gate, route: Route) {
     });
 }
 
-/// Refuses a connection without waiting for it.
+/// Refuses a connection immediately.
 fn refuse(stream: &TcpStream, gate: &Gate) {
     let answer = Answer::text(503, "all connections are busy");
     if stream.set_nonblocking(true).is_ok() {
@@ -104,7 +105,7 @@ fn refuse(stream: &TcpStream, gate: &Gate) {
     }
 }
 
-/// Reads one request and sends its answer. A reader that has gone away is no error.
+/// Reads one request and sends the response. A closed connection is not an error.
 fn converse(mut wire: Wire, connection: &Connection, gate: &Gate, route: Route) {
     let answer = match request(&mut wire, connection, gate) {
         Ok(Some((request, body))) => {
@@ -121,7 +122,7 @@ fn converse(mut wire: Wire, connection: &Connection, gate: &Gate, route: Route) 
     }
 }
 
-/// A request that has passed the gate, with its body; `None` if nothing came.
+/// Reads a request that passes the access check, with its body; `None` if no request arrives.
 fn request(wire: &mut Wire, connection: &Connection, gate: &Gate) -> Result<Option<(Request, Vec<u8>)>, Answer> {
     let Some(head) = wire.head()? else { return Ok(None) };
     let request = Request::parse(&head)?;
@@ -131,7 +132,7 @@ fn request(wire: &mut Wire, connection: &Connection, gate: &Gate) -> Result<Opti
     connection.may_be_closed(false);
     let length = request.body_length(LIMITS.body)?;
     if request.waits_for_permission()? && length > 0 {
-        // Without it the body does not come, and that is found below.
+        // If this cannot be sent, the client sends no body, and the error is detected below.
         drop(wire.send(b"HTTP/1.1 100 Continue\r\n\r\n"));
     }
     Ok(Some((request, wire.body(length)?)))
@@ -142,12 +143,12 @@ mod tests {
     use super::*;
     use std::io::{Read, Write};
 
-    /// After a panic in the work for one request its reader gets an error, and the server goes on.
+    /// If the work for one request panics, its client gets an error and the server continues.
     #[test]
     fn a_panic_does_not_end_the_server() {
         let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
         let port = listener.local_addr().expect("an address").port();
-        // The thread ends with the tests.
+        // The thread ends with the test process.
         std::thread::spawn(move || {
             let gate = Gate { port, token: "t".into(), policy: "default-src 'none'".into() };
             serve(&listener, &gate, &|_, path, _, _| match path {

@@ -9,12 +9,12 @@ use voussoir_core::law::{Facet, FacetMode, UnitStrength};
 use voussoir_core::limit::Status;
 use voussoir_core::model::{Assembly, Bond, Joint};
 
-/// Share of the greatest normal force up to which a joint counts as without force.
+/// Joints with a smaller normal force, relative to the greatest one, are treated as unloaded.
 const NO_FORCE: f64 = 1e-9;
 
 /// The greatest share of the collapse load that the permissible limit state allows.
 pub const PERMISSIBLE_SHARE: f64 = 0.5;
-/// The document of that rule.
+/// The document that states this rule.
 const PERMISSIBLE_RULE: &str = "CS 454 (National Highways), masonry arch bridges, permissible limit state: load effects at most 0.5 of the ultimate capacity";
 
 /// The forces of a joint under a load that is carried.
@@ -32,7 +32,7 @@ pub struct JointEntry {
     pub moment: f64,
     /// M/N \[m\]; `null` if the joint does not press.
     pub eccentricity: Option<f64>,
-    /// Length in contact if pressure is linear over it and the joint takes no tension \[m\].
+    /// Contact length \[m\] for a linear pressure distribution without tension.
     pub contact_length: f64,
     /// Greatest pressure of that distribution \[Pa\]; `null` if the resultant acts at the edge of the joint or outside.
     pub greatest_stress: Option<f64>,
@@ -57,13 +57,13 @@ pub struct BlockEntry {
     pub strength: f64,
 }
 
-/// The reading of joints in the reserve.
+/// The flow rule that the reserve analysis uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ReserveFlow {
     /// All laws have associated flow: the reserve is the collapse factor.
     Associated,
-    /// Some law slides otherwise and is read with associated flow: the reserve is an upper bound.
+    /// Some law has non-associated flow but is solved with associated flow: the reserve is an upper bound.
     ReadAsAssociated,
 }
 
@@ -74,13 +74,13 @@ pub struct ReserveEntry {
     pub stage: String,
     /// The factor that is carried.
     pub target: f64,
-    /// How the search for collapse ends.
+    /// Status of the search for the collapse load.
     pub status: Status,
-    /// The collapse factor; `null` without one.
+    /// The collapse factor; `null` if the loads do not lead to collapse.
     pub factor: Option<f64>,
-    /// Proved ends of the factor.
+    /// Proved lower and upper bound of the factor.
     pub bounds: Option<[Option<f64>; 2]>,
-    /// How joints were read.
+    /// The flow rule of the joints.
     pub flow: ReserveFlow,
 }
 
@@ -91,14 +91,14 @@ pub struct PermissibleEntry {
     pub rule: String,
     /// Greatest share of the collapse load.
     pub share: f64,
-    /// Share that is used: the factor that is carried over the collapse factor. 0 if no factor leads to collapse.
+    /// Used share: the carried factor divided by the collapse factor. 0 if no factor leads to collapse.
     pub used: f64,
     /// True if the proved lower end of the collapse factor fulfils the rule, false if the upper end violates it, `null` if
     /// neither is proved.
     pub holds: Option<bool>,
 }
 
-/// What is said of a load that is carried.
+/// Results for a load that is carried.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct CarriedLoad {
     /// The forces of all joints in `field`.
@@ -113,7 +113,7 @@ pub struct CarriedLoad {
 }
 
 impl CarriedLoad {
-    /// Returns true if nothing is said.
+    /// Returns true if there are no results.
     pub fn is_empty(&self) -> bool {
         self.joints.is_empty() && self.reserve.is_none()
     }
@@ -199,7 +199,7 @@ pub fn permissible(assembly: &Assembly, reserve: &ReserveEntry) -> Option<Permis
     }
     let [lower, upper] = reserve.bounds.unwrap_or_default();
     let (used, holds) = match (reserve.status, reserve.factor) {
-        // Associated flow proves that no factor leads to collapse; read otherwise it proves nothing about the laws' own flow.
+        // Associated flow proves that no factor leads to collapse. For non-associated laws it proves nothing.
         (Status::Unbounded, _) => (0.0, (reserve.flow == ReserveFlow::Associated).then_some(true)),
         (_, Some(factor)) => {
             let fulfils = |end: f64| reserve.target <= PERMISSIBLE_SHARE * end;

@@ -1,4 +1,4 @@
-//! The result of a case, as it stands in `results.json`.
+//! The result of a case, as stored in `results.json`.
 
 use super::carried::CarriedLoad;
 use super::entries::{
@@ -15,44 +15,44 @@ use voussoir_core::certificate::{Certificate, Hinge, Mechanism};
 use voussoir_core::limit::{BracketPoint, Counters, Greatest, LowerProof, Status};
 use voussoir_core::path::LimitPointEnd;
 
-/// Relative difference of two factors that belong to one limit point.
+/// Two factors with a smaller relative difference belong to the same limit point.
 const SAME_POINT: f64 = 1e-9;
 
-/// The first limit point, if the load factor is another one.
+/// Returns the first limit point if it differs from the load factor.
 pub fn other_limit_point(load_factor: Option<f64>, first_limit_point: Option<f64>) -> Option<f64> {
     let (factor, first) = load_factor.zip(first_limit_point)?;
     ((first - factor).abs() > SAME_POINT * factor.abs()).then_some(first)
 }
 
-/// Which case of its study it is.
+/// Identifies a case in its study.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct CaseLabel {
     /// Index from 0, variants outermost.
     pub id: usize,
-    /// Which resolved case it answers: [`crate::study::Case::hash`].
+    /// Hash of the resolved case: [`crate::study::Case::hash`].
     #[serde(default)]
     pub case_hash: String,
     /// Name of the variant, if the study has variants.
     pub variant: Option<String>,
-    /// Name of the scene, where the study compares several.
+    /// Name of the scene, if the study compares several.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scene: Option<String>,
     /// Swept key → value.
     pub parameters: Map<String, Json>,
 }
 
-/// What a non-associated answer says besides: the associated answer, and what its own lower bound rests on.
+/// Additional results for non-associated flow: the associated factor, and the evidence for the lower bound.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct NonAssociatedAnswer {
-    /// The factor with associated flow, where the solver answers another question.
+    /// The factor with associated flow, if the solver did not use associated flow.
     pub associated_load_factor: Option<f64>,
     /// Velocities of the mechanism that proves `associated_load_factor`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub associated_motion: Option<Vec<MotionEntry>>,
-    /// What the lower bound rests on where joints flow as their laws say, with what `verify` needs to check it.
+    /// The evidence for the lower bound with the laws' own flow, with the data that `verify` needs to check it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lower_proof: Option<LowerProof>,
-    /// The bracket of the least load over the work of those who closed it.
+    /// The lower and upper bound of the least load, against the work of the solvers that improved them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub bracket: Vec<BracketPoint>,
 }
@@ -64,21 +64,21 @@ pub struct ProofFields {
     pub field_factor: Option<f64>,
     /// Contact forces.
     pub field: Option<Vec<FieldEntry>>,
-    /// Forces of the fill that belong to `field`, where fill resists.
+    /// Forces of the fill that belong to `field`, if the fill resists.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub fill: Vec<FillEntry>,
     /// Velocities of the mechanism.
     pub motion: Option<Vec<MotionEntry>>,
-    /// Contact forces that balance the live load alone, for `unbounded`; nothing, for supports that blocks cannot follow.
+    /// For `unbounded`: contact forces that balance the live load alone. Empty for supports that blocks cannot follow.
     pub ray: Option<Vec<FieldEntry>>,
-    /// On arches, where the resultant crosses each joint \[m\]; `null` where a joint carries nothing.
+    /// On arches: the point where the resultant crosses each joint \[m\]; `null` if a joint is not loaded.
     pub thrust_line: Option<Vec<Option<[f64; 2]>>>,
 }
 
-/// What only a path leaves.
+/// Results that only paths have.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct PathRecord {
-    /// What happened at the contact points, in order.
+    /// Events at the contact points, in order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub events: Vec<EventEntry>,
     /// On request: \[displacement of the load point \[m\], factor\] of the last stage.
@@ -90,8 +90,8 @@ pub struct PathRecord {
     /// Displacement of every body as a rigid motion at the state of the field.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub displacements: Option<Vec<DisplacementEntry>>,
-    /// With laws of tractions from gaps: their states (such as damage) at the start of the step that ended at
-    /// the field, contact point after contact point, from which the laws give its forces.
+    /// For laws of tractions from gaps: their states (such as damage) at the start of the step that ended at the field,
+    /// one contact point after another. The laws compute the contact forces from these states.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub joint_states: Option<Vec<f64>>,
     /// Blocks whose material has yielded at the state of the field.
@@ -100,22 +100,22 @@ pub struct PathRecord {
     /// Proven peaks of the factor in order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub limit_points: Vec<LimitPointEntry>,
-    /// Factor of the first limit point of the stage that `load_factor` speaks of.
+    /// Factor of the first limit point, in the stage that `load_factor` belongs to.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub first_limit_point: Option<f64>,
     /// The reason why a path with the status `limit_point` ends at it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub continuation: Option<LimitPointEnd>,
-    /// True if the end is proved by the states and witnesses alone, whoever has found them.
+    /// True if the states and witnesses alone prove the end, independently of the solver that found them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub end_is_checked: Option<bool>,
-    /// What that proof is about; `None` without one.
+    /// The statement that is proved; `None` without a proof.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub end_proof: Option<EndProof>,
-    /// The last state of the path: the range that `greatest` is about ends there.
+    /// The last state of the path. `greatest` holds for the range up to this state.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub followed_to: Option<FollowedTo>,
-    /// Where the path left an equilibrium that became unstable.
+    /// Points at which the path left an unstable equilibrium.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub branches: Vec<BranchEntry>,
 }
@@ -124,13 +124,13 @@ pub struct PathRecord {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum EndProof {
-    /// No rate at all raises the load at its limit points.
+    /// No rate raises the load at the limit points.
     StatesAndWitnesses,
-    /// Laws with a history: no rate of the loading set that was found raises the load.
+    /// For laws with a history: no rate of the loading sets that were found raises the load.
     LoadingSet,
 }
 
-/// What proves that a case stands.
+/// The proof that a case stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Proof {
@@ -140,59 +140,59 @@ pub enum Proof {
     Path,
 }
 
-/// What one stage came to.
+/// The result of one stage.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StageResult {
     /// Its name.
     pub name: String,
-    /// How it ended.
+    /// Its status at the end.
     pub status: Status,
-    /// The factor it reached; `null` where it reached none, or any.
+    /// The factor that it reached; `null` if it reached none, or if every factor is carried.
     pub factor: Option<f64>,
-    /// Hinges of the mechanism that ended it, rotations per unit of motion; of a path's stage that stands the joints
-    /// that are open over three quarters of their height at its end, with their rotation \[rad\].
+    /// Hinges of the mechanism that ended the stage, with rotations per unit of motion. If a stage of a path stands:
+    /// the joints that are open over three quarters of their height at its end, with their rotations \[rad\].
     pub hinges: Vec<Hinge>,
     /// Stability of its last state.
     #[serde(flatten)]
     pub stability: StabilityEntry,
 }
 
-/// The answer to one case with what proves it.
+/// The result of one case with its proofs.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct CaseResult {
-    /// Which case it is.
+    /// Identifies the case.
     #[serde(flatten)]
     pub label: CaseLabel,
-    /// How it ends.
+    /// The status at the end.
     pub status: Status,
     /// The collapse factor.
     pub load_factor: Option<f64>,
-    /// On request: how far the factor may be off.
+    /// On request: the error of the factor.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub load_factor_error: Option<LoadFactorError>,
-    /// Proved ends of the load factor, \[lower, upper\]: from the field and from the mechanism. An end that nothing proves is
-    /// `null`.
+    /// Proved bounds of the load factor, \[lower, upper\]: from the field and from the mechanism. `null` for an
+    /// unproved bound.
     pub bounds: Option<[Option<f64>; 2]>,
-    /// How well the greatest load factor is known; with the laws' own flow in limit analysis, the least one.
+    /// The quality of the greatest load factor; in limit analysis with the laws' own flow, of the least one.
     #[serde(default)]
     pub greatest: Greatest,
-    /// What a non-associated answer says besides.
+    /// Additional results for non-associated flow.
     #[serde(flatten)]
     pub non_associated: NonAssociatedAnswer,
-    /// All factors with an admissible field, where dead load alone has none; `null` ends are infinite.
+    /// All factors with an admissible field, if the dead load alone has no such field; `null` ends are infinite.
     pub feasible_interval: Option<[Option<f64>; 2]>,
-    /// `"associated"` where a non-associated law was read so.
+    /// `"associated"` if a non-associated law was solved with associated flow.
     pub flow_read_as: Option<String>,
-    /// What proves that it stands, where it does.
+    /// The proof that it stands, if it stands.
     #[serde(rename = "proof", default, skip_serializing_if = "Option::is_none")]
     pub proved_by: Option<Proof>,
-    /// The solver that answered.
+    /// The solver that was used.
     pub solver: String,
-    /// What a user should know.
+    /// Notes for the user.
     pub notes: Vec<String>,
-    /// The collapse mechanism, or the one that refutes equilibrium.
+    /// The collapse mechanism, or the mechanism that refutes equilibrium.
     pub mechanism: Option<Mechanism>,
-    /// Forces and velocities that prove the answer.
+    /// Forces and velocities that prove the result.
     #[serde(flatten)]
     pub proof: ProofFields,
     /// Named residuals.
@@ -201,9 +201,9 @@ pub struct CaseResult {
     pub counters: Counters,
     /// Wall time \[s\].
     pub seconds: f64,
-    /// Each stage in turn.
+    /// The results of the stages, in order.
     pub stages: Vec<StageResult>,
-    /// What a path leaves.
+    /// Results that only paths have.
     #[serde(flatten)]
     pub path: PathRecord,
     /// On request: how the load factor changes with the numbers of the study.
@@ -212,47 +212,50 @@ pub struct CaseResult {
     /// The partial factors that its values were multiplied or divided by.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub partial_factors: Option<Json>,
-    /// On bridges, what stands on which block.
+    /// On bridges: the loads on each block.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub loads: Vec<LoadEntry>,
-    /// What is said of a load that is carried.
+    /// Results for a load that is carried.
     #[serde(flatten)]
     pub carried: CarriedLoad,
-    /// The states and witnesses that prove the end of its path, if they are stored. They are not in results.json.
+    /// The states and witnesses that prove the end of the path, if they are stored. They are not written to
+    /// results.json.
     #[serde(skip)]
     pub stored_path: Option<Arc<StoredPath>>,
 }
 
 impl CaseResult {
-    /// An answer that nothing proves, with the reason.
+    /// Creates an unproved result with its reason.
     pub fn stalled(why: impl Into<String>) -> Self {
         CaseResult { notes: vec![why.into()], ..CaseResult::empty() }
     }
 
-    /// Both ends of the load factor, if both are proved.
+    /// Returns both bounds of the load factor if both are proved.
     pub fn both_bounds(&self) -> Option<[f64; 2]> {
         let [lower, upper] = self.bounds?;
         Some([lower?, upper?])
     }
 
-    /// The load factor, where it is a certified collapse or limit point.
+    /// Returns the load factor if it is a certified collapse or limit point.
     pub fn collapse_load(&self) -> Option<f64> {
         let ends = matches!(self.status, Status::Collapse | Status::LimitPoint);
         self.load_factor.filter(|_| self.certificate.passed && ends)
     }
 
-    /// The first limit point of the path, if the load factor is another one: a dead load snaps there.
+    /// Returns the first limit point of the path if it differs from the load factor: under a dead load the structure
+    /// snaps there.
     pub fn snaps_from(&self) -> Option<f64> {
         other_limit_point(self.load_factor, self.path.first_limit_point)
     }
 
-    /// Whether rigid blocks cannot follow their supports: its ray then refutes their motion, not the loads.
+    /// Returns true if rigid blocks cannot follow their supports. The ray then refutes the motion of the supports, not
+    /// the loads.
     pub fn supports_cannot_move(&self) -> bool {
         self.status == Status::NoEquilibrium && self.proof.ray.is_some()
     }
 
-    /// Leaves out all forces and motions of blocks and joints, once certificates have read them; but for a ray that
-    /// refutes the motion of supports, which is what such an answer says.
+    /// Removes all forces and motions of blocks and joints, after the certificates have been computed. A ray that
+    /// refutes the motion of supports stays, because it is the result.
     pub fn leave_out_fields(&mut self) {
         let ray = self.proof.ray.take().filter(|_| self.status == Status::NoEquilibrium);
         self.proof = ProofFields { field_factor: self.proof.field_factor, ray, ..ProofFields::default() };
@@ -263,12 +266,12 @@ impl CaseResult {
         self.path.yielded.clear();
     }
 
-    /// The result for what a study kind adds.
+    /// Returns the parts of the result that study kinds use.
     pub fn brief(&self) -> Self {
         CaseResult { carried: CarriedLoad::default(), ..self.without_drawings() }
     }
 
-    /// The result without what only drawings of the case itself and its proof read.
+    /// Returns the result without the data that only its own drawings and its proof use.
     pub fn without_drawings(&self) -> Self {
         let path = PathRecord { states: Vec::new(), joint_states: None, yielded: Vec::new(), ..self.path.clone() };
         CaseResult {
@@ -297,12 +300,12 @@ impl CaseResult {
         }
     }
 
-    /// Whether nothing is left of the forces and motions that would prove it.
+    /// Returns true if the forces and motions that would prove it have been removed.
     pub fn has_no_fields(&self) -> bool {
         self.proof.field.is_none() && self.proof.motion.is_none() && self.path.displacements.is_none()
     }
 
-    /// A stalled answer that says nothing, to be filled in.
+    /// Creates an empty stalled result.
     pub fn empty() -> Self {
         CaseResult {
             label: CaseLabel::default(),

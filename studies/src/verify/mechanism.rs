@@ -1,10 +1,10 @@
-//! A stored mechanism and thrust line against those that follow from the stored motion and forces.
+//! Compares a stored mechanism and thrust line with those computed from the stored motion and forces.
 
 use super::fields::{EQUAL, close};
 use voussoir_core::certificate::Mechanism;
 use voussoir_core::model::geometry::Vec2;
 
-/// In what a stored mechanism is not the recomputed one.
+/// Returns the differences between a stored mechanism and the recomputed one.
 pub(super) fn differences(stored: &Mechanism, recomputed: &Mechanism) -> Vec<String> {
     let mut wrong = Vec::new();
     if stored.kind != recomputed.kind {
@@ -40,7 +40,7 @@ pub(super) fn differences(stored: &Mechanism, recomputed: &Mechanism) -> Vec<Str
     wrong
 }
 
-/// Whether two thrust lines are the same but for rounding.
+/// Returns true if two thrust lines differ only by rounding.
 pub(super) fn same_line(a: &Option<Vec<Option<[f64; 2]>>>, b: &Option<Vec<Option<[f64; 2]>>>) -> bool {
     match (a, b) {
         (Some(a), Some(b)) => {

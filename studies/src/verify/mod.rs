@@ -1,9 +1,11 @@
-//! Checking results against the study that they claim to answer.
+//! Checks results against their study.
 //!
-//! Reads `results.json`, `resolved.toml` and `path_proofs.jsonl`. It first checks the proofs that need no
-//! solver: certificate, bounds, mechanism, thrust line, stages, equilibrium of the last state of a path. If the states of a path are
-//! stored, they must prove its end and every number that follows from them. Else every number and word is compared with solving the
-//! case again: bit by bit if the same program on the same kind of processor has written them, else by their claims. Counters, seconds
+//! The check reads `results.json`, `resolved.toml` and `path_proofs.jsonl`. It first checks the proofs that need no
+//! solver: certificate, bounds, mechanism, thrust line, stages, equilibrium of the last state of a path. If the states
+//! of a path are stored, they must prove its end and every number that follows from them.
+//!
+//! Otherwise the case is solved again, and every number and word is compared. The comparison is bit by bit if the same
+//! program on the same kind of processor wrote the results; otherwise only the claims are compared. Counters, seconds
 //! and the version are not compared.
 
 mod agreement;

@@ -1,5 +1,5 @@
-//! What a path's result claims. The history (slip before the end) is not stored; equilibrium, strength, contact
-//! and mechanism of the state are recomputed.
+//! Checks the result of a path. The history (slip before the end) is not stored; equilibrium, strength, contact and
+//! mechanism of the state are recomputed.
 
 use super::fields::{close, path_forces, path_motion, velocities};
 use super::findings::Findings;
@@ -22,7 +22,7 @@ use voussoir_core::model::Assembly;
 use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::path::{LimitPointEnd, LoadStepEnd, PathObserver, PathProblem, PathState};
 
-/// Checks the result of a case that a path solver answered.
+/// Checks the result of a case that was solved by a path solver.
 pub(super) fn verify(case: &Case, result: &CaseResult, findings: &mut Findings) -> Result<(), String> {
     let assembly = &case.assembly;
     let problem = path_structure(assembly, &case.stages)?;
@@ -30,7 +30,7 @@ pub(super) fn verify(case: &Case, result: &CaseResult, findings: &mut Findings) 
     let state = stored_state(assembly, &problem, result, finite)?;
     let mut checker = PathChecker::new(finite);
     checker.state(&problem, &state);
-    // The energies of a path are not those of one state.
+    // The energies of a path do not follow from one state.
     for (name, value) in checker.worst.iter().filter(|(name, _)| **name != "path_energy") {
         findings.expect(small(name, *value), &format!("{name} is {value:.2e}"));
     }
@@ -66,7 +66,7 @@ fn verify_status(case: &Case, problem: &PathProblem, state: &PathState, result: 
     let field_is_proof = !input.settings.finite && safe_theorem_holds(&case.assembly);
     let stands_by_field = result.status == Status::Stands && field_is_proof;
     if result.status.is_answer() {
-        // The states that prove an end are those of solving again.
+        // If states prove the end, the same states are found by solving again.
         let checked = result.path.end_is_checked == Some(true);
         let believed = path_is_ours(&result.solver, input.settings) || stands_by_field || checked;
         findings.expect(believed, ELSEWHERE);
@@ -144,7 +144,7 @@ fn verify_range(case: &Case, problem: &PathProblem, state: &PathState, result: &
     findings.expect(path.followed_to.is_some(), "a path without followed_to");
 }
 
-/// The state that a result ends at, from its entries.
+/// Builds the end state of a result from its entries.
 fn stored_state(
     assembly: &Assembly,
     problem: &PathProblem,

@@ -17,7 +17,7 @@ use std::sync::Arc;
 /// Greatest length of a line.
 const MAX_LINE_BYTES: u64 = 1 << 30;
 
-/// The lines of a file in their order, none held but the next.
+/// Reads the lines of a file in order. Only the next line is in memory.
 pub struct PathProofLines<'a> {
     file: Option<Box<dyn BufRead + 'a>>,
     line: usize,
@@ -35,7 +35,7 @@ pub struct NumberedLine {
 
 /// A case whose end the stored states prove.
 pub struct ProvedCase {
-    /// The result that they prove, with the unproved parts of the entry in results.json.
+    /// The proved result, completed with the unproved parts of the entry in results.json.
     pub result: CaseResult,
     /// True if the entry claims no more than the states prove.
     pub whole: bool,
@@ -135,7 +135,7 @@ fn id_in(text: &[u8]) -> Option<usize> {
 }
 
 impl NumberedLine {
-    /// A finding about this line.
+    /// Formats a finding about this line.
     fn says(&self, why: &str) -> String {
         format!("{PATH_PROOFS}, line {}: {why}", self.number)
     }

@@ -1,11 +1,12 @@
-//! A stored result against the same case solved again by the same program on the same kind of processor: every number and
-//! every word must be the same, except counters and seconds. Solvers are deterministic, so a difference is a change.
+//! Compares a stored result with the same case solved again by the same program on the same kind of processor. All
+//! numbers and words must be equal, except counters and seconds. Solvers are deterministic, so a difference means that
+//! something has changed.
 
 use serde_json::Value as Json;
 
 /// Keys at the top of a case that are not compared.
 const COST: [&str; 2] = ["counters", "seconds"];
-/// Differences of one case that are listed; the others are counted.
+/// Greatest number of listed differences of one case; the others are counted.
 const LISTED: usize = 4;
 
 /// Returns the differences of `stored` from `again` in words.

@@ -1,4 +1,4 @@
-//! Two resolved studies, key by key.
+//! Compares two resolved studies key by key.
 
 use toml::Value;
 

@@ -1,4 +1,4 @@
-//! All results of a study: proofs from the stored numbers, then every number against solving again.
+//! Checks all results of a study: first the proofs from the stored numbers, then every number against solving again.
 
 use super::agreement::Agreement;
 use super::case::verify_case;
@@ -12,7 +12,7 @@ use serde_json::{Value as Json, json};
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 
-/// What is wrong with a set of results, by case; empty when everything is confirmed. Solves all its cases again.
+/// Solves all cases again and returns the findings by case; empty if all results are confirmed.
 pub fn verify(study: &Study, results: &StudyResults) -> Vec<(usize, String)> {
     let again = solve_again(study, results, 1, &Unobserved);
     match serde_json::to_value(results) {
@@ -21,10 +21,10 @@ pub fn verify(study: &Study, results: &StudyResults) -> Vec<(usize, String)> {
     }
 }
 
-/// The cases that a set of results must hold, solved again.
+/// Solves the cases again that a set of results must contain.
 pub fn solve_again(study: &Study, results: &StudyResults, jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {
     let wanted = match &results.only_cases {
-        // Each once, however long the list.
+        // Each case is solved once, even if an id is repeated in the list.
         Some(ids) => ids.iter().copied().filter(|id| *id < study.count()).collect::<BTreeSet<_>>(),
         None => (0..study.count()).collect(),
     };
@@ -34,8 +34,8 @@ pub fn solve_again(study: &Study, results: &StudyResults, jobs: usize, observer:
     again
 }
 
-/// What is wrong with results as they are stored, against the same cases solved `again`; an error where they are
-/// no results.
+/// Compares stored results with the cases solved `again` and returns the findings. Returns an error if the text is not
+/// a result file.
 pub fn verify_against(study: &Study, stored: &Json, again: &[CaseResult]) -> Result<Vec<(usize, String)>, String> {
     let results = StudyResults::deserialize(stored).map_err(|error| error.to_string())?;
     let entries = stored["cases"].as_array().ok_or("there is no list of cases")?;
@@ -105,7 +105,7 @@ fn hash_finding(case: &Case, result: &CaseResult, origin: &Origin) -> Option<Str
     (!fine).then(|| "case_hash does not match the case".into())
 }
 
-/// What stands beside the cases.
+/// Checks the entries beside the cases.
 fn study_findings(study: &Study, results: &StudyResults, agreement: Agreement) -> Vec<(usize, String)> {
     let mut wrong = Vec::new();
     if results.origin.format > FORMAT {
@@ -131,7 +131,8 @@ fn study_findings(study: &Study, results: &StudyResults, agreement: Agreement) -
     wrong
 }
 
-/// Every case of the study once, in order, and no other; of a run of some cases only these.
+/// Checks that every case of the study is present once, in order, and no other. A run of some cases must have only
+/// these.
 fn id_findings(study: &Study, results: &StudyResults, again: &[CaseResult]) -> Vec<(usize, String)> {
     let mut wrong = Vec::new();
     let mut seen = BTreeSet::new();

@@ -1,8 +1,8 @@
-//! Files that another processor has made: the same words, and numbers that differ by rounding.
+//! Compares files that were written on another processor: words must be equal, numbers may differ by rounding.
 
 /// Greatest difference of two numbers relative to themselves.
 const RELATIVE: f64 = 1e-9;
-/// The same relative to the greatest number of the file.
+/// Greatest difference relative to the greatest number of the file.
 const FLOOR: f64 = 1e-12;
 
 /// Returns true if two texts differ only in the rounding of their numbers: by one unit of the last place, or by 1e-9.
@@ -32,7 +32,7 @@ impl Piece<'_> {
     fn same(&self, other: &Piece, greatest: f64) -> bool {
         let (Piece::Number(a), Piece::Number(b)) = (self, other) else { return self == other };
         let (Some(x), Some(y)) = (self.number(), other.number()) else { return a == b };
-        // A whole number counts or names something.
+        // A whole number is a count or part of a name.
         let whole = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());
         if whole(a) && whole(b) {
             return a == b;

@@ -1,8 +1,8 @@
-//! An answer and its bytes.
+//! A response and its bytes.
 
-/// An answer to a request.
+/// A response to a request.
 pub struct Answer {
-    /// Status code of HTTP.
+    /// HTTP status code.
     pub code: u16,
     /// Content type.
     pub kind: &'static str,
@@ -16,7 +16,7 @@ impl Answer {
         Answer { code, kind: "text/plain; charset=utf-8", body: words.into().into_bytes() }
     }
 
-    /// The answer as it is sent: browsers do not store it, and other sites do not see it.
+    /// The bytes of the response. Its headers forbid storage by browsers and access by other sites.
     pub(super) fn bytes(&self, policy: &str) -> Vec<u8> {
         let head = format!(
             "HTTP/1.1 {} {}\r\nContent-Type: {}\r\nContent-Length: {}\r\nContent-Security-Policy: {policy}\r\n\
@@ -31,7 +31,7 @@ impl Answer {
     }
 }
 
-/// The words of a status code (RFC 9110).
+/// The reason phrase of a status code (RFC 9110).
 fn reason(code: u16) -> &'static str {
     match code {
         200 => "OK",

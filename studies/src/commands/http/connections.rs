@@ -16,18 +16,18 @@ pub(super) struct Connections {
 
 struct Place {
     stream: Arc<TcpStream>,
-    /// True if it may be closed for a newer one: its request has not passed the gate, or its answer is sent.
+    /// True if it may be closed for a newer one: its request has not passed the access check, or its response is sent.
     closable: bool,
 }
 
-/// One open connection; its place is free when it is dropped.
+/// One open connection. Dropping it frees its place.
 pub(super) struct Connection<'a> {
     all: &'a Connections,
     stream: Arc<TcpStream>,
 }
 
 impl Connections {
-    /// Room for some connections.
+    /// Creates places for `most` connections.
     pub fn new(most: usize) -> Self {
         Connections { most, open: Mutex::new(Vec::new()), left: Condvar::new() }
     }
@@ -42,7 +42,7 @@ impl Connections {
         if open.len() >= self.most {
             let oldest = open.iter_mut().find(|place| place.closable)?;
             oldest.closable = false;
-            // Its thread wakes up and leaves.
+            // Its thread wakes up and ends.
             drop(oldest.stream.shutdown(Shutdown::Both));
             let full = |open: &mut Vec<Place>| open.len() >= self.most;
             open = self.left.wait_timeout_while(open, MAX_WAIT, full).unwrap_or_else(PoisonError::into_inner).0;
@@ -56,12 +56,12 @@ impl Connections {
 }
 
 impl Connection<'_> {
-    /// Its bytes.
+    /// The stream of the connection.
     pub fn stream(&self) -> &TcpStream {
         &self.stream
     }
 
-    /// Allows or forbids that it makes room for a newer one.
+    /// Sets if the connection may be closed for a newer one.
     pub fn may_be_closed(&self, closable: bool) {
         let mut open = self.all.open();
         if let Some(place) = open.iter_mut().find(|place| Arc::ptr_eq(&place.stream, &self.stream)) {

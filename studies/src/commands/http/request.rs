@@ -1,4 +1,4 @@
-//! The head of a request (RFC 9112), read strictly: anything unusual is refused.
+//! The head of a request (RFC 9112). The parser is strict: it refuses anything unusual.
 
 use super::answer::Answer;
 
@@ -9,7 +9,7 @@ pub(super) struct Request {
     pub method: String,
     /// Path before the question mark.
     pub path: String,
-    /// Key and value pairs behind it. Escapes stay, since neither tokens nor ids have any.
+    /// Key and value pairs after the question mark. Escapes are not decoded, because tokens and ids contain none.
     pub query: Vec<(String, String)>,
     headers: Vec<(String, String)>,
 }
@@ -63,7 +63,7 @@ impl Request {
         own.map(|(_, value)| value.as_str()).collect()
     }
 
-    /// Bytes of the body, at most `most`.
+    /// Length of the body in bytes; refuses more than `most`.
     pub fn body_length(&self, most: usize) -> Result<usize, Answer> {
         if !self.header("Transfer-Encoding").is_empty() {
             return Err(Answer::text(411, "a body needs a Content-Length"));
@@ -78,7 +78,7 @@ impl Request {
         }
     }
 
-    /// Returns true if the body is sent only after an interim answer.
+    /// Returns true if the client sends the body only after an interim response.
     pub fn waits_for_permission(&self) -> Result<bool, Answer> {
         match self.header("Expect")[..] {
             [] => Ok(false),
