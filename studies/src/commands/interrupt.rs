@@ -1,4 +1,4 @@
-//! Ctrl-C: what is finished stays, and how to go on is said.
+//! Ctrl-C: finished cases are kept, and a message shows the command that continues.
 
 use super::journal::Journal;
 use super::print::complain;
@@ -13,16 +13,17 @@ static JOURNAL: Mutex<Weak<Mutex<Option<Journal>>>> = Mutex::new(Weak::new());
 static FINISHED: AtomicUsize = AtomicUsize::new(0);
 static ALL: AtomicUsize = AtomicUsize::new(0);
 
-/// Catches Ctrl-C from now on; `arguments` are those after the program's name that go on with what is interrupted.
+/// Handles Ctrl-C from now on. `arguments` are the arguments after the program's name that continue the interrupted
+/// run.
 pub fn catch(arguments: &[String]) {
     let command = arguments.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ");
     if let Ok(mut own) = COMMAND.lock() {
         *own = Some(command);
     }
-    // Where signals cannot be caught the journal still keeps what is finished.
+    // If signals cannot be caught, the journal still keeps the finished cases.
     drop(ctrlc::set_handler(|| {
         let journal = JOURNAL.lock().map(|own| own.upgrade()).unwrap_or_default();
-        // Held until the end: what is finished from now on is not counted.
+        // The lock is held until the process ends: cases that finish from now on are not counted.
         let mut journal = journal.as_ref().and_then(|own| own.lock().ok());
         if let Some(Err(error)) = journal.as_mut().and_then(|own| own.as_mut()).map(Journal::write) {
             complain(format_args!("voussoir: the journal of finished cases cannot be written: {error}"));
@@ -36,25 +37,25 @@ pub fn catch(arguments: &[String]) {
     }));
 }
 
-/// Where finished cases are kept.
+/// Sets the journal that stores finished cases.
 pub fn keeps(journal: &Arc<Mutex<Option<Journal>>>) {
     if let Ok(mut own) = JOURNAL.lock() {
         *own = Arc::downgrade(journal);
     }
 }
 
-/// So many cases are going to be solved.
+/// Sets the number of cases to solve.
 pub fn begins(cases: usize) {
     ALL.store(cases, Ordering::Relaxed);
     FINISHED.store(0, Ordering::Relaxed);
 }
 
-/// One more case is finished.
+/// Counts one more finished case.
 pub fn finished() {
     FINISHED.fetch_add(1, Ordering::Relaxed);
 }
 
-/// A word as a shell takes it.
+/// Quotes a word for a shell.
 fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=:,+@%".contains(c);
     if !word.is_empty() && word.chars().all(plain) { word.into() } else { format!("'{}'", word.replace('\'', "'\\''")) }

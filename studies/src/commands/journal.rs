@@ -1,16 +1,16 @@
-//! The journal of finished cases, with which `--resume` goes on.
+//! The journal of finished cases. `--resume` continues from it.
 
 use std::fs::File;
 use std::io::{Result, Write};
 use std::time::{Duration, Instant};
 
-/// For how long lines wait after others were written: a killed run loses no more of its work, and cases that take no time
-/// to solve are not held up by writing each for itself.
+/// Longest time between a line and its writing. A killed run loses at most this much work, and fast cases are not
+/// slowed down by one write each.
 const WAITING: Duration = Duration::from_millis(50);
-/// Bytes of lines that do not wait.
+/// Number of buffered bytes above which lines are written immediately.
 const MUCH: usize = 1 << 16;
 
-/// Finished cases, a line each.
+/// Finished cases, one line each.
 #[derive(Debug)]
 pub struct Journal<W = File> {
     file: W,
@@ -24,14 +24,14 @@ impl<W: Write> Journal<W> {
         Journal { file, waiting: Vec::new(), written: None }
     }
 
-    /// Adds lines, at once unless they are few and others were written shortly before.
+    /// Adds lines. They are written immediately, except if they are few and the last write was a short time ago.
     ///
     /// # Errors
     ///
-    /// Where they cannot be written.
+    /// If they cannot be written.
     pub fn add(&mut self, lines: &[u8]) -> Result<()> {
         if lines.len() >= MUCH {
-            // Without a copy: a case of a million blocks has half a gigabyte.
+            // The lines are not copied: a case of a million blocks has half a gigabyte.
             self.write()?;
             return self.file.write_all(lines);
         }
@@ -39,11 +39,11 @@ impl<W: Write> Journal<W> {
         self.write_late()
     }
 
-    /// Writes what has waited for long enough.
+    /// Writes the buffered lines if the last write is long enough ago.
     ///
     /// # Errors
     ///
-    /// Where it cannot be written.
+    /// If they cannot be written.
     pub fn write_late(&mut self) -> Result<()> {
         let recent = |written: Instant| written.elapsed() < WAITING;
         if self.waiting.is_empty() || self.waiting.len() < MUCH && self.written.is_some_and(recent) {
@@ -52,11 +52,11 @@ impl<W: Write> Journal<W> {
         self.write()
     }
 
-    /// Writes all that waits.
+    /// Writes all buffered lines.
     ///
     /// # Errors
     ///
-    /// Where it cannot be written.
+    /// If they cannot be written.
     pub fn write(&mut self) -> Result<()> {
         let written = self.file.write_all(&self.waiting);
         self.waiting.clear();

@@ -1,4 +1,4 @@
-//! `voussoir merge`: the parts of a study that were solved apart, put together into the results of a whole run.
+//! `voussoir merge`: combines the parts of a study into the results of a whole run.
 
 use super::by_case::backings;
 use super::case_lines::CaseLines;
@@ -18,18 +18,18 @@ use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
-/// Ids that are named in a message.
+/// Greatest number of ids in a message.
 const NAMED: usize = 12;
 /// Greatest length of a part.
 const MAX_PART_BYTES: u64 = 1 << 40;
 /// Greatest length of the first line of a part.
 const MAX_HEAD_BYTES: u64 = 1 << 16;
 
-/// What is asked of a merge.
+/// Options of a merge.
 pub struct MergeOptions {
-    /// Where the results go.
+    /// The folder for the results.
     pub out: Option<PathBuf>,
-    /// Cases checked side by side.
+    /// Number of cases that are checked in parallel.
     pub jobs: usize,
     /// Print nothing but errors.
     pub quiet: bool,
@@ -45,7 +45,7 @@ fn wrong(text: impl std::fmt::Display) -> CliError {
     CliError::wrong_input(format_args!("voussoir merge: {text}; nothing was written"))
 }
 
-/// A part that was found.
+/// A part of a study.
 struct Part {
     folder: PathBuf,
     head: PartHead,
@@ -99,7 +99,7 @@ fn merged(dirs: &[PathBuf], options: &MergeOptions) -> Outcome {
     Ok(verdict(&made.totals))
 }
 
-/// The folders of parts in a folder, or the folder itself.
+/// Returns the folders of parts in a folder, or the folder itself.
 fn found(dir: &Path) -> Result<Vec<PathBuf>, CliError> {
     if dir.join(PART).is_file() {
         return Ok(vec![dir.into()]);
@@ -124,7 +124,7 @@ fn found(dir: &Path) -> Result<Vec<PathBuf>, CliError> {
     }
 }
 
-/// The head of a part whose end is there; adds its lines.
+/// Reads the head of a complete part and adds its lines.
 fn read_part(folder: &Path, lines: &mut CaseLines) -> Result<Part, CliError> {
     let path = folder.join(PART);
     let mut file = open_regular(&path, MAX_PART_BYTES).map_err(|error| CliError::of_file(&path, error))?;
@@ -153,7 +153,7 @@ fn read_part(folder: &Path, lines: &mut CaseLines) -> Result<Part, CliError> {
     Ok(Part { folder: folder.into(), head })
 }
 
-/// All parts must be of one study, one version and one way to cut it.
+/// Checks that all parts have the same study, version and number of parts.
 fn same_study(parts: &[Part]) -> Result<(), CliError> {
     let Some(first) = parts.first() else { return Ok(()) };
     for part in parts {
@@ -180,14 +180,14 @@ fn same_study(parts: &[Part]) -> Result<(), CliError> {
     Ok(())
 }
 
-/// The first ids of a list.
+/// Formats the first ids of a list.
 fn named(ids: &[usize]) -> String {
     let first: Vec<String> = ids.iter().take(NAMED).map(usize::to_string).collect();
     let more = if ids.len() > NAMED { format!(" and {} more", ids.len() - NAMED) } else { String::new() };
     format!("{} {}{more}", if ids.len() == 1 { "case" } else { "cases" }, first.join(", "))
 }
 
-/// Which cases are missing, and in which part they would be.
+/// Names the missing cases and the parts that should contain them.
 fn hint(parts: &[Part], missing: &[usize], cases: &Study) -> String {
     let of = parts.first().map_or(1, |part| part.head.shard.of);
     let there: BTreeSet<usize> = parts.iter().map(|part| part.head.shard.number).collect();
@@ -206,7 +206,7 @@ fn hint(parts: &[Part], missing: &[usize], cases: &Study) -> String {
     text
 }
 
-/// Every case must be the study's own, and hold by its own proof.
+/// Checks that every case belongs to the study and is confirmed by its own proof.
 fn confirmed(cases: &Study, lines: &CaseLines, jobs: usize) -> Result<BackingCount, CliError> {
     let found = backings(cases, lines, jobs).map_err(|error| CliError::of_file(Path::new(PART), error))?;
     let (mut count, mut findings) = (BackingCount::default(), Vec::new());

@@ -1,5 +1,5 @@
-//! What each command prints, reads and writes. Nothing else in this crate prints. Errors are values that
-//! [`crate::cli::main`] prints.
+//! The commands: their input, output and messages. No other module of this crate prints. Errors are values;
+//! [`crate::cli::main`] prints them.
 
 pub mod bench;
 mod by_case;

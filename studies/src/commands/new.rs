@@ -1,10 +1,10 @@
-//! `voussoir new`: commented studies that run as they stand.
+//! `voussoir new`: commented studies that can be run unchanged.
 
 use super::error::{CliError, Outcome, Verdict};
 use super::print::say;
 use std::io::{ErrorKind, Write};
 
-/// What a new study is about.
+/// The subject of a new study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Template {
     /// An arch under a load above quarter span
@@ -24,7 +24,7 @@ pub enum Template {
 }
 
 impl Template {
-    /// All of them.
+    /// All templates.
     #[cfg(test)]
     const ALL: [Template; 7] = [
         Template::Arch,
@@ -36,7 +36,7 @@ impl Template {
         Template::Paper,
     ];
 
-    /// Its word, which is the study's name too.
+    /// The name of the template, which is also the name of the study.
     fn word(self) -> &'static str {
         match self {
             Template::Arch => "arch",
@@ -63,7 +63,7 @@ impl Template {
     }
 }
 
-/// Writes a new study into the folder where the command is given; a file that is there stays.
+/// Writes a new study into the current folder; never overwrites a file.
 pub fn new(what: Template, name: Option<&str>) -> Outcome {
     let word = what.word();
     let name = name.map_or(word, |name| name.strip_suffix(".toml").unwrap_or(name));
@@ -92,7 +92,7 @@ mod tests {
     use crate::kinds::{RunRequest, read_study};
     use crate::solve::Unobserved;
 
-    /// Every template is free of mistakes and is answered with proof.
+    /// Every template is valid and gives a proved result.
     #[test]
     fn templates_run_as_they_stand() {
         for template in Template::ALL {

@@ -1,17 +1,17 @@
-//! `voussoir new law`: the files of a law, from those of an example that is compiled and tested.
+//! `voussoir new law`: writes the files of a law, made from an example that is compiled and tested.
 
 use super::error::{CliError, Outcome, Verdict};
 use super::print::say;
 use std::path::Path;
 use voussoir_core::plugin::{PluginKind, card};
 
-/// The law of `studies/examples/my_law`, its page, and its test. They are copies, because Cargo leaves a crate inside another one
-/// out of its package; a test of the architecture compares them.
+/// The law of `studies/examples/my_law`, its page, and its test. These files are copies, because Cargo leaves nested
+/// crates out of a package. A test of the architecture compares them.
 const LAW: &str = include_str!("../../templates/keyed.rs");
 const PAGE: &str = include_str!("../../templates/keyed.md");
 const TEST: &str = include_str!("../../templates/test.rs");
 
-/// Why a word cannot be the tag of a new law.
+/// Returns the reason why a word cannot be the tag of a new law.
 fn unfit(tag: &str) -> Option<String> {
     let word = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
     if !tag.starts_with(|c: char| c.is_ascii_lowercase()) || !tag.chars().all(word) {
@@ -21,14 +21,14 @@ fn unfit(tag: &str) -> Option<String> {
     Some(format!("there is such a law already: {}", taken.file))
 }
 
-/// `shear_keys` as `ShearKeys`.
+/// Converts `shear_keys` to `ShearKeys`.
 fn type_name(tag: &str) -> String {
     let capital =
         |word: &str| word.chars().take(1).flat_map(char::to_uppercase).chain(word.chars().skip(1)).collect::<String>();
     tag.split('_').map(capital).collect()
 }
 
-/// Writes a law of joints, its page and its test into a crate; nothing that is there is overwritten.
+/// Writes a joint law, its page and its test into a crate; never overwrites a file.
 pub fn law(tag: &str, into: &Path) -> Outcome {
     if let Some(why) = unfit(tag) {
         return Err(CliError::wrong_input(format_args!("voussoir new law {tag}: {why}")));
@@ -44,7 +44,7 @@ pub fn law(tag: &str, into: &Path) -> Outcome {
         text.replace("Keyed", &type_name(tag)).replace("keyed", tag).replace("my_law", &name.replace('-', "_"))
     };
     let mut files = vec![(format!("src/{tag}.rs"), own(LAW)), (format!("src/{tag}.md"), own(PAGE))];
-    // In the tree the conformance tests find every law.
+    // In this workspace, the conformance tests find every law.
     if name != "voussoir-laws" {
         files.push((format!("tests/{tag}.rs"), own(TEST)));
     }

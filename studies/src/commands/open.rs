@@ -1,8 +1,8 @@
-//! Opening a file or an address as the desktop does.
+//! Opens a file or an address with the desktop's default program.
 
 use super::print::complain;
 
-/// Opens it; that it cannot is no error of the command.
+/// Opens a file or an address. A failure is ignored.
 pub fn open(what: impl AsRef<std::ffi::OsStr>) {
     let what = what.as_ref();
     let program = match std::env::consts::OS {

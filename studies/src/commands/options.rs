@@ -1,4 +1,4 @@
-//! What `voussoir run` is asked for.
+//! The options of `voussoir run`.
 
 use super::progress::Shown;
 use serde::{Deserialize, Serialize};
@@ -8,32 +8,32 @@ use std::str::FromStr;
 /// Options of `voussoir run`.
 #[derive(Debug, Default)]
 pub struct Options {
-    /// Where results go.
+    /// The folder for the results.
     pub out: Option<PathBuf>,
     /// KEY=VALUE overrides.
     pub set: Vec<String>,
-    /// Cases side by side.
+    /// Number of cases that are solved in parallel.
     pub jobs: usize,
-    /// Only this case.
+    /// Solve only this case.
     pub case: Option<usize>,
-    /// Go on from finished cases.
+    /// Continue from finished cases.
     pub resume: bool,
     /// Print nothing but errors.
     pub quiet: bool,
-    /// Only this part of the study.
+    /// Solve only this part of the study.
     pub shard: Option<Shard>,
-    /// Answered cases as lines of JSON on standard output, and nothing else there.
+    /// Print each solved case as a line of JSON, and nothing else, on standard output.
     pub json: bool,
-    /// Say which cases there are, and solve none.
+    /// List the cases and solve none.
     pub list: bool,
-    /// Open the report when it is written.
+    /// Open the report after it is written.
     pub open: bool,
-    /// The arguments that go on with this run after an interruption.
+    /// The arguments that continue this run after an interruption.
     pub again: Vec<String>,
 }
 
 impl Options {
-    /// What is shown meanwhile.
+    /// The progress display.
     pub fn shown(&self) -> Shown {
         match (self.json, self.quiet) {
             (true, _) => Shown::Lines,
@@ -43,12 +43,12 @@ impl Options {
     }
 }
 
-/// Which part of how many.
+/// The number of a part and the number of all parts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Shard {
-    /// From 1.
+    /// Number of this part, from 1.
     pub number: usize,
-    /// All parts.
+    /// Number of parts.
     pub of: usize,
 }
 
@@ -66,13 +66,13 @@ impl FromStr for Shard {
 }
 
 impl Shard {
-    /// The folder of this part in that of the results.
+    /// Name of the folder of this part, in the folder of the results.
     pub fn folder(&self) -> String {
         format!("shard-{}-of-{}", self.number, self.of)
     }
 }
 
-/// Cases side by side that help: no more than processors.
+/// Limits the number of parallel cases to the number of processors.
 pub fn useful_jobs(jobs: usize) -> usize {
     jobs.clamp(1, std::thread::available_parallelism().map_or(1, usize::from))
 }

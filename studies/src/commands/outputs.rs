@@ -1,4 +1,4 @@
-//! The files of a run in its folder, from finished cases.
+//! Writes the files of a run from its finished cases.
 
 use super::case_lines::CaseLines;
 use super::error::{CliError, Verdict};
@@ -13,13 +13,13 @@ use crate::writers::files::{Files, OutputFile};
 use std::cell::Cell;
 use std::io::{self, Write};
 
-/// A folder that gets the resolved study together with its results.
+/// A folder in which the resolved study is written together with the results.
 struct RunFiles<'a> {
     folder: &'a ResultFolder,
     resolved: &'a str,
 }
 
-/// results.json, with the resolved study after it.
+/// results.json; the resolved study is written directly after it.
 struct ResultsFile<'a> {
     file: Box<dyn OutputFile + 'a>,
     files: &'a RunFiles<'a>,
@@ -76,12 +76,12 @@ pub fn write_outputs(
     Ok(made)
 }
 
-/// The verdict on all cases.
+/// Returns the verdict on all cases.
 pub fn verdict(totals: &Totals) -> Verdict {
     Verdict::of(totals.certified == totals.cases)
 }
 
-/// What is told of more cases than the table shows; empty for fewer.
+/// Returns a summary if there are more cases than the table shows; otherwise an empty text.
 pub fn tally(totals: &Totals, lines: &CaseLines) -> String {
     if totals.all_shown() {
         return String::new();

@@ -4,7 +4,7 @@ use super::error::{CliError, Outcome, Verdict};
 use super::print::print;
 use std::io::Write;
 
-/// Prints what a shell needs to complete the words of the command line.
+/// Prints the completion script of a shell.
 pub fn completions(shell: clap_complete::Shell, command: &mut clap::Command) -> Outcome {
     let mut text = Vec::new();
     clap_complete::generate(shell, command, "voussoir", &mut text);

@@ -15,33 +15,33 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
-/// What a run shows.
+/// The progress display of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shown {
     /// Nothing but errors.
     Nothing,
-    /// How far it has come, on a terminal.
+    /// A progress bar on a terminal.
     Bar,
-    /// The same, and each answered case as a line of JSON on standard output.
+    /// A progress bar, and each solved case as a line of JSON on standard output.
     Lines,
 }
 
-/// Shows progress on a terminal and keeps finished cases.
+/// Shows progress on a terminal and stores finished cases.
 pub struct Progress {
     bar: ProgressBar,
     shown_as: Shown,
     name: String,
     started: Instant,
-    /// When a path was last shown, in tenths of a second since the start.
+    /// Time at which a path was last shown, in tenths of a second since the start.
     shown: AtomicU64,
     journal: Arc<Mutex<Option<Journal>>>,
     /// The reason why a finished case could not be stored.
     unwritten: Mutex<Option<Error>>,
-    /// Ids of the cases whose lines are on standard output.
+    /// Ids of the cases whose lines were printed to standard output.
     said: Mutex<BTreeSet<usize>>,
 }
 
-/// Tenths of a second after which a path counts as long and is shown.
+/// Time after which the progress of a path is shown, in tenths of a second.
 const LONG: u64 = 10;
 
 impl Progress {
@@ -59,7 +59,7 @@ impl Progress {
         }
     }
 
-    /// Adds finished cases to this file from now on.
+    /// Stores finished cases in this file from now on.
     pub fn writes(&self, file: File) {
         if let Ok(mut journal) = self.journal.lock() {
             *journal = Some(Journal::new(file));
@@ -67,7 +67,7 @@ impl Progress {
         interrupt::keeps(&self.journal);
     }
 
-    /// Writes the finished cases that are still held.
+    /// Writes the finished cases that are still buffered.
     ///
     /// # Errors
     /// If a finished case could not be written.
@@ -76,7 +76,7 @@ impl Progress {
         self.unwritten.lock().ok().and_then(|mut error| error.take()).map_or(Ok(()), Err)
     }
 
-    /// Prints a case as a line, unless it was printed when it was answered.
+    /// Prints a case as a line, unless it was printed when it was solved.
     pub fn say_other(&self, case: &CaseResult) {
         let said = self.said.lock().is_ok_and(|said| said.contains(&case.label.id));
         if !said {
@@ -84,14 +84,14 @@ impl Progress {
         }
     }
 
-    /// Takes the bar off the terminal.
+    /// Removes the bar from the terminal.
     pub fn finish(&self) {
         self.bar.finish_and_clear();
     }
 }
 
 impl Progress {
-    /// Does something to the journal; its first error ends the run.
+    /// Applies a function to the journal; its first error ends the run.
     fn keep(&self, what: impl FnOnce(&mut Journal) -> Result<()>) {
         let Ok(mut journal) = self.journal.lock() else { return };
         if let Some(Err(error)) = journal.as_mut().map(what)
@@ -113,7 +113,7 @@ impl Observer for Progress {
         if self.shown_as != Shown::Nothing && cases > 0 {
             self.bar.set_draw_target(ProgressDrawTarget::stderr());
         }
-        // One case is no share of anything: what shows is where its path has come to, once that is long.
+        // A single case has no percentage. The progress of its path is shown instead, if it takes long.
         let template = if cases < 2 { "{msg}" } else { "{msg}: solving {bar:30} {pos}/{len} cases, {eta} left" };
         self.bar.set_style(ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar()));
         if cases > 1 {
@@ -127,7 +127,7 @@ impl Observer for Progress {
         self.keep(|journal| journal.add(&line));
         interrupt::finished();
         if self.shown_as == Shown::Lines {
-            // Whoever reads what is said on standard output may take his time.
+            // The reader of standard output may be slow, so the journal is written first.
             self.keep(Journal::write);
             if let Ok(mut said) = self.said.lock() {
                 said.insert(case.label.id);

@@ -21,7 +21,7 @@ use serde_json::{Value as Json, json};
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
-/// The arguments of a run with which it goes on where it was interrupted.
+/// Returns the arguments that continue a run after an interruption.
 pub fn going_on(arguments: &[String]) -> Vec<String> {
     let resume = (!arguments.iter().any(|word| word == "--resume")).then(|| "--resume".to_string());
     arguments.iter().cloned().chain(resume).collect()
@@ -31,7 +31,7 @@ pub fn going_on(arguments: &[String]) -> Vec<String> {
 pub fn run(paths: &[PathBuf], options: &Options) -> Outcome {
     match useful_jobs(options.jobs) {
         1 => run_all(paths, options),
-        // From the first case that is read to the last that is written the same threads.
+        // The same threads read, solve and write all cases.
         jobs => side_by_side(jobs, || run_all(paths, options)),
     }
 }
@@ -39,7 +39,7 @@ pub fn run(paths: &[PathBuf], options: &Options) -> Outcome {
 fn run_all(paths: &[PathBuf], options: &Options) -> Outcome {
     let sets = files::overrides(&options.set)?;
     let mut studies = Vec::new();
-    // The mistakes of all of them at once.
+    // All mistakes of all studies are reported together.
     joined(paths.iter().map(|path| {
         studies.push((path, files::study(path, &sets)?));
         Ok(Verdict::Proved)
@@ -61,15 +61,15 @@ fn run_all(paths: &[PathBuf], options: &Options) -> Outcome {
         run_one(study.as_ref(), path, &dir, options)
     };
     let outcome = joined(studies.iter().map(one));
-    // The program ends: giving back all that they hold takes as long as reading it.
+    // The program ends now; freeing the memory would take as long as reading the studies.
     std::mem::forget(studies);
     outcome
 }
 
-/// Refuses studies that would write into one folder.
+/// Refuses several studies that would write into the same folder.
 fn same_names(studies: &[(&PathBuf, Box<dyn LoadedStudy>)]) -> Result<(), CliError> {
     for (index, (path, study)) in studies.iter().enumerate() {
-        // File systems may not tell capitals apart.
+        // Some file systems ignore case.
         let same = |other: &str| other.to_lowercase() == study.name().to_lowercase();
         if let Some((first, _)) = studies[..index].iter().find(|(_, earlier)| same(earlier.name())) {
             return Err(CliError::wrong_input(format_args!(
@@ -84,10 +84,10 @@ fn same_names(studies: &[(&PathBuf, Box<dyn LoadedStudy>)]) -> Result<(), CliErr
     Ok(())
 }
 
-/// The first line of resolved.toml: which file was run.
+/// Prefix of the first line of resolved.toml, which names the study file.
 const SOURCE: &str = "# study: ";
 
-/// Refuses a default folder that holds the results of another study file that is still there.
+/// Refuses a default folder with results of a different study file that still exists.
 fn results_of_another(path: &Path, dir: &Path) -> Result<(), CliError> {
     let mut first = Vec::new();
     if let Ok(file) = open_regular(&dir.join("resolved.toml"), u64::MAX) {
@@ -108,7 +108,7 @@ fn results_of_another(path: &Path, dir: &Path) -> Result<(), CliError> {
     )))
 }
 
-/// Ids of the cases that are asked for.
+/// Returns the ids of the requested cases.
 fn wanted(study: &dyn LoadedStudy, case: Option<usize>) -> Result<Vec<usize>, CliError> {
     match case {
         Some(id) if id < study.count() => Ok(vec![id]),
@@ -182,14 +182,14 @@ fn run_cases(study: &Study, wanted: &[usize], dir: &Path, resolved: &str, option
     Ok(verdict(&made.totals))
 }
 
-/// Opens the report if that is asked for.
+/// Opens the report if `--open` is set.
 fn open_report(folder: &ResultFolder, names: &[String], options: &Options) {
     if options.open && names.iter().any(|name| name == "report.html") {
         open(folder.path().join("report.html"));
     }
 }
 
-/// Runs a study of a kind that writes its files at once, after those that it reports on.
+/// Runs a study of a kind that writes all its files together, after the studies that it reports on.
 fn run_whole(study: &dyn LoadedStudy, wanted: Vec<usize>, dir: &Path, resolved: &str, options: &Options) -> Outcome {
     let folder = ResultFolder::open(dir)?;
     let (mut verdict, mut parts) = (Verdict::Proved, Vec::new());
@@ -210,7 +210,7 @@ fn run_whole(study: &dyn LoadedStudy, wanted: Vec<usize>, dir: &Path, resolved: 
     };
     let output = study.run(&request, &progress);
     progress.finish();
-    // What is worth most comes first: a disk may be full.
+    // The results are written first, because the disk may be full.
     let (results, others): (Vec<_>, Vec<_>) = output.files.iter().partition(|(name, _)| name == "results.json");
     let names: Vec<String> = others.iter().map(|(name, _)| name.clone()).collect();
     folder.make_room(&names).map_err(CliError::of_io)?;

@@ -1,4 +1,4 @@
-//! `voussoir serve`: a study in a browser on this machine, following its sliders.
+//! `voussoir serve`: shows a study in a browser on this machine and updates it when sliders move.
 
 use super::error::{CliError, Outcome, Verdict};
 use super::files;
@@ -15,7 +15,7 @@ use std::net::TcpListener;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// A path that takes longer is not followed.
+/// A path that takes longer is cancelled.
 const PATIENCE: Duration = Duration::from_secs(2);
 
 /// Cancels a path that takes too long for a slider.
@@ -27,8 +27,8 @@ impl Observer for Patience {
     }
 }
 
-/// 128 bits that nobody else on the machine can guess: two outputs of hashes keyed by the operating system's random
-/// numbers.
+/// Returns 128 bits that no other user of the machine can guess: two outputs of hashes that use random keys of the
+/// operating system.
 fn token() -> String {
     let half = || RandomState::new().build_hasher().finish();
     format!("{:016x}{:016x}", half(), half())
@@ -43,7 +43,7 @@ pub fn serve(path: &Path, sets: &[String], in_browser: bool) -> Outcome {
     });
     let refused = |error| CliError::no_access(format_args!("voussoir: cannot serve on 127.0.0.1: {error}"));
     let (listener, port) = bound.map_err(refused)?;
-    // Where signals cannot be caught the system's own way ends it.
+    // If signals cannot be caught, the default action of the system ends the process.
     drop(ctrlc::set_handler(|| {
         eprintln!("\nvoussoir: serving has ended");
         std::process::exit(0);
@@ -55,13 +55,13 @@ pub fn serve(path: &Path, sets: &[String], in_browser: bool) -> Outcome {
     if in_browser {
         open(&place);
     }
-    // Only a header can forbid frames.
+    // Frames can be forbidden only by a header.
     let gate = Gate { port, token, policy: format!("{}; frame-ancestors 'none'", served_policy()) };
     http::serve(&listener, &gate, &|method, path, query, body| route(&session, method, path, query, body));
     Ok(Verdict::Proved)
 }
 
-/// The answer to a request that has passed the gate.
+/// Returns the response to a request that has passed the access check.
 fn route(session: &Session, method: &str, path: &str, query: &[(String, String)], body: &[u8]) -> Answer {
     let patience = Patience(Instant::now());
     let asked = || serde_json::from_slice::<Asked>(body).map_err(|error| Answer::text(400, error.to_string()));

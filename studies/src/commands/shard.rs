@@ -1,7 +1,8 @@
-//! One part of a study, for one of several machines: `voussoir run STUDY --shard 2/8`.
+//! `voussoir run STUDY --shard 2/8`: solves one part of a study on one of several machines.
 //!
-//! A part is a folder `shard-2-of-8` with the resolved study and `cases.jsonl`: a line that says what it is a part of, a
-//! line for each case in order of id, and a line with their number, so that a copy that was cut short is found.
+//! A part is a folder `shard-2-of-8` with the resolved study and `cases.jsonl`. This file has a first line that
+//! describes the part, a line for each case in order of id, and a last line with their number, so that a truncated copy
+//! is detected.
 
 use super::by_case::{backings, solve_into_journal};
 use super::case_lines::CaseLines;
@@ -24,36 +25,37 @@ pub const PART: &str = "cases.jsonl";
 /// The first line of a part.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PartHead {
-    /// Of the study.
+    /// Name of the study.
     pub study: String,
-    /// Of the program.
+    /// Version of the program.
     pub version: String,
-    /// Of the resolved study's text.
+    /// Hash of the resolved study's text.
     pub study_hash: String,
-    /// Which part it is.
+    /// Number of this part and of all parts.
     pub shard: Shard,
 }
 
 /// The last line of a part.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct PartEnd {
-    /// Lines between the first and this one.
+    /// Number of lines between the first and this one.
     pub cases_in_part: usize,
 }
 
-/// What tells one resolved study from another: 64 bits of FNV-1a over its text, without the name of its file.
+/// Identifies a resolved study: 64 bits of FNV-1a over its text, without the name of its file.
 pub fn study_hash(resolved: &toml::Value) -> String {
     checksum(toml::to_string(resolved).unwrap_or_default().as_bytes())
 }
 
-/// Ids of the cases of a part, in order; of the whole study where there is no part. A study of this kind may have none.
+/// Returns the ids of the cases of a part in order, or of the whole study without a part. Some kinds of studies cannot
+/// be divided.
 pub fn ids_of(study: &dyn LoadedStudy, shard: Option<Shard>) -> Result<Vec<usize>, CliError> {
     let Some(shard) = shard else { return Ok((0..study.count()).collect()) };
     let cases = cases_of(study)?;
     Ok((0..study.count()).filter(|id| cases.part(*id, shard.of) == Some(shard.number - 1)).collect())
 }
 
-/// The cases of a study that can be solved in parts.
+/// Returns the cases of a study if it can be solved in parts.
 fn cases_of(study: &dyn LoadedStudy) -> Result<&Study, CliError> {
     study.with_cases().ok_or_else(|| {
         let words = "is of a kind that cannot be solved in parts; it costs little";
@@ -61,7 +63,7 @@ fn cases_of(study: &dyn LoadedStudy) -> Result<&Study, CliError> {
     })
 }
 
-/// Returns true if a part holds all its cases, no line is damaged and every case holds by its own proof.
+/// Returns true if a part contains all its cases, no line is damaged and every case is confirmed by its own proof.
 fn finished(path: &Path, cases: &Study, count: usize, jobs: usize) -> bool {
     let mut lines = CaseLines::default();
     let whole = lines.add(path, 0, &mut |_| true).is_ok_and(|damaged| damaged == 0);

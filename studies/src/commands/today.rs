@@ -1,12 +1,12 @@
-//! The day of a run, for results.
+//! The date of a run, for results.
 
-/// The day in UTC, as 2026-11-22.
+/// Returns the current day in UTC, for example 2026-11-22.
 pub fn today() -> String {
     let seconds = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).map_or(0, |since| since.as_secs());
     date_of(seconds / 86_400)
 }
 
-/// The date so many days after the first of January 1970.
+/// Converts days since 1 January 1970 to a date.
 fn date_of(mut days: u64) -> String {
     let leap = |year: u64| year.is_multiple_of(4) && !year.is_multiple_of(100) || year.is_multiple_of(400);
     let mut year = 1970;

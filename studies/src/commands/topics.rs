@@ -1,4 +1,4 @@
-//! What `voussoir explain` knows besides plug-ins: words about studies, and every key of a study file.
+//! The topics of `voussoir explain` besides plug-ins: words about studies, and every key of a study file.
 
 use crate::config::documented_vehicles;
 use crate::config::key_meaning::quantity_of;
@@ -6,7 +6,7 @@ use crate::study::study_keys;
 use std::collections::BTreeSet;
 use voussoir_core::plugin::{Card, Need, Parameter, PluginKind, Quantity, Shape, Variant, cards, cards_of};
 
-/// Words with a page of their own; the first of each row is its name.
+/// Words with their own page. The first word of each row is the name of the page.
 const PAGES: [(&[&str], &str); 9] = [
     (&["auto"], include_str!("topics/auto.md")),
     (&["loads", "load"], include_str!("topics/loads.md")),
@@ -31,7 +31,7 @@ fn glossary() -> impl Iterator<Item = (&'static str, &'static str)> {
     })
 }
 
-/// Names of the pages and all words that `explain` knows besides tags.
+/// Names of the pages, and all words other than tags that `explain` accepts.
 pub fn words() -> BTreeSet<String> {
     let mut words: BTreeSet<String> =
         PAGES.iter().flat_map(|(names, _)| names.iter()).map(ToString::to_string).collect();
@@ -43,7 +43,7 @@ pub fn words() -> BTreeSet<String> {
     words
 }
 
-/// What is known of a word; empty where nothing is.
+/// Returns the explanation of a word; empty if the word is unknown.
 pub fn explain(word: &str) -> String {
     let page = PAGES.iter().find(|(names, _)| names.contains(&word)).map(|(_, page)| page.to_string());
     let mut text = page.unwrap_or_default();
@@ -108,7 +108,7 @@ impl Place<'_> {
     }
 }
 
-/// Name, unit, meaning and need of a key.
+/// Returns name, unit, meaning and requirement of a key.
 pub fn describe(key: &Parameter) -> String {
     let unit = match &key.shape {
         Shape::Number(quantity, range) => {
@@ -144,7 +144,7 @@ fn tags(kind: PluginKind) -> Vec<&'static str> {
     cards_of(kind).into_iter().map(|card| card.tag).collect()
 }
 
-/// Every key of a study file with a scene, and of every plug-in.
+/// Visits every key of a study file with a scene, and of every plug-in.
 fn each_key(see: &mut dyn FnMut(&Place<'_>)) {
     for key in study_keys() {
         walk(key.name, key, see);
@@ -157,7 +157,7 @@ fn each_key(see: &mut dyn FnMut(&Place<'_>)) {
     }
 }
 
-/// Where the keys of a plug-in stand.
+/// Returns the place of a plug-in's keys in a study file.
 fn of_card(card: &Card) -> String {
     format!("{} \"{}\"", card.kind.describe(), card.tag)
 }
@@ -188,7 +188,7 @@ mod tests {
     use super::*;
     use voussoir_core::plugin::nearest;
 
-    /// Words of the glossary and documented vehicles are explained, and suggested for words near them.
+    /// Words of the glossary and documented vehicles are explained, and they are suggested for similar words.
     #[test]
     fn glossary_and_vehicles_are_known() {
         assert!(explain("extrados").contains("inner and outer line"), "{}", explain("extrados"));

@@ -14,24 +14,24 @@ use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
-/// Greatest length of a results.json whose cases are held.
+/// Greatest length of a results.json that is read into memory.
 const MAX_HELD_BYTES: u64 = 4 << 30;
 /// Greatest length of any other file of a results folder.
 const MAX_FILE_BYTES: u64 = 1 << 40;
 /// Greatest length of a resolved study.
 const MAX_STUDY_BYTES: u64 = 64 << 20;
-/// Findings that are listed.
+/// Greatest number of listed findings.
 const LISTED: usize = 1000;
 
 /// Arguments of `voussoir verify`.
 pub struct VerifyOptions {
-    /// The study file that the folder must answer.
+    /// The study file that the results must belong to.
     pub study: Option<PathBuf>,
     /// KEY=VALUE overrides of that file.
     pub set: Vec<String>,
-    /// Accept a folder that holds only some cases.
+    /// Accept a folder that contains only some of the cases.
     pub partial: bool,
-    /// Cases side by side.
+    /// Number of cases that are checked in parallel.
     pub jobs: usize,
 }
 
@@ -52,7 +52,7 @@ pub fn verify(dir: &Path, options: &VerifyOptions) -> Outcome {
 /// The outcome of the check of one folder.
 struct Checked {
     verdict: Verdict,
-    /// True if nothing was found, in its parts neither.
+    /// True if there are no findings, also not in its parts.
     holds: bool,
 }
 
@@ -127,7 +127,7 @@ fn compared(dir: &Path, study: &dyn LoadedStudy, jobs: usize) -> Result<Verifica
     })
 }
 
-/// The number of cases that stored paths prove, in words.
+/// Describes the number of cases that stored paths prove.
 fn path_words([proved, not_solved]: [usize; 2]) -> Option<String> {
     let unproved = match not_solved {
         0 => String::new(),

@@ -5,7 +5,7 @@ use super::stored_path::StoredPath;
 use serde::{Deserialize, Serialize, Serializer};
 use std::sync::Arc;
 
-/// A case with its stored path, as journals and parts have it.
+/// Serialises a case with its stored path, for journals and parts.
 pub struct CaseWithPath<'a>(pub &'a CaseResult);
 
 impl Serialize for CaseWithPath<'_> {
@@ -23,7 +23,7 @@ impl Serialize for CaseWithPath<'_> {
     }
 }
 
-/// The path of such a text.
+/// Reads only the path of a case.
 #[derive(Deserialize)]
 struct PathOf {
     stored_path: Option<StoredPath>,
@@ -32,7 +32,7 @@ struct PathOf {
 /// Reads a case with its stored path.
 ///
 /// # Errors
-/// If the text is no case. A path that cannot be read is left out.
+/// If the text is not a case. An unreadable path is left out.
 pub fn read_case(text: &[u8]) -> serde_json::Result<CaseResult> {
     const KEY: &[u8] = b"\"stored_path\":";
     let mut case: CaseResult = serde_json::from_slice(text)?;

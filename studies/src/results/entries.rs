@@ -1,4 +1,4 @@
-//! Entries of a result: forces, velocities, displacements, yielded blocks and events, one by one.
+//! Entries of a result: forces, velocities, displacements, yielded blocks and events.
 
 use serde::{Deserialize, Serialize};
 use voussoir_core::path::ContactEvent;
@@ -8,45 +8,45 @@ use voussoir_core::path::ContactEvent;
 pub struct FieldEntry {
     /// Index of the joint.
     pub joint: usize,
-    /// Where it acts \[m\].
+    /// Point of application \[m\].
     pub point: [f64; 2],
     /// \[r_n, r_t\] on the plus body.
     pub force: [f64; 2],
 }
 
-/// Where a load comes from.
+/// Origin of a load.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LoadOrigin {
-    /// The block's own weight.
+    /// Self-weight of the block.
     Weight,
-    /// The weight of the fill on it.
+    /// The weight of the fill on the block.
     Fill,
     /// Loads of the stage, at factor 1.
     Load,
 }
 
-/// What stands on a block.
+/// A load on a block.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LoadEntry {
     /// Name of the stage.
     pub stage: String,
-    /// Where it comes from.
+    /// Origin of the load.
     pub what: LoadOrigin,
     /// Name of the block.
     pub block: String,
     /// \[x, y\] \[N\].
     pub resultant: [f64; 2],
-    /// On its line of action \[m\].
+    /// A point on the line of action \[m\].
     pub point: [f64; 2],
 }
 
-/// What the fill presses with beside a block.
+/// The pressure of the fill on the side of a block.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FillEntry {
     /// Name of the block.
     pub block: String,
-    /// Where it acts \[m\].
+    /// Point of application \[m\].
     pub point: [f64; 2],
     /// Unit vector towards the ring.
     pub direction: [f64; 2],
@@ -74,7 +74,7 @@ pub struct DisplacementEntry {
     pub displacement: [f64; 3],
 }
 
-/// A block whose material has yielded, at the state of the field: what `verify` needs to recompute its
+/// A block whose material has yielded, at the state of the field, with the data that `verify` needs to recompute its
 /// stresses.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct YieldedEntry {
@@ -97,10 +97,10 @@ pub struct StateEntry {
     pub stage: String,
     /// The factor of that stage's loads (of its gravity, where `gravity` is set).
     pub factor: f64,
-    /// Whether gravity was being applied.
+    /// True if gravity was being applied.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub gravity: bool,
-    /// Displacement of the loads along themselves by the rigid motion of their blocks \[m\].
+    /// Displacement of the loads in their own direction by the rigid motion of their blocks \[m\].
     pub displacement: f64,
     /// \[u_x, u_y, θ\] of every body at its centroid, in the order of the scene.
     pub bodies: Vec<[f64; 3]>,
@@ -115,13 +115,13 @@ pub struct EventEntry {
     pub stage: String,
     /// The factor of that stage's loads (of its gravity, where `gravity` is set).
     pub factor: f64,
-    /// Whether it happened while gravity was applied.
+    /// True if it happened while gravity was applied.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub gravity: bool,
     /// Index of the joint.
     pub joint: usize,
-    /// Where \[m\].
+    /// The contact point \[m\].
     pub point: [f64; 2],
-    /// What happened there.
+    /// The kind of event.
     pub what: ContactEvent,
 }

@@ -1,24 +1,24 @@
-//! Finished cases of a study in order of id, wherever they are: none is held longer than it is needed.
+//! The finished cases of a study in order of id. Only a few are in memory at a time.
 
 use super::case_result::CaseResult;
 use std::collections::BTreeSet;
 use std::io;
 
-/// Receives a few cases.
+/// Receives a few cases at a time.
 pub type TakeCases<'a> = &'a mut dyn FnMut(&[CaseResult]) -> io::Result<()>;
 
 /// Finished cases.
 pub trait FinishedCases {
-    /// Hands all cases over, a few at a time.
+    /// Passes all cases to `take`, a few at a time.
     ///
     /// # Errors
-    /// If they cannot be read, and the errors of `take`.
+    /// If the cases cannot be read, or if `take` returns an error.
     fn each(&self, take: TakeCases) -> io::Result<()>;
 
-    /// Hands the cases with these ids over, a few at a time.
+    /// Passes the cases with these ids to `take`, a few at a time.
     ///
     /// # Errors
-    /// If they cannot be read, and the errors of `take`.
+    /// If the cases cannot be read, or if `take` returns an error.
     fn each_of(&self, ids: &BTreeSet<usize>, take: TakeCases) -> io::Result<()> {
         if ids.is_empty() {
             return Ok(());

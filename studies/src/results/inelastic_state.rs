@@ -1,5 +1,4 @@
-//! Blocks whose material has yielded, as results carry them, and what they tell: where a mechanism
-//! crushes.
+//! Entries for blocks whose material has yielded, and the crushing of mechanisms computed from them.
 
 use super::entries::YieldedEntry;
 use std::sync::Arc;
@@ -9,11 +8,11 @@ use voussoir_core::law::FacetMode;
 use voussoir_core::model::Assembly;
 use voussoir_core::path::{PathProblem, PathState, Yielded};
 
-/// Equivalent plastic strain under compression from which a Gauss point counts as crushed: a tenth of
-/// what stone of 10 MPa and 5 GPa strains elastically, and far above rounding.
+/// Equivalent plastic strain under compression above which a Gauss point counts as crushed: a tenth of the elastic
+/// strain of stone with 10 MPa and 5 GPa, and far above rounding errors.
 pub const CRUSHED: f64 = 2e-4;
 
-/// The blocks of a state that have yielded.
+/// The yielded blocks of a state.
 pub fn entries(assembly: &Assembly, problem: &PathProblem, state: &PathState) -> Vec<YieldedEntry> {
     let mut out = Vec::new();
     for (index, body) in problem.bodies.iter().enumerate() {
@@ -37,7 +36,7 @@ pub fn entries(assembly: &Assembly, problem: &PathProblem, state: &PathState) ->
     out
 }
 
-/// The states that entries describe, by body of the problem, or why they do not fit the scene.
+/// Reads the states of the entries, by body of the problem. Returns the reason if they do not fit the scene.
 pub fn read(
     assembly: &Assembly,
     problem: &PathProblem,
@@ -72,9 +71,9 @@ pub fn read(
     Ok(out)
 }
 
-/// Joints next to which blocks have crushed, with the share of the height: in the elements along the
-/// joint, the rows of Gauss points of which some has an equivalent plastic strain under compression
-/// above [`CRUSHED`]; of the two blocks the one that has crushed more.
+/// Returns the joints next to which blocks have crushed, with the crushed share of the height. In the elements along
+/// the joint, a row of Gauss points counts if one of its points has an equivalent plastic strain under compression
+/// above [`CRUSHED`]. The block with the larger share is used.
 pub fn crushing(assembly: &Assembly, problem: &PathProblem, yielded: &[Option<Yielded>]) -> Vec<Crushing> {
     let mut found = Vec::new();
     for (index, joint) in assembly.joints.iter().enumerate() {
@@ -96,8 +95,8 @@ pub fn crushing(assembly: &Assembly, problem: &PathProblem, yielded: &[Option<Yi
     found
 }
 
-/// The mechanism of a path, with the joints next to which blocks have crushed. Where blocks yield, the rates
-/// of their rigid motions overlap because they deform: only a law that crushes itself counts besides.
+/// Returns the mechanism of a path, with the joints next to which blocks have crushed. If blocks yield, their
+/// deformation makes their rigid motions overlap; then only laws with crushing add crushed joints.
 pub fn with_crushing(
     mut mechanism: Mechanism,
     assembly: &Assembly,

@@ -1,4 +1,4 @@
-//! Loads of a bridge as they are written: what stands on which block, so that it can be checked by hand.
+//! Entries for the loads of a bridge by block, for checks by hand.
 
 use super::entries::{FillEntry, LoadEntry, LoadOrigin};
 use crate::study::Case;
@@ -6,8 +6,8 @@ use voussoir_core::model::geometry::{Vec2, cross};
 use voussoir_core::model::{Assembly, FillReaction, PointForce, Stage, fill_bounds, fill_weights};
 use voussoir_core::path::{PathProblem, fill_gravity};
 
-/// Weights of blocks and fill under the gravity of each stage that sets it, and the loads of each stage at factor 1;
-/// none for scenes that are no bridges, and no weights for brief cases.
+/// Returns the weights of blocks and fill under the gravity of each stage that sets it, and the loads of each stage at
+/// factor 1. Empty for scenes other than bridges; brief cases have no weights.
 pub fn load_entries(case: &Case) -> Vec<LoadEntry> {
     let (assembly, stages) = (&case.assembly, &case.stages);
     let mut entries = Vec::new();
@@ -28,7 +28,7 @@ pub fn load_entries(case: &Case) -> Vec<LoadEntry> {
     entries
 }
 
-/// Forces block by block: parallel ones as their resultant at their centre, others one by one.
+/// Adds forces by block: parallel forces as their resultant at its centre, others one by one.
 fn gather(assembly: &Assembly, stage: &Stage, what: LoadOrigin, forces: &[PointForce], entries: &mut Vec<LoadEntry>) {
     let entry = |body: usize, resultant: Vec2, point: Vec2| LoadEntry {
         stage: stage.name.clone(),
@@ -51,7 +51,7 @@ fn gather(assembly: &Assembly, stage: &Stage, what: LoadOrigin, forces: &[PointF
     }
 }
 
-/// Forces of the fill as they are written, with their bounds under a stage's gravity.
+/// Converts forces of the fill to entries, with their bounds under a stage's gravity.
 pub fn fill_entries(assembly: &Assembly, forces: &[f64], bounds: &[[f64; 2]]) -> Vec<FillEntry> {
     let reactions = assembly.fill_reactions().iter().zip(forces).zip(bounds);
     let entry = |((reaction, force), bounds): ((&FillReaction, &f64), &[f64; 2])| FillEntry {
@@ -64,7 +64,7 @@ pub fn fill_entries(assembly: &Assembly, forces: &[f64], bounds: &[[f64; 2]]) ->
     reactions.map(entry).collect()
 }
 
-/// Forces of the fill at the contact points of a path.
+/// Returns the forces of the fill at the contact points of a path.
 pub fn path_fill(assembly: &Assembly, problem: &PathProblem, stages: &[Stage], forces: &[[f64; 2]]) -> Vec<FillEntry> {
     let bounds = fill_bounds(assembly, fill_gravity(stages).unwrap_or_default());
     let mut fill: Vec<f64> = bounds.iter().map(|bounds| bounds[0]).collect();

@@ -1,15 +1,15 @@
-//! How far a load factor may be off.
+//! Estimates of the error of a load factor.
 
 use serde::{Deserialize, Serialize};
 
 /// Estimates of the errors of a load factor, in units of the factor.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct LoadFactorError {
-    /// Of the mesh, and with it of the contact points of a joint; `null` where nothing is meshed.
+    /// Error of the mesh and of the number of contact points in a joint; `null` if no block is meshed.
     pub discretisation: Option<f64>,
-    /// Of the steps along a path; `null` where none are taken.
+    /// Error of the steps along a path; `null` if the solver makes no steps.
     pub path: Option<f64>,
-    /// Of the solution itself: what is left between the factor and its bounds, or the tolerance of a path.
+    /// Error of the solution: the distance between the factor and its bounds, or the tolerance of a path.
     pub solution: f64,
 }
 

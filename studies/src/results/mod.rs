@@ -1,4 +1,4 @@
-//! Results: what is written of each case, of a study, and how forces and motions become entries.
+//! Results of cases and studies, as they are written to files, and the conversion of forces and motions to entries.
 
 pub mod carried;
 mod case_result;

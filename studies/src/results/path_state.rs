@@ -1,5 +1,5 @@
-//! What solving and verifying share of a path's state: motions of blocks and of the path's bodies, the
-//! mechanism of a motion, and the bounds of residuals.
+//! Functions on the state of a path that solving and verifying share: motions of blocks and bodies, the mechanism of a
+//! motion, and the bounds of residuals.
 
 use super::inelastic_state::with_crushing;
 use voussoir_core::certificate::{
@@ -10,17 +10,17 @@ use voussoir_core::model::Assembly;
 use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::path::{PathProblem, PathState};
 
-/// Whether a residual is within its bound for results; NaN is not, where there is one.
+/// Returns true if a residual is within its bound for results, or has no bound. NaN is not within a bound.
 pub fn small(name: &str, value: f64) -> bool {
     let bound = tolerance(name).result;
     value <= bound || bound.is_infinite()
 }
 
-/// Jumps below this share of the greatest are the blocks' deformation: where a path ends in rates on which
-/// forces change (peaks of finite displacements, blocks that yield) every joint moves a little.
+/// Jumps below this share of the greatest jump are attributed to the deformation of blocks. If a path ends in rates
+/// that change forces (peaks of finite displacements, yielding blocks), every joint moves a little.
 const DEFORMATION: f64 = 0.1;
 
-/// The mechanism of a motion at a state.
+/// Returns the mechanism of a motion at a state.
 pub fn mechanism_of(
     (assembly, problem): (&Assembly, &PathProblem),
     state: &PathState,
@@ -39,10 +39,10 @@ pub fn mechanism_of(
     found.map(|found| with_crushing(found, assembly, problem, &state.yielded))
 }
 
-/// By joint, the end next to which the resultant presses its blocks together.
+/// Returns for each joint the end nearer to which the resultant presses its blocks together.
 fn pressed_joints(assembly: &Assembly, problem: &PathProblem, state: &PathState) -> Vec<Option<usize>> {
     let largest = state.force.iter().fold(0.0, |a: f64, r| a.max(r[0].abs()));
-    // Normal force of every joint, and its moment about the middle over the height.
+    // Normal force of every joint, and its moment about the middle divided by the height.
     let mut resultants = vec![[0.0; 2]; assembly.joints.len()];
     for (contact, force) in problem.contacts.iter().zip(&state.force) {
         // Contact points of the fill come after those of all joints.
@@ -56,15 +56,15 @@ fn pressed_joints(assembly: &Assembly, problem: &PathProblem, state: &PathState)
     resultants.iter().map(end).collect()
 }
 
-/// Displacement of a point that moves rigidly with a body: \[u_x, u_y, θ\] at `from`, u + R(θ) a − a
-/// with a = to − from; linear in θ where displacements are small.
+/// Displacement of the point `to` that moves rigidly with a body whose displacement at `from` is \[u_x, u_y, θ\]: u +
+/// R(θ) a − a with a = to − from; linear in θ if displacements are small.
 pub fn carried([x, y, theta]: [f64; 3], from: Vec2, to: Vec2, finite: bool) -> Vec2 {
     let arm = to - from;
     let swing = if finite { arm * (theta.cos() - 1.0) + turned(arm) * theta.sin() } else { turned(arm) * theta };
     Vec2::new(x, y) + swing
 }
 
-/// Rigid motion of a block's body about its pole, from the displacement of the block's centroid.
+/// Converts the displacement of a block's centroid to the rigid motion of its body about its pole.
 pub fn motion_of_body(
     assembly: &Assembly,
     problem: &PathProblem,
@@ -77,11 +77,11 @@ pub fn motion_of_body(
     [u.x, u.y, displacement[2]]
 }
 
-/// Share of a joint's height next to the end where its blocks touch within which it is pressed, at a hinge.
+/// At a hinge, the resultant acts within this share of the joint's height from the end at which the blocks touch.
 const TOE: f64 = 0.25;
 
-/// Hinges of a state: joints that are pressed within a quarter of their height from one end, and open at the other.
-/// Rotations are those of the plus body relative to the minus body \[rad\].
+/// Returns the hinges of a state: joints whose resultant acts within a quarter of their height from one end, and that
+/// are open at the other. Rotations are those of the plus body relative to the minus body \[rad\].
 pub fn open_hinges(assembly: &Assembly, problem: &PathProblem, state: &PathState) -> Vec<Hinge> {
     let largest = state.force.iter().fold(0.0, |a: f64, r| a.max(r[0].abs()));
     let mut hinges = Vec::new();

@@ -1,25 +1,25 @@
-//! The order of answers by what they carry.
+//! The order of results by the load that they carry.
 
 use super::case_result::CaseResult;
 use voussoir_core::limit::Status;
 
-/// The load factor as answers are compared: what carries any load, or stands, is infinite, what cannot carry its dead
-/// load is −∞; `None` where there is no answer.
+/// Returns the load factor for comparisons: infinite if any load is carried or the case stands, −∞ if the dead load is
+/// not carried, `None` without a result.
 pub fn load_rank(case: &CaseResult) -> Option<f64> {
     match case.status {
         Status::NoEquilibrium => Some(f64::NEG_INFINITY),
         Status::Unbounded | Status::Stands => Some(f64::INFINITY),
         Status::Collapse | Status::LimitPoint => case.load_factor,
-        // The proved lower end is what it carries in any case; without one it may carry as little as its upper end.
+        // The proved lower bound is carried in any case. Without it, the upper bound is used.
         Status::Open => case.bounds.and_then(|[lower, upper]| lower.or(upper)),
         Status::Stalled => None,
     }
 }
 
-/// Relative difference of load factors that counts as none, as that of a place and its mirror image.
+/// Smaller relative differences of load factors count as equal, for example those of a position and its mirror image.
 const TIE: f64 = 1e-9;
 
-/// The case that carries least, of several alike that with the lowest number.
+/// Returns the case with the least load; among equal ones, the case with the lowest number.
 pub fn least_of<'a>(cases: impl Iterator<Item = &'a CaseResult>) -> Option<&'a CaseResult> {
     let ranked: Vec<(f64, &CaseResult)> = cases.filter_map(|case| Some((load_rank(case)?, case))).collect();
     let least = ranked.iter().map(|(rank, _)| *rank).min_by(f64::total_cmp)?;

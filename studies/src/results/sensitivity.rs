@@ -1,4 +1,4 @@
-//! How a load factor changes with the numbers of a study.
+//! Derivatives of a load factor with respect to the numbers of a study.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,21 +7,21 @@ use serde::{Deserialize, Serialize};
 pub struct SensitivityEntry {
     /// Its dotted key.
     pub key: String,
-    /// The number, in SI units or those of its key.
+    /// The value, in SI units or in the unit of its key.
     pub value: f64,
-    /// Derivative where the number falls, per unit of the key; `null` where there is none.
+    /// Left-sided derivative (the number decreases), per unit of the key; `null` if there is none.
     pub left: Option<f64>,
-    /// Derivative where it grows.
+    /// Right-sided derivative (the number increases).
     pub right: Option<f64>,
-    /// Whether the two differ: the field or the mechanism is not unique in a way that matters to this number.
+    /// True if the two differ: the field or the mechanism is not unique, and this changes the derivative.
     pub kink: bool,
-    /// Why one of them is missing.
+    /// The reason if a derivative is missing.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub why: Option<String>,
 }
 
 impl SensitivityEntry {
-    /// Per cent that the factor changes by where the number changes by one per cent, falling and growing.
+    /// Returns the change of the factor in per cent if the number decreases and if it increases by one per cent.
     pub fn relative(&self, factor: f64) -> [Option<f64>; 2] {
         [self.left, self.right]
             .map(|slope| slope.map(|slope| slope * self.value / factor).filter(|x| x.is_finite() && self.value != 0.0))

@@ -1,8 +1,8 @@
-//! Where a stage's search for collapse starts.
+//! The load factor at which the search for collapse in a stage starts.
 
 use voussoir_core::model::Stage;
 
-/// The factor nearest to 0 among those searched.
+/// Returns the factor nearest to 0 in the searched range.
 pub fn search_start(stage: &Stage) -> f64 {
     0.0f64.clamp(stage.factor_min, stage.factor_max)
 }

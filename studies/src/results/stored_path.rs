@@ -1,6 +1,6 @@
-//! The states and witnesses of a path as they are stored: a line of `path_proofs.jsonl`, and an entry of journals and parts.
+//! The stored states and witnesses of a path: a line of `path_proofs.jsonl`, and an entry of journals and parts.
 //!
-//! Everything that follows from these numbers and the study is left out: gaps, openings, modes, residuals.
+//! Values that follow from these numbers and the study are not stored: gaps, openings, modes, residuals.
 
 use serde::{Deserialize, Serialize};
 use voussoir_core::limit::Status;
@@ -25,17 +25,17 @@ pub struct PathLine<P> {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StoredPath {
-    /// The status that they prove.
+    /// The proved status.
     pub status: Status,
-    /// Index of the state that the status is about.
+    /// Index of the state that the status belongs to.
     pub end: usize,
-    /// Velocity of every body about its pole, of a mechanism.
+    /// For a mechanism: the velocity of every body about its pole.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<Vec<[f64; 3]>>,
     /// Contact forces of a ray \[N\].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ray: Option<Vec<[f64; 2]>>,
-    /// All states in order, without the unloaded structure.
+    /// All states in order, without the initial unloaded state.
     pub states: Vec<StoredState>,
     /// Statements about rates.
     pub witnesses: Vec<StoredWitness>,
@@ -45,7 +45,7 @@ pub struct StoredPath {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StoredState {
-    /// Index of the load step: stages in order, in each first gravity, then settlements and loads.
+    /// Index of the load step. Stages are in order; in each stage gravity is first, then settlements and loads.
     pub load_step: usize,
     /// λ of that load step.
     pub factor: f64,
@@ -75,13 +75,13 @@ pub struct StoredWitness {
 pub enum StoredClaim {
     /// These rates solve the rate problem.
     Rate(PathRate),
-    /// No rate raises the load: the nodes of a tree of decisions, each before its branches.
+    /// No rate raises the load. The nodes of a decision tree, each before its branches.
     NoneRises(Vec<StoredNode>),
-    /// No rate continues the path: the nodes of the trees for a factor that rises, stands still and falls.
+    /// No rate continues the path. The nodes of the trees for an increasing, a constant and a decreasing factor.
     NoneContinues([Vec<StoredNode>; 3]),
 }
 
-/// A node of a tree of decisions. A list of nodes has no depth that a reader could exceed.
+/// A node of a decision tree. The tree is stored as a list, so that its depth cannot exhaust the stack of a reader.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StoredNode {
@@ -89,6 +89,6 @@ pub enum StoredNode {
     Leaf(FarkasVector),
     /// A contact point, and the mode of each of the branches that follow.
     Split(usize, Vec<PointMode>),
-    /// Modes that the path had before.
+    /// The previous modes of the path.
     Before,
 }

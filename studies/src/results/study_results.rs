@@ -1,4 +1,4 @@
-//! The results of a study, as they stand in `results.json`.
+//! The results of a study, as stored in `results.json`.
 
 use super::case_result::CaseResult;
 use super::comparison::Comparison;
@@ -19,7 +19,7 @@ pub struct StudyResults {
     /// The day of the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub date: Option<String>,
-    /// Ids of the cases, where the run was asked for some of them only.
+    /// Ids of the cases, if the run was limited to some cases.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub only_cases: Option<Vec<usize>>,
     /// Names of the files that the run wrote beside results.json and resolved.toml, sorted.
@@ -27,21 +27,22 @@ pub struct StudyResults {
     pub files: Vec<String>,
     /// One entry per case, by `id`.
     pub cases: Vec<CaseResult>,
-    /// Of `kind = "compare"` and `"map"`: the cases beside each other.
+    /// For `kind = "compare"` and `"map"`: the comparison of the cases.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub comparison: Option<Comparison>,
-    /// What other study kinds add, by name.
+    /// Additional results of other study kinds, by name.
     #[serde(flatten)]
     pub own: Map<String, Json>,
 }
 
 impl StudyResults {
-    /// The result of a case by its id; `None` where it was not asked for, or not answered before the run was cancelled.
+    /// Returns the result of a case by its id; `None` if it was not requested, or not solved before the run was
+    /// cancelled.
     pub fn case(&self, id: usize) -> Option<&CaseResult> {
         self.cases.iter().find(|case| case.label.id == id)
     }
 
-    /// Whether every case that is here is answered and its certificate passed.
+    /// Returns true if every stored case is solved and its certificate passed.
     pub fn certified(&self) -> bool {
         self.cases.iter().all(|case| case.certificate.passed)
     }

@@ -4,7 +4,7 @@ use voussoir_core::certificate::ContactForce;
 use voussoir_core::model::Assembly;
 use voussoir_core::model::geometry::Vec2;
 
-/// Where the resultant crosses each joint of an arch.
+/// Returns the point at which the resultant crosses each joint of an arch.
 pub fn thrust_line(assembly: &Assembly, field: &[ContactForce]) -> Option<Vec<Option<[f64; 2]>>> {
     assembly.arch.as_ref()?;
     let largest = field.iter().map(|c| c.force[0].abs()).fold(0.0, f64::max);

@@ -1,18 +1,18 @@
-//! What is counted over all cases of a study, and the cases that tables for readers and charts show.
+//! Counts over all cases of a study, and the choice of cases for tables and charts.
 
 use super::case_result::CaseResult;
 use super::rank::load_rank;
 use std::collections::{BTreeMap, BTreeSet};
 use voussoir_core::limit::Status;
 
-/// Greatest number of cases of which tables for readers and charts show every one.
+/// Up to this number of cases, tables and charts show every case.
 pub const MAX_SHOWN: usize = 1000;
-/// Of more cases: runs of neighbours of which the least and the greatest load factor are shown.
+/// For more cases: number of groups of neighbours, of which the least and the greatest load factor are shown.
 const RUNS: usize = 400;
-/// Of more cases: greatest number of cases without a certified answer that are shown for that.
+/// For more cases: greatest number of uncertified cases that are shown in addition.
 const UNCERTIFIED: usize = 100;
 
-/// A case in a few bytes.
+/// The data of a case that counts and charts need.
 #[derive(Debug, Clone, Copy)]
 struct Brief {
     id: usize,
@@ -23,13 +23,13 @@ struct Brief {
 }
 
 impl Brief {
-    /// The load factor as it is compared; infinite without one.
+    /// Returns the load factor for comparisons; infinite without one.
     fn load(&self) -> f64 {
         self.rank.unwrap_or(f64::INFINITY)
     }
 }
 
-/// The least and the greatest load factor of some neighbours, or the first and the last of them.
+/// Returns the least and the greatest load factor of a group, or its first and last case.
 fn ends_of(run: &[Brief]) -> [Option<&Brief>; 2] {
     let finite = || run.iter().filter(|brief| brief.load().is_finite());
     let least = finite().min_by(|a, b| a.load().total_cmp(&b.load()));
@@ -48,9 +48,9 @@ pub struct Totals {
     pub statuses: Vec<(Status, usize)>,
     /// Number of cases that snap before they reach their load factor.
     pub snapping: usize,
-    /// The lowest first limit point of these.
+    /// The lowest first limit point of the cases that snap.
     pub lowest_snap: Option<f64>,
-    /// Number of open cases, of which only bounds are proved.
+    /// Number of open cases. Only their bounds are proved.
     pub open: usize,
     /// True if some case has a load-displacement curve.
     pub curves: bool,
@@ -67,7 +67,7 @@ pub struct Totals {
 }
 
 impl Totals {
-    /// Counts of all these cases.
+    /// Counts these cases.
     pub fn of(cases: &[CaseResult]) -> Self {
         let mut totals = Totals::default();
         cases.iter().for_each(|case| totals.add(case));
@@ -105,7 +105,7 @@ impl Totals {
         });
     }
 
-    /// Returns true if readers are shown every case.
+    /// Returns true if tables and charts show every case.
     pub fn all_shown(&self) -> bool {
         self.cases <= MAX_SHOWN
     }
@@ -125,9 +125,9 @@ impl Totals {
         ends_of(&self.briefs)[0].filter(|brief| brief.load().is_finite()).map(|brief| brief.id)
     }
 
-    /// Ids of the cases that tables for readers and charts show: all, or of more than [`MAX_SHOWN`] the least and the
-    /// greatest load factor of every run of neighbours, the first, the last, the least of each variant, and the first ones
-    /// without a certified answer.
+    /// Returns the ids of the cases that tables and charts show. Up to [`MAX_SHOWN`] cases: all. Otherwise: the least
+    /// and the greatest load factor of every group of neighbours, the first, the last, the least of each variant, and
+    /// the first uncertified cases.
     pub fn shown(&self) -> BTreeSet<usize> {
         if self.all_shown() {
             return self.ids().collect();
@@ -151,7 +151,8 @@ mod tests {
     use super::*;
     use crate::figures::sample::blank;
 
-    /// Few cases are all shown; of many the least, the greatest, both ends and the stalled one are among less than 1000.
+    /// A small number of cases is shown completely; of many cases fewer than 1000 are shown, among them the least, the
+    /// greatest, both ends and the stalled case.
     #[test]
     fn the_worst_cases_are_always_shown() {
         let factor = |id: usize| if id == 77_777 { 0.5 } else { 2.0 + (id as f64 * 0.1).sin() };

@@ -1,12 +1,12 @@
-//! The comparison of results with a second run: bit by bit if both come from the same program and the same kind of processor,
-//! by their claims otherwise.
+//! Chooses how results are compared with a second run: bit by bit if both were made by the same program on the same
+//! kind of processor, otherwise by their claims.
 
 use super::{meaning, repeat, texts};
 use crate::results::{Origin, words};
 use serde::Serialize;
 use serde_json::{Map, Value as Json};
 
-/// The way in which two runs are compared.
+/// The kind of comparison of two runs.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Agreement {
     /// Every number and word must be the same.
@@ -14,13 +14,13 @@ pub enum Agreement {
     /// The same program on another kind of processor: claims must be the same, numbers within the tolerances of
     /// [`super::tolerances`].
     Processor,
-    /// Another program: the same, and its tables and figures are not compared.
+    /// Another program: like `Processor`, but tables and figures are not compared.
     #[default]
     Program,
 }
 
 impl Agreement {
-    /// The comparison of results of this origin, of a study that is given as resolved.toml, with this program.
+    /// Returns the comparison for stored results with this origin and for a study that is given as resolved.toml.
     pub fn of(stored: &Origin, study: &toml::Value) -> Agreement {
         let here = Origin::here(&words(study));
         match (stored.agrees(&here), stored.program() == here.program()) {
@@ -30,13 +30,13 @@ impl Agreement {
         }
     }
 
-    /// The comparison of a results.json whose entries beside the cases are given.
+    /// Returns the comparison for a results.json whose head is given.
     pub fn of_head(head: &Map<String, Json>, study: &toml::Value) -> Agreement {
         let origin = serde_json::from_value(Json::Object(head.clone()));
         Agreement::of(&origin.unwrap_or_default(), study)
     }
 
-    /// The differences between a stored value and the value of a second run, in words.
+    /// Returns the differences between a stored value and the value of a second run.
     pub fn differences(self, stored: &Json, again: &Json) -> Vec<String> {
         match self {
             Agreement::Bits => repeat::differences(stored, again),
@@ -44,7 +44,7 @@ impl Agreement {
         }
     }
 
-    /// Returns true if two values that are no cases are the same.
+    /// Returns true if two values other than cases agree.
     pub fn same<T: Serialize>(self, stored: &T, again: &T) -> bool {
         match (serde_json::to_value(stored), serde_json::to_value(again)) {
             (Ok(stored), Ok(again)) if self == Agreement::Bits => repeat::differences(&stored, &again).is_empty(),
@@ -53,7 +53,7 @@ impl Agreement {
         }
     }
 
-    /// Returns true if two files are the same.
+    /// Returns true if two files agree.
     pub fn same_file(self, stored: &[u8], made: &[u8]) -> bool {
         match self {
             Agreement::Bits => stored == made,
@@ -62,7 +62,7 @@ impl Agreement {
         }
     }
 
-    /// The comparison in words.
+    /// Describes the comparison.
     pub fn words(self) -> &'static str {
         match self {
             Agreement::Bits => "compared bit by bit: this program on this kind of processor has written them",

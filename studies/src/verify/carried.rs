@@ -1,5 +1,5 @@
-//! Checks the description of a load that is carried. The forces of joints follow from the stored field. The zone of thrust and the
-//! reserve must fit them; their numbers are those of solving again.
+//! Checks the description of a load that is carried. The forces of joints follow from the stored field. The zone of
+//! thrust and the reserve must fit these forces; their numbers are compared with solving again.
 
 use super::fields::{EQUAL, close, contacts};
 use super::findings::Findings;
@@ -10,7 +10,7 @@ use crate::study::Case;
 use voussoir_core::limit::Status;
 use voussoir_core::model::Target;
 
-/// Share of a joint's height by which the eccentricity of a field that is admissible but for rounding may lie outside its zone.
+/// Rounding tolerance for an eccentricity outside its zone, relative to the joint's height.
 const OUTSIDE: f64 = 1e-6;
 
 /// Checks the forces of joints, their zones, the reserve and the permissible limit state.
@@ -31,7 +31,7 @@ pub(super) fn verify(case: &Case, result: &CaseResult, findings: &mut Findings) 
     Ok(())
 }
 
-/// Returns true if all numbers are the same but for rounding, relative to the greatest of their kind.
+/// Returns true if all numbers differ only by rounding, relative to the greatest number of their kind.
 fn same_forces(stored: &[JointEntry], expected: &[JointEntry]) -> bool {
     let numbers = |entry: &JointEntry| {
         let block = entry.block.map(|block| [block.length, block.stress, block.strength]);

@@ -1,4 +1,4 @@
-//! One case: its label, its stages, and then what limit analysis or a path claims.
+//! Checks one case: its label, its stages, and the claims of limit analysis or of a path.
 
 use super::findings::Findings;
 use super::fit::misfits;
@@ -11,7 +11,7 @@ use voussoir_core::limit::Status;
 use voussoir_core::model::Target;
 use voussoir_core::plugin::{PluginKind, card};
 
-/// What is wrong with a result.
+/// Returns the findings about a result.
 pub fn verify_case(case: &Case, result: &CaseResult) -> Vec<String> {
     let misfits = misfits(case, result);
     if !misfits.is_empty() {
@@ -37,7 +37,7 @@ fn recompute(case: &Case, result: &CaseResult, findings: &mut Findings) -> Resul
         findings.expect(result.load_factor.is_none(), "stalled with a load factor");
         return Ok(());
     }
-    // Nothing is stored that could prove it: solving again does, and every number is compared with that.
+    // No stored data can prove this case. It is solved again, and every number is compared.
     if !case.output_fields && result.has_no_fields() {
         return Ok(());
     }
@@ -48,14 +48,14 @@ fn recompute(case: &Case, result: &CaseResult, findings: &mut Findings) -> Resul
     }
 }
 
-/// Returns true if stored loads match the study, but for rounding of their places and sums.
+/// Returns true if stored loads match the study; positions and sums may differ by rounding.
 fn same_loads(stored: &[LoadEntry], loads: &[LoadEntry]) -> bool {
     let numbers = |list: &[LoadEntry]| list.iter().map(|l| [l.resultant, l.point].concat()).collect::<Vec<_>>();
     let words = |l: &LoadEntry| (l.stage.clone(), l.what, l.block.clone());
     stored.iter().map(words).eq(loads.iter().map(words)) && GEOMETRY.same_rows(&numbers(stored), &numbers(loads))
 }
 
-/// Names, factors and statuses of the stages up to the last that was begun.
+/// Checks names, factors and statuses of the stages up to the last that was begun.
 fn verify_stages(case: &Case, result: &CaseResult, last: usize, findings: &mut Findings) {
     let named = result.stages.iter().zip(&case.stages).all(|(done, stage)| done.name == stage.name);
     findings.expect(named, "stages are not those of the study");

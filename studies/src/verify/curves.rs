@@ -1,4 +1,4 @@
-//! Load-displacement curves as functions.
+//! Compares load-displacement curves as functions.
 
 use super::tolerances::{CURVE, Route};
 use serde_json::Value as Json;

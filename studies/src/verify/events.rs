@@ -1,4 +1,4 @@
-//! Events of a path by their identity: the stage, the joint, the place and what happened there.
+//! Compares the events of two paths by their identity: stage, joint, contact point and kind of event.
 
 use super::tolerances::{BEYOND, FACTOR, GEOMETRY, Route};
 use crate::results::EventEntry;
@@ -6,7 +6,7 @@ use serde::Deserialize;
 use serde_json::Value as Json;
 use std::collections::BTreeMap;
 
-/// The differences between the events of two runs. `steps_differ`: the second run has another number of steps.
+/// Returns the differences between the events of two runs. `steps_differ`: the second run has another number of steps.
 pub(super) fn differences(stored: &Json, again: &Json, route: Route, steps_differ: bool) -> Vec<String> {
     let read = |events: &Json| Vec::<EventEntry>::deserialize(events).map_err(|error| vec![format!("events: {error}")]);
     let (stored, again) = match (read(stored), read(again)) {
@@ -26,7 +26,7 @@ pub(super) fn differences(stored: &Json, again: &Json, route: Route, steps_diffe
     if route != Route::Steps {
         return strict(&ours, &theirs, near).into_iter().collect();
     }
-    // Up to the greatest factor both runs must agree.
+    // Both runs must agree up to the greatest factor.
     let peak = theirs.iter().enumerate().max_by(|a, b| a.1.1.total_cmp(&b.1.1)).map_or(0, |(index, _)| index + 1);
     if ours.len() < peak {
         return vec![format!("{} events, solving again gives {} up to the greatest factor", ours.len(), peak)];
@@ -45,7 +45,7 @@ pub(super) fn differences(stored: &Json, again: &Json, route: Route, steps_diffe
 /// The number of an identity, and the factor.
 type Event = (usize, f64);
 
-/// Numbers for identities.
+/// Assigns numbers to identities.
 #[derive(Default)]
 struct Identities(Vec<EventEntry>);
 
@@ -68,7 +68,8 @@ impl Identities {
     }
 }
 
-/// The first difference of two lists that must have the same events; those at one factor may be in any order.
+/// Returns the first difference of two lists that must have the same events. Events at the same factor may be in any
+/// order.
 fn strict(stored: &[Event], again: &[Event], near: f64) -> Option<String> {
     if stored.len() != again.len() {
         return Some(format!("{} events, solving again gives {}", stored.len(), again.len()));
@@ -93,7 +94,8 @@ fn strict(stored: &[Event], again: &[Event], near: f64) -> Option<String> {
     None
 }
 
-/// The number of events of both lists without a partner of the same identity, in order, with a factor no further than `near`.
+/// Returns the number of events in both lists that have no partner: the same identity, in order, and a factor that
+/// differs by at most `near`.
 fn unmatched(stored: &[Event], again: &[Event], near: f64) -> usize {
     let by_identity = |list: &[Event]| {
         let mut own: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
@@ -111,7 +113,7 @@ fn unmatched(stored: &[Event], again: &[Event], near: f64) -> usize {
         .sum()
 }
 
-/// Length of the longest common subsequence of numbers that are equal within `near`.
+/// Returns the length of the longest common subsequence of numbers that are equal within `near`.
 fn common(a: &[f64], b: &[f64], near: f64) -> usize {
     let mut row = vec![0; b.len() + 1];
     for x in a {
@@ -131,7 +133,7 @@ mod tests {
     use serde_json::json;
 
     fn events() -> Json {
-        // 20 events up to the greatest factor, 40 beyond.
+        // 20 events up to the greatest factor, 40 after it.
         let factor = |i: usize| if i < 20 { i as f64 } else { 20.0 - 0.5 * i as f64 };
         (0..60)
             .map(|i| json!({ "stage": "live", "factor": factor(i), "joint": i % 7, "point": [1.0 / 3.0, i % 2], "what": "opens" }))
@@ -157,7 +159,7 @@ mod tests {
             assert!(found(|list| drop(list.remove(9)), steps_differ));
             assert!(found(|list| list.truncate(20), steps_differ));
         }
-        // Beyond the greatest factor short events may be missing if steps differ, and only then.
+        // After the greatest factor, short events may be missing if the numbers of steps differ, and only then.
         let brief = |list: &mut Vec<Json>| drop(list.drain(40..42));
         assert!(found(brief, false) && !found(brief, true));
         assert!(found(|list| drop(list.drain(40..50)), true));

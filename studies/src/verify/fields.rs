@@ -1,4 +1,4 @@
-//! Stored forces and motions, read back with their checks: they stand on the scene and hold finite numbers.
+//! Reads stored forces and motions, and checks that they fit the scene and contain finite numbers.
 
 use crate::results::path_state::motion_of_body;
 use crate::results::{CaseResult, FieldEntry, FillEntry, MotionEntry};
@@ -10,12 +10,12 @@ use voussoir_core::path::PathProblem;
 /// Relative difference up to which recomputed numbers count as equal.
 pub const EQUAL: f64 = 1e-9;
 
-/// Whether two numbers are equal but for rounding; NaN is equal to nothing.
+/// Returns true if two numbers are equal except for rounding; NaN is equal to nothing.
 pub fn close(a: f64, b: f64) -> bool {
     a == b || (a - b).abs() <= EQUAL * a.abs().max(b.abs())
 }
 
-/// Contact forces of a stored field, or why it is none.
+/// Returns the contact forces of a stored field, or the reason why it is not valid.
 pub fn contacts(assembly: &Assembly, field: &[FieldEntry]) -> Result<Vec<ContactForce>, String> {
     let size = assembly.size();
     field
@@ -23,7 +23,7 @@ pub fn contacts(assembly: &Assembly, field: &[FieldEntry]) -> Result<Vec<Contact
         .map(|entry| {
             let joint = assembly.joints.get(entry.joint).ok_or(format!("field: no joint {}", entry.joint))?;
             let point = Vec2::from(entry.point);
-            // Written so that NaN fails.
+            // The comparison is false for NaN.
             let on_joint = distance_to_segment(point, joint.ends[0], joint.ends[1]) <= EQUAL * size;
             if !on_joint || !entry.force.iter().all(|f| f.is_finite()) {
                 return Err(format!("field: a force of joint {} does not act on that joint", entry.joint));
@@ -33,7 +33,7 @@ pub fn contacts(assembly: &Assembly, field: &[FieldEntry]) -> Result<Vec<Contact
         .collect()
 }
 
-/// Forces of a stored field, and of the fill that belongs to it, at the contact points of a path's problem, in their order.
+/// Returns the forces of a stored field and of its fill at the contact points of a path's problem, in their order.
 pub fn path_forces(
     assembly: &Assembly,
     problem: &PathProblem,
@@ -50,7 +50,7 @@ pub fn path_forces(
     if !same {
         return Err("field: not the contact points of the scene".into());
     }
-    // Contact points of the fill come last; a field that carries the load alone has none of it.
+    // Contact points of the fill are last. A field that balances the live load alone has no forces of the fill.
     let pressed = beside.iter().map(|c| {
         let entry = fill.get(c.joint - assembly.joints.len());
         [entry.map_or(0.0, |entry| entry.force - entry.bounds[0]), 0.0]
@@ -79,7 +79,7 @@ pub fn path_motion(
     Ok(motion)
 }
 
-/// Velocities of a stored motion, one for each body, or why it is none.
+/// Returns the velocities of a stored motion, one for each body, or the reason why it is not valid.
 pub fn velocities(assembly: &Assembly, motion: &[MotionEntry]) -> Result<Vec<CentroidVelocity>, String> {
     if motion.len() != assembly.bodies.len() {
         return Err("motion: not one velocity for each body".into());

@@ -1,11 +1,11 @@
-//! What a check has found wrong.
+//! The findings of a check.
 
-/// Findings in words, one by one.
+/// A list of findings in words.
 #[derive(Debug, Default)]
 pub(super) struct Findings(pub Vec<String>);
 
 impl Findings {
-    /// Adds `what` unless it is fine.
+    /// Adds `what` unless `fine` is true.
     pub fn expect(&mut self, fine: bool, what: &str) {
         if !fine {
             self.0.push(what.to_string());

@@ -1,4 +1,4 @@
-//! A stored case against its scene, before anything is computed from it: every index, name and length must fit, and
+//! Checks that a stored case fits its scene, before any computation uses it: every index, name and length must fit, and
 //! every number must be in range. Later code indexes the scene with these entries and relies on this check.
 
 use crate::results::{CaseResult, FieldEntry, StateEntry};
@@ -8,10 +8,11 @@ use voussoir_core::certificate::{Hinge, Mechanism, in_range};
 
 /// Greatest number of steps of a lower bound by products. The check of a step costs a dense factorisation.
 const MAX_STEPS: usize = 1_000;
-/// Findings of one case that are listed.
+/// Greatest number of findings that are listed for one case.
 const LISTED: usize = 8;
 
-/// Entries of a stored case that do not fit its scene, in words. Only a case without any may be read further.
+/// Returns the entries of a stored case that do not fit its scene, in words. Other code may read the case only if this
+/// list is empty.
 pub fn misfits(case: &Case, result: &CaseResult) -> Vec<String> {
     let mut fit = Fit { case, found: BTreeSet::new() };
     fit.stages(result);
@@ -25,7 +26,7 @@ pub fn misfits(case: &Case, result: &CaseResult) -> Vec<String> {
     found
 }
 
-/// Load factors and bounds.
+/// Returns load factors and bounds.
 fn summary(result: &CaseResult) -> Vec<f64> {
     let factors = [
         result.load_factor,
@@ -37,7 +38,7 @@ fn summary(result: &CaseResult) -> Vec<f64> {
     factors.into_iter().flatten().chain(result.bounds.into_iter().flatten().flatten()).chain(interval).collect()
 }
 
-/// Collects what does not fit.
+/// Collects entries that do not fit.
 struct Fit<'a> {
     case: &'a Case,
     found: BTreeSet<String>,
@@ -60,7 +61,7 @@ impl Fit<'_> {
         self.expect(index < count, || format!("{what}: there is no joint {index}, the scene has {count}"));
     }
 
-    /// A joint with the names of its blocks.
+    /// Checks the index of a joint and the names of its blocks.
     fn between(&mut self, what: &str, index: usize, names: &[String; 2]) {
         self.joint(what, index);
         let assembly = &self.case.assembly;
@@ -103,7 +104,7 @@ impl Fit<'_> {
         }
     }
 
-    /// Names of bodies, one for each body of the scene in its order, or none.
+    /// Checks the names of bodies: one for each body of the scene in its order, or an empty list.
     fn bodies<'a>(&mut self, what: &str, names: impl ExactSizeIterator<Item = &'a String>) {
         let bodies = &self.case.assembly.bodies;
         let fits = names.len() == bodies.len() && names.zip(bodies).all(|(name, body)| *name == body.name);

@@ -1,4 +1,4 @@
-//! What a result of limit analysis claims: the certificate from the stored fields, bounds, factors, mechanism.
+//! Checks a result of limit analysis: the certificate from the stored fields, bounds, factors, mechanism.
 
 use super::fields::{EQUAL, close, contacts, velocities};
 use super::findings::Findings;
@@ -17,7 +17,7 @@ use voussoir_core::law::{FlowRule, is_associated};
 use voussoir_core::limit::Status;
 use voussoir_core::model::{Assembly, Bond, Stage, StageLoads, Target, stage_loads};
 
-/// Stored forces and velocities, as certificates read them.
+/// Stored forces and velocities, in the form that certificates use.
 struct Stored {
     field: Option<Vec<ContactForce>>,
     ray: Option<Vec<ContactForce>>,
@@ -38,7 +38,7 @@ impl Stored {
     }
 }
 
-/// Whether some joint's own flow is not associated.
+/// Returns true if the flow of some joint is not associated.
 fn non_associated(assembly: &Assembly) -> bool {
     assembly.joints.iter().any(|joint| match joint.bond {
         Bond::Bonded => false,
@@ -49,7 +49,7 @@ fn non_associated(assembly: &Assembly) -> bool {
     })
 }
 
-/// Checks the result of a case whose stage `last` ended it.
+/// Checks the result of a case that ended in stage `last`.
 pub(super) fn verify(case: &Case, result: &CaseResult, last: usize, findings: &mut Findings) -> Result<(), String> {
     let (assembly, stage) = (&case.assembly, &case.stages[last]);
     let stored = Stored::read(assembly, result)?;
@@ -60,14 +60,14 @@ pub(super) fn verify(case: &Case, result: &CaseResult, last: usize, findings: &m
         .expect(same_fill(&result.proof.fill, &expected), "the forces of the fill do not stand where the fill presses");
     let start = match stage.target {
         Target::Collapse => search_start(stage),
-        // A stage whose loads decrease is asked at its end, any other at its start.
+        // A stage with decreasing loads is checked at its end, any other stage at its start.
         Target::Factor(factor) => factor.min(0.0),
     };
     let non_associated = non_associated(assembly);
     let associated_factor = result.non_associated.associated_load_factor;
     let own = (non_associated && result.flow_read_as.is_none()) || associated_factor.is_some();
     findings.expect(!own || result.flow_read_as.is_none(), "flow_read_as does not fit the associated load factor");
-    // Without a motion that refutes the loads it is the motion of the supports that is refuted.
+    // If no motion refutes the loads, the motion of the supports is refuted.
     let blocked = result.status == Status::NoEquilibrium && stored.motion.is_none();
     let supports = blocked.then(|| support_motions(assembly, &case.stages, last)).transpose()?;
     let infinite = [f64::NEG_INFINITY, f64::INFINITY];
@@ -110,7 +110,7 @@ pub(super) fn verify(case: &Case, result: &CaseResult, last: usize, findings: &m
     Ok(())
 }
 
-/// Returns true if forces of the fill act at the places of the scene, between its bounds.
+/// Returns true if forces of the fill act at the places of the scene and are within its bounds.
 fn same_fill(stored: &[FillEntry], expected: &[FillEntry]) -> bool {
     let numbers =
         |list: &[FillEntry]| list.iter().map(|f| [f.point, f.direction, f.bounds].concat()).collect::<Vec<_>>();
@@ -118,7 +118,7 @@ fn same_fill(stored: &[FillEntry], expected: &[FillEntry]) -> bool {
     stored.iter().map(words).eq(expected.iter().map(words)) && GEOMETRY.same_rows(&numbers(stored), &numbers(expected))
 }
 
-/// The stored status, certificate and bounds against those that the stored evidence proves.
+/// Compares the stored status, certificate and bounds with those that the stored evidence proves.
 fn verify_verdict(result: &CaseResult, verdict: &Verdict, findings: &mut Findings) {
     let Verdict { certificate, status, bounds, greatest, .. } = verdict;
     findings.expect(*status == result.status, "the stored evidence does not prove the stored status");
@@ -143,7 +143,7 @@ fn verify_verdict(result: &CaseResult, verdict: &Verdict, findings: &mut Finding
     findings.expect(bounds_match, "bounds are not those of field and mechanism");
 }
 
-/// The curve along which the bracket has closed: it never opens, and ends at the bounds.
+/// Checks the curve of the bracket: its width never grows, and it ends at the bounds.
 fn verify_bracket(result: &CaseResult, findings: &mut Findings) {
     let curve = &result.non_associated.bracket;
     let closes = curve.windows(2).all(|pair| {
@@ -157,14 +157,14 @@ fn verify_bracket(result: &CaseResult, findings: &mut Findings) {
     let ends = curve.last().is_none_or(|end| {
         let (Some([lower, _]), Some(factor)) = (result.bounds, result.load_factor) else { return false };
         let lower = lower.unwrap_or(end.lower);
-        // What rounding of multipliers may cost is taken off the bound: up to 1e-6 of the factor.
+        // Rounding of multipliers reduces the bound by up to 1e-6 of the factor.
         let near = 2e-6 * factor.abs();
         (end.lower - lower).abs() <= near && end.found.is_some_and(|found| (found - factor).abs() <= near)
     });
     findings.expect(closes && ends, "the curve of the bracket does not close to its bounds");
 }
 
-/// The factors of the last stage, of the field and of the feasible interval.
+/// Checks the factors of the last stage, of the field and of the feasible interval.
 fn verify_factors(
     result: &CaseResult,
     (stage, loads): (&Stage, &StageLoads),
@@ -197,7 +197,7 @@ fn verify_factors(
     }
 }
 
-/// Mechanism, hinges of the last stage and thrust line against those of motion and forces.
+/// Compares mechanism, hinges of the last stage and thrust line with those computed from motion and forces.
 fn verify_mechanism(
     assembly: &Assembly,
     result: &CaseResult,
@@ -214,7 +214,7 @@ fn verify_mechanism(
         _ => findings.expect(false, "there is a motion without a mechanism, or a mechanism without a motion"),
     }
     let hinges: Vec<Hinge> = result.mechanism.iter().flat_map(|m| &m.hinges).cloned().collect();
-    // Where supports have moved, hinges are those of the displacements: solving again compares them.
+    // If supports have moved, the hinges follow from the displacements. They are compared with solving again.
     let settled = result.path.displacements.is_some() && result.mechanism.is_none();
     let same = settled || result.stages[last].hinges == hinges;
     findings.expect(same, "hinges of the last stage are not those of the mechanism");

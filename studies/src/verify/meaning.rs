@@ -1,4 +1,5 @@
-//! A stored result against the same case solved again by another program or on another processor: claims are compared, not bits.
+//! Compares a stored result with the same case solved again by another program or on another processor: the claims, not
+//! the bits.
 //!
 //! Statuses, mechanisms, events and all other words must be the same. Numbers may differ by the tolerances of
 //! [`super::tolerances`]. Residuals are compared with their gates, curves as functions, events by identity.
@@ -35,7 +36,7 @@ pub fn same(stored: &Json, again: &Json) -> bool {
 
 /// The rule by which an entry is compared.
 enum Rule {
-    /// Not at all.
+    /// The entry is not compared.
     Free,
     /// Words must be the same; the certificate proves the numbers.
     Proved,
@@ -55,14 +56,14 @@ enum Rule {
     Events,
 }
 
-/// A comparison of two cases.
+/// The comparison of two values.
 struct Comparison<'a> {
-    /// True if both are cases, whose keys have rules.
+    /// True if both are cases: rules exist for their keys.
     case: bool,
     route: Route,
-    /// True if fields are stored, which the certificate has checked.
+    /// True if fields are stored. The certificate has checked them.
     fields: bool,
-    /// True if the mechanism is the only one.
+    /// True if the mechanism is unique.
     unique: bool,
     /// True if the second run has another number of steps.
     steps_differ: bool,
@@ -95,7 +96,7 @@ impl<'a> Comparison<'a> {
         }
     }
 
-    /// The rule of a key, given without indices.
+    /// Returns the rule of a key without indices.
     fn rule(&self, key: &str) -> Rule {
         let (top, leaf) = (key.split('.').next().unwrap_or(key), key.rsplit('.').next().unwrap_or(key));
         let within = |tolerance: &Tolerance| Rule::Within(tolerance.of(self.route));
@@ -175,7 +176,7 @@ impl<'a> Comparison<'a> {
         }
     }
 
-    /// Returns true if two numbers are the same within the rule; never if one is NaN.
+    /// Returns true if two numbers agree within the rule; false if one is NaN.
     fn near(&self, rule: &Rule, a: f64, b: f64, key: &str) -> bool {
         let apart = (a - b).abs();
         let greatest = self.greatest.get(key).copied().unwrap_or(0.0);
@@ -192,7 +193,7 @@ impl<'a> Comparison<'a> {
         }
     }
 
-    /// The greatest number of a driven point's rows.
+    /// Returns the greatest number in the rows of a driven point.
     fn greatest_row(&self) -> f64 {
         self.again["rows"].as_array().into_iter().flatten().map(greatest_number).fold(0.0, f64::max)
     }
@@ -218,7 +219,8 @@ fn route(solver: Option<&str>) -> Route {
     }
 }
 
-/// The key of an entry of a list: the key of the list. Columns of a driven point have their own keys, because each has its unit.
+/// Returns the key of an entry of a list: the key of the list. The columns of a driven point have separate keys,
+/// because each has its unit.
 fn item(key: &str, index: usize) -> String {
     match key {
         "rows" => "rows.".into(),
@@ -227,7 +229,7 @@ fn item(key: &str, index: usize) -> String {
     }
 }
 
-/// The greatest number of each key.
+/// Stores the greatest number of each key.
 fn measure(value: &Json, key: &str, greatest: &mut HashMap<String, f64>) {
     match value {
         Json::Number(number) => {

@@ -1,15 +1,16 @@
-//! Bytes of a connection, within limits of size and of total time.
+//! Reads and writes the bytes of a connection, with limits for size and total time.
 
 use super::answer::Answer;
 use std::io::{Error, ErrorKind, Read, Result as IoResult, Write};
 use std::net::{Shutdown, TcpStream};
 use std::time::{Duration, Instant};
 
-/// Bytes that are read at once.
+/// Number of bytes per read.
 const CHUNK: usize = 4096;
-/// Time in which the rest of a request is read and dropped, so that the answer is not lost with a reset.
+/// Time in which the rest of a request is read and dropped. Without this, a reset of the connection could lose the
+/// response.
 const LINGER: Duration = Duration::from_secs(1);
-/// Reads after which the rest is too long for that.
+/// Greatest number of such reads.
 const MAX_DROPPED: usize = 256;
 
 /// Greatest sizes \[bytes\], and the time for each part.
@@ -24,18 +25,18 @@ pub(super) struct Limits {
 pub(super) struct Wire<'a> {
     stream: &'a TcpStream,
     limits: Limits,
-    /// Bytes that came behind the head.
+    /// Bytes after the head.
     rest: Vec<u8>,
 }
 
-/// The time that is left, as a timeout of the system; an error if the deadline is past.
+/// Returns the remaining time as a timeout of the system; an error if the deadline is past.
 fn left(deadline: Instant) -> IoResult<Option<Duration>> {
     let left = deadline.saturating_duration_since(Instant::now());
     if left.is_zero() { Err(ErrorKind::TimedOut.into()) } else { Ok(Some(left)) }
 }
 
 impl<'a> Wire<'a> {
-    /// A connection that was accepted.
+    /// Wraps an accepted connection.
     pub fn new(stream: &'a TcpStream, limits: Limits) -> Self {
         Wire { stream, limits, rest: Vec::new() }
     }
@@ -60,7 +61,8 @@ impl<'a> Wire<'a> {
         }
     }
 
-    /// The head of a request without the empty line behind it; `None` if the connection ends before anything comes.
+    /// Returns the head of a request without the empty line after it; `None` if the connection ends before the first
+    /// byte.
     pub fn head(&mut self) -> Result<Option<Vec<u8>>, Answer> {
         let deadline = Instant::now() + self.limits.time;
         let (mut head, mut chunk) = (Vec::new(), [0; CHUNK]);
@@ -69,7 +71,7 @@ impl<'a> Wire<'a> {
             if count == 0 {
                 return if head.is_empty() { Ok(None) } else { Err(Answer::text(400, "the request breaks off")) };
             }
-            // The end may begin in the chunk before.
+            // The end mark may begin in the previous chunk.
             let from = head.len().saturating_sub(3);
             head.extend_from_slice(&chunk[..count]);
             let end = head[from..].windows(4).position(|four| four == b"\r\n\r\n").map(|at| from + at);
@@ -87,7 +89,8 @@ impl<'a> Wire<'a> {
         }
     }
 
-    /// The body of a request; `length` is within the limit. Bytes behind it are no request: the connection ends.
+    /// Returns the body of a request; `length` is within the limit. Bytes after the body are ignored, because the
+    /// connection is then closed.
     pub fn body(&mut self, length: usize) -> Result<Vec<u8>, Answer> {
         let deadline = Instant::now() + self.limits.time;
         let (mut body, mut chunk) = (std::mem::take(&mut self.rest), [0; CHUNK]);
@@ -117,7 +120,7 @@ impl<'a> Wire<'a> {
         Ok(())
     }
 
-    /// Ends the connection: nothing more is sent, and what still comes is dropped for a while.
+    /// Ends the connection: sends nothing more, and reads and drops the remaining input for a short time.
     pub fn finish(self) {
         let deadline = Instant::now() + LINGER;
         let mut chunk = [0; CHUNK];
