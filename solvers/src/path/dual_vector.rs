@@ -11,14 +11,16 @@ use crate::rate::tree::search;
 use crate::settings::SETTINGS;
 use voussoir_core::path::{FarkasVector, ModeTree, NoneContinues};
 
-/// Facets of the active set up to which the search is tried: its program is dense.
+/// Greatest number of facets of the active set for which the search is tried: its program is dense.
 pub(super) const MOST_FACETS: usize = 160;
 
-/// All unknowns for gap rates of the active points, which stick but for these, and a rate of the load.
+/// Function that returns all unknowns for gap rates of the active points and a rate of the load; the points stick apart
+/// from these gap rates.
 pub(super) type Response<'a> = &'a dyn Fn(&[[f64; 2]], f64) -> Option<Vec<f64>>;
 
-/// The multipliers that complete `alpha`, the gap rates of the active points, and `work` by the response `x` to them, in scaled
-/// units. The active points stick in it, so that the structure is symmetric: y = −q̇, β = −ṙ.
+/// Returns the multipliers that complete `alpha`, the gap rates of the active points, and `work`. They come from the
+/// response `x` to both, in scaled units. The active points stick in it, so that the structure is symmetric: y = −q̇, β
+/// = −ṙ.
 fn dual_vector(system: &System, x: &[f64], alpha: &[[f64; 2]], work: f64) -> FarkasVector {
     let (forces, motions) = x.split_at(2 * system.contacts);
     let unit =
@@ -33,7 +35,8 @@ fn dual_vector(system: &System, x: &[f64], alpha: &[[f64; 2]], work: f64) -> Far
     }
 }
 
-/// The tree that proves that no rate of a problem over the contact points `contacts` raises the load. `None` if the search does not find the proof within its budget.
+/// Returns the tree that proves that no rate of a problem over the contact points `contacts` raises the load. `None` if
+/// the search does not find the proof within its budget.
 pub(super) fn none_rises(
     (problem, system): (&RateProblem, &System),
     contacts: &[usize],
@@ -45,7 +48,7 @@ pub(super) fn none_rises(
     certified(&proof, (&problem.points, system), contacts, response)
 }
 
-/// The tree of a proof over some points, which are the contact points `contacts`, that no rate raises the load.
+/// Returns the tree of a proof, over the contact points `contacts`, that no rate raises the load.
 pub(super) fn certified(
     proof: &NoRate,
     (points, system): (&[ActivePoint], &System),
@@ -58,8 +61,8 @@ pub(super) fn certified(
     proof.certified(points, contacts, &vector).filter(|_| proof.factor > 0.0)
 }
 
-/// The trees that prove that no rate of a problem over the contact points `contacts` continues the path. `unit`: λ for a unit of
-/// the load in the problem. `None` if the search does not find them within its budget.
+/// Returns the trees that prove that no rate of a problem over the contact points `contacts` continues the path.
+/// `unit`: λ for a unit of the load in the problem. `None` if the search does not find them within its budget.
 pub(super) fn none_continues(
     (problem, system): (&RateProblem, &System),
     (contacts, unit): (&[usize], f64),

@@ -1,10 +1,10 @@
-//! Energy along a path: the work of loads and of settled supports by the trapezoidal rule, exact where everything
-//! changes linearly during a step, and what dissipates.
+//! Energy along a path: the work of loads and of settled supports by the trapezoidal rule, which is exact if everything
+//! is linear during a step, and the dissipated energy.
 
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::path::{Loading, PathProblem, PathState};
 
-/// Energies so far \[J\].
+/// Energies up to the present state \[J\].
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct EnergyBalance {
     pub dissipated: f64,
@@ -15,15 +15,15 @@ pub(super) struct EnergyBalance {
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct StageBalance {
     stage: usize,
-    /// Σ|work| of loads and supports over its steps, and what it has dissipated \[J\].
+    /// Σ|work| of loads and supports over its steps, and its dissipated energy \[J\].
     work: f64,
     dissipated: f64,
-    /// What work leaves of the energy stored and dissipated \[J\].
+    /// Work minus stored and dissipated energy \[J\].
     left: f64,
 }
 
 impl StageBalance {
-    /// After a step between two states, and what the step leaves over itself.
+    /// Returns the balance after a step between two states, and the energy error of that step.
     pub fn after(&self, problem: &PathProblem, finite: bool, from: &PathState, to: &PathState) -> (Self, f64) {
         let stage = problem.load_steps[to.load_step].stage;
         let before = if stage == self.stage { *self } else { StageBalance { stage, ..Self::default() } };
@@ -38,18 +38,18 @@ impl StageBalance {
         (after, left)
     }
 
-    /// What is left over \[J\].
+    /// Returns the energy error \[J\].
     pub fn left(&self) -> f64 {
         self.left
     }
 
-    /// What that is compared with, for what is stored now \[J\].
+    /// Returns the scale of the energy error if the stored energy is `stored` \[J\].
     pub fn scale(&self, stored: f64) -> f64 {
         self.work + stored.abs() + self.dissipated
     }
 }
 
-/// What the work of a step needs of the state at one of its ends.
+/// The data of a state for the work of a step that starts or ends at it.
 #[derive(Debug, Clone)]
 pub(super) struct WorkState {
     /// Factor of each loading.
@@ -58,7 +58,7 @@ pub(super) struct WorkState {
     pub displacements: Vec<Vec<Vec2>>,
     /// Motion of every body about its pole.
     pub motion: Vec<[f64; 3]>,
-    /// What loads and contact forces leave on every body about its pole \[N, N m\]; read where it is held.
+    /// Unbalanced loads and contact forces of every body about its pole \[N, N m\]: the reaction of held bodies.
     pub unbalanced: Vec<[f64; 3]>,
 }
 

@@ -1,14 +1,14 @@
-//! Events of a contact point: what it does, and what happens between two such states.
+//! Events of a contact point: its status, and the event between two statuses.
 
 use voussoir_core::law::{Facet, FacetMode};
 use voussoir_core::path::ContactEvent;
 
-/// What a contact point does.
+/// The status of a contact point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum ContactStatus {
     Sticks,
     Open,
-    /// With t on the plus body, or against it.
+    /// It slides with t on the plus body, or against it.
     Slides {
         forward: bool,
     },
@@ -17,7 +17,7 @@ pub(super) enum ContactStatus {
 }
 
 impl ContactStatus {
-    /// Of a point at which a facet yields.
+    /// Returns the status of a point at which a facet yields.
     pub fn of_facet(facet: &Facet) -> Self {
         match facet.mode {
             FacetMode::Opening => ContactStatus::Open,
@@ -27,7 +27,7 @@ impl ContactStatus {
     }
 }
 
-/// What happens where a point goes over from one status to another.
+/// Returns the event if a point changes from one status to another.
 pub(super) fn transition(before: ContactStatus, after: ContactStatus) -> Option<ContactEvent> {
     use ContactStatus::{Crushes, Open, Slides, Softens, Sticks};
     Some(match (before, after) {

@@ -1,4 +1,4 @@
-//! Path solvers: elastic blocks under growing loads until they collapse, and post-peak; and what both share.
+//! Path solvers: elastic blocks under growing loads up to collapse and post-peak, and their shared parts.
 
 pub mod continuation;
 mod dual_vector;

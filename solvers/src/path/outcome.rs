@@ -1,5 +1,5 @@
-//! How a path ends: a status with the factor, mechanism or ray that it claims. The answer is checked again before
-//! it is given away ([`self_check`](super::self_check)).
+//! The end of a path: a status with its claimed factor, mechanism or ray. The answer is checked again before it is
+//! returned ([`self_check`](super::self_check)).
 
 use super::self_check::confirmed;
 use voussoir_core::limit::{Counters, Status};
@@ -7,28 +7,28 @@ use voussoir_core::path::{
     Branching, LimitPointEnd, PathAnswer, PathEvent, PathProblem, PathState, ProvenPeak, StageStability, Witness,
 };
 
-/// A status with what it claims.
+/// A status with its claims.
 #[derive(Debug, Clone)]
 pub(super) struct Outcome {
     pub status: Status,
     pub factor: Option<f64>,
     /// Velocities of a mechanism with p·q̇ = 1.
     pub motion: Option<Vec<[f64; 3]>>,
-    /// Rates of contact forces that carry any load.
+    /// Rates of contact forces that carry any amount of the load.
     pub ray: Option<Vec<[f64; 2]>>,
-    /// Whether the mechanism is the only one, where that was examined.
+    /// True if the mechanism is the only one; `None` if that was not examined.
     pub unique: Option<bool>,
     /// The reason why the path ends at a limit point, if the question does not give it.
     pub limit_point_end: Option<LimitPointEnd>,
 }
 
-/// What a path leaves behind, whatever its end.
+/// The record of a path, whatever its end.
 #[derive(Debug, Clone, Default)]
 pub(super) struct PathRecord {
     pub load_step: usize,
-    /// The state that the status speaks of.
+    /// The state of the status.
     pub state: PathState,
-    /// The last one, where the path went on beyond it.
+    /// The last state, if the path continued beyond it.
     pub last: Option<PathState>,
     pub events: Vec<PathEvent>,
     pub limit_points: Vec<ProvenPeak>,
@@ -40,27 +40,27 @@ pub(super) struct PathRecord {
 }
 
 impl Outcome {
-    /// A status that claims a factor, or none.
+    /// Creates an outcome with a status and a factor, if it claims one.
     pub fn at(status: Status, factor: Option<f64>) -> Self {
         Outcome { status, factor, motion: None, ray: None, unique: None, limit_point_end: None }
     }
 
-    /// With a mechanism, where there is one.
+    /// Adds a mechanism, if there is one.
     pub fn moving(self, motion: Option<Vec<[f64; 3]>>) -> Self {
         Outcome { motion, ..self }
     }
 
-    /// With a ray, where there is one.
+    /// Adds a ray, if there is one.
     pub fn carried_by(self, ray: Option<Vec<[f64; 2]>>) -> Self {
         Outcome { ray, ..self }
     }
 
-    /// The answer, its claim checked again: a stall where it is not confirmed.
+    /// Returns the answer after its claim is checked again; a stall if it is not confirmed.
     pub fn answer(self, problem: &PathProblem, finite: bool, record: PathRecord) -> PathAnswer {
         confirmed(problem, finite, self.unconfirmed(record))
     }
 
-    /// The answer as it is: for paths whose end cannot be checked without what came before.
+    /// Returns the unchecked answer, for paths whose end cannot be checked without the earlier path.
     pub fn unconfirmed(self, record: PathRecord) -> PathAnswer {
         let Outcome { status, factor, motion, ray, unique, limit_point_end } = self;
         let PathRecord {
@@ -96,7 +96,7 @@ impl Outcome {
     }
 }
 
-/// An answer that says only why there is none.
+/// Returns an answer with only the reason why there is no result.
 pub(super) fn stalled(problem: &PathProblem, why: String) -> PathAnswer {
     let record = PathRecord { notes: vec![why], ..PathRecord::default() };
     Outcome::at(Status::Stalled, None).answer(problem, false, record)

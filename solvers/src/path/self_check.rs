@@ -1,12 +1,12 @@
-//! What a path claims at its end, checked again: a claim that is not confirmed becomes a stall.
+//! Checks the claim at the end of a path again: a claim that is not confirmed becomes a stall.
 //!
 //! - every claim: the field of its state is in equilibrium, within its strengths and complementary;
-//! - collapse at a constant load: a mechanism with p·q̇ = 1 that obeys the laws' flow at that field and changes no force;
-//! - no equilibrium: the same under the dead load, before all of it is carried. A limit point of the
-//!   dead load is no proof: with friction that is not associated another path may carry it;
+//! - collapse at a constant load: a mechanism with p·q̇ = 1 that satisfies the laws' flow at that field and changes no
+//!   force;
+//! - no equilibrium: the same under the dead load, before all of it is carried. A limit point of the dead load is no
+//!   proof: with non-associated friction another path may carry it;
 //! - unbounded: rates of forces that balance the load and stay in the recession cone of the facets;
-//! - limit point: no modes of the active points have a rate with growing λ
-//!   (`rising`).
+//! - limit point: no modes of the active points have a rate with growing λ (`rising`).
 
 use crate::settings::SETTINGS;
 use voussoir_core::certificate::{
@@ -15,7 +15,7 @@ use voussoir_core::certificate::{
 use voussoir_core::limit::Status;
 use voussoir_core::path::{PathAnswer, PathObserver, PathProblem};
 
-/// The answer, or a stall with the reason where its claim is not confirmed.
+/// Returns the answer, or a stall with the reason if its claim is not confirmed.
 pub(super) fn confirmed(problem: &PathProblem, finite: bool, mut answer: PathAnswer) -> PathAnswer {
     if answer.status == Status::Stalled {
         return answer;
@@ -40,7 +40,7 @@ fn confirm(problem: &PathProblem, finite: bool, answer: &PathAnswer) -> Result<(
     }
     let mut checker = PathChecker::new(finite);
     checker.state(problem, &answer.state);
-    // Gaps that are rounding of what the forces deform have no size to compare with.
+    // // Gaps that are rounding errors of the deformation by the forces have no scale for a comparison.
     let force = answer.state.force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
     let soft = problem.contacts.iter().flat_map(|c| c.compliance).fold(0.0, f64::max);
     let blocks = problem.bodies.iter().filter_map(|b| b.flexibility.as_ref()).map(|f| f.amax()).fold(soft, f64::max);
@@ -53,7 +53,7 @@ fn confirm(problem: &PathProblem, finite: bool, answer: &PathAnswer) -> Result<(
         if still && !matches!(name, "path_equilibrium" | "path_strength" | "path_inner_equilibrium") {
             continue;
         }
-        // Where everything is open the forces are rounding of the loads.
+        // // If all points are open, the forces are rounding errors of the loads.
         if name == "path_strength" && force <= 1e-12 * load {
             continue;
         }
@@ -70,13 +70,13 @@ fn confirm(problem: &PathProblem, finite: bool, answer: &PathAnswer) -> Result<(
     }
 }
 
-/// An error where a residual is above its bound for claims, or NaN where it has one.
+/// Returns an error if a residual with a bound for claims is above it or NaN.
 fn small(name: &str, value: f64) -> Result<(), String> {
     let bound = tolerance(name).claim;
     if value <= bound || bound.is_infinite() { Ok(()) } else { Err(format!("{name} is {value:.2e}")) }
 }
 
-/// Whether the motion is one that goes on for ever under the present forces.
+/// Returns an error unless the motion can continue without limit under the present forces.
 fn mechanism(problem: &PathProblem, answer: &PathAnswer) -> Result<(), String> {
     let Some(motion) = &answer.motion else { return Err("there is no mechanism".into()) };
     if problem.bodies.iter().zip(motion).any(|(body, q)| body.held && *q != [0.0; 3]) {
@@ -91,7 +91,7 @@ fn mechanism(problem: &PathProblem, answer: &PathAnswer) -> Result<(), String> {
     Ok(())
 }
 
-/// Whether rates of forces carry any amount of the load.
+/// Returns an error unless rates of forces carry any amount of the load.
 fn ray(problem: &PathProblem, answer: &PathAnswer) -> Result<(), String> {
     let Some(ray) = &answer.ray else { return Err("there is no ray".into()) };
     small("path_ray", ray_residual(problem, &problem.load_steps[answer.load_step].loading, ray))
@@ -109,8 +109,8 @@ mod tests {
         Unobserved,
     };
 
-    /// A rigid block of 1 kg on two compliant points of the ground, μ = 0.5, under its weight of 10 N
-    /// and then a force λ f at its pole, half as high as the points are apart.
+    /// A rigid block of 1 kg on two compliant points of the ground, μ = 0.5, under its weight of 10 N and then a force
+    /// λ f at its pole; the height of the pole is half the distance of the points.
     fn pushed(force: Vec2) -> PathProblem {
         let body = |held, pole, mass| PathBody {
             members: vec![0],
@@ -166,7 +166,7 @@ mod tests {
         NewtonPath {}.trace(problem, &settings, &mut Unobserved)
     }
 
-    /// The answer with something changed is a stall that says what is wrong, and claims nothing.
+    /// Changes an answer and checks that the result is a stall that names the error and claims nothing.
     fn refused(problem: &PathProblem, honest: &PathAnswer, says: &str, change: impl Fn(&mut PathAnswer)) {
         let mut tampered = honest.clone();
         change(&mut tampered);
@@ -197,7 +197,7 @@ mod tests {
         refused(&problem, &honest, "path_power", |a| {
             a.motion.as_mut().expect("a motion").iter_mut().flatten().for_each(|v| *v *= 1.01);
         });
-        // Lifts off points that are pressed.
+        // // Lifts points that are in contact.
         refused(&problem, &honest, "path_flow", |a| a.motion.as_mut().expect("a motion")[1][1] += 0.1);
     }
 
@@ -208,7 +208,7 @@ mod tests {
         assert_eq!(honest.status, Status::Unbounded, "{:?}", honest.notes);
         assert_eq!(confirmed(&problem, false, honest.clone()).status, Status::Unbounded);
         refused(&problem, &honest, "no ray", |a| a.ray = None);
-        // Does not carry the load; carries it beyond friction.
+        // // Does not carry the load; carries it by more than friction allows.
         refused(&problem, &honest, "path_ray", |a| a.ray.as_mut().expect("a ray")[0][0] *= 1.01);
         refused(&problem, &honest, "path_ray", |a| {
             let ray = a.ray.as_mut().expect("a ray");
@@ -216,7 +216,7 @@ mod tests {
         });
     }
 
-    /// A collapse dressed up as a failure of the dead load, which is carried whole.
+    /// A collapse presented as a failure of the dead load, which is fully carried.
     #[test]
     fn another_status_is_refused() {
         let problem = pushed(Vec2::new(1.0, 0.0));

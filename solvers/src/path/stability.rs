@@ -1,26 +1,26 @@
-//! Stability of a state of equilibrium: its second-order work, by the flexibility of its bodies.
+//! Stability of a state of equilibrium: its second-order work, from the flexibility of its bodies.
 //!
-//! With the modes of all contact points held, rates obey K q̇ = λ̇ p + f for any small wrenches f on the bodies,
-//! contact forces condensed out. What a solver has factorised gives the flexibility S = K⁻¹ column by column. By
-//! Sylvester's law S has as many negative eigenvalues as K, and ½(S + Sᵀ) as many as ½(K + Kᵀ), since
-//! ½(S + Sᵀ) = S ½(K + Kᵀ) Sᵀ; motions that the modes exclude are eigenvectors of S to nothing, and do not count.
+//! With the modes of all contact points held, rates satisfy K q̇ = λ̇ p + f for any small wrenches f on the bodies,
+//! contact forces condensed out. The factorisation of a solver gives the flexibility S = K⁻¹ column by column. By
+//! Sylvester's law S has as many negative eigenvalues as K, and ½(S + Sᵀ) as many as ½(K + Kᵀ), since ½(S + Sᵀ) = S ½(K
+//! + Kᵀ) Sᵀ. Motions that the modes exclude are eigenvectors of S with eigenvalue zero, and do not count.
 //!
 //! ```text
 //! loads held           second-order work q̇ᵀ K q̇ > 0 for all q̇: no negative eigenvalue
-//! load point held      for all q̇ with p·q̇ = 0: one fewer where pᵀ S p < 0, its displacement falling with the load
+//! load point held      for all q̇ with p·q̇ = 0: one fewer if pᵀ S p < 0, its displacement falling with the load
 //! ```
 //!
-//! Where slip is not associated K is not symmetric: positive second-order work is then sufficient for stability, not
-//! necessary (Hill 1958, J. Mech. Phys. Solids 6, 236-249); limit points are where a real eigenvalue of K itself
-//! changes sign.
+//! If slip is not associated, K is not symmetric: positive second-order work is then sufficient for stability, not
+//! necessary (Hill 1958, J. Mech. Phys. Solids 6, 236-249); at limit points a real eigenvalue of K itself changes its
+//! sign.
 
 use crate::optimise::lcg::Lcg;
 use crate::settings::SETTINGS;
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::path::ProvenPeak;
 
-/// Motions up to which all columns of the flexibility are computed; of more only its greatest eigenvalues are, by
-/// subspace iteration.
+/// Greatest number of motions for which all columns of the flexibility are computed; for more, subspace iteration
+/// computes only its greatest eigenvalues.
 const ALL: usize = 150;
 /// Size of that subspace, and its iterations.
 const SUBSPACE: usize = 10;
@@ -40,22 +40,24 @@ pub(super) fn regains_limit_point(limit_points: &[ProvenPeak], load_step: usize,
 /// The second-order work of a state with loads and settlements held.
 #[derive(Debug, Clone)]
 pub(super) struct SecondOrderWork {
-    /// Directions of negative second-order work.
+    /// Number of directions of negative second-order work.
     pub negative: usize,
-    /// Negative real eigenvalues of K: with the sense of the factor, it tells limit points from other branches.
+    /// Number of negative real eigenvalues of K. With the sense of the factor, it distinguishes limit points from other
+    /// branches.
     pub turned: usize,
-    /// Whether K is symmetric.
+    /// True if K is symmetric.
     pub symmetric: bool,
-    /// The least second-order work of a motion of unit size in the unknowns' units.
+    /// The least second-order work of a motion of unit size in the units of the unknowns.
     pub curvature: f64,
-    /// Magnitude of the eigenvalue nearest to nothing.
+    /// Magnitude of the eigenvalue nearest to zero.
     pub nearest: f64,
-    /// ½(S + Sᵀ), over the columns of a basis where there is one.
+    /// ½(S + Sᵀ), over the columns of a basis if there is one.
     half: DMatrix<f64>,
     basis: Option<DMatrix<f64>>,
 }
 
-/// Second-order work of a state with `motions` unknown motions, from what wrenches on them, column by column, move.
+/// Returns the second-order work of a state with `motions` unknown motions, from the motions caused by wrenches, column
+/// by column.
 pub(super) fn work_by_responses(
     motions: usize,
     respond: impl Fn(&DMatrix<f64>) -> Option<DMatrix<f64>>,
@@ -72,8 +74,8 @@ pub(super) fn work_by_responses(
     Some(SecondOrderWork { basis: Some(basis), ..found })
 }
 
-/// Whether what is decided with the weakly active points free and with them held decides of the state: positive with
-/// all of them free suffices, negative with all of them held is instability.
+/// Decides the stability of a state from the results with all weakly active points free and with all of them held:
+/// positive with all free is sufficient, negative with all held is instability.
 pub(super) fn over_weak_points(free: Option<bool>, held: Option<bool>) -> Option<bool> {
     match (free, held) {
         (Some(true), _) => Some(true),
@@ -83,8 +85,8 @@ pub(super) fn over_weak_points(free: Option<bool>, held: Option<bool>) -> Option
 }
 
 impl SecondOrderWork {
-    /// From the flexibility S; eigenvalues of S below `softest` are those of motions that the modes exclude. `None`
-    /// where it has none, or its eigenvalues were not found.
+    /// Computes the work from the flexibility S; eigenvalues of S below `softest` belong to motions that the modes
+    /// exclude. `None` if all are excluded or the eigenvalues were not found.
     pub fn of(flexibility: &DMatrix<f64>, softest: f64) -> Option<Self> {
         if flexibility.is_empty() || flexibility.iter().any(|s| !s.is_finite()) {
             return None;
@@ -96,7 +98,7 @@ impl SecondOrderWork {
         let eigenvalues = half.symmetric_eigenvalues();
         let nothing = softest.max(SETTINGS.admissible * eigenvalues.amax());
         let negative = eigenvalues.iter().filter(|s| **s < -nothing).count();
-        // Real parts of eigenvalues are no less than the least one of the symmetric part (Bendixson 1902).
+        // // The real parts of eigenvalues are at least the least eigenvalue of the symmetric part (Bendixson 1902).
         let turned = if symmetric || negative == 0 {
             negative
         } else {
@@ -104,14 +106,14 @@ impl SecondOrderWork {
             let values = schur.complex_eigenvalues();
             values.iter().filter(|s| s.re < -nothing && s.im.abs() <= 1e-9 * s.re.abs()).count()
         };
-        // 1/s is least where s is negative and nearest to nothing, else where it is greatest.
+        // // 1/s is least for the negative s nearest to zero; without a negative s, for the greatest s.
         let relevant = eigenvalues.iter().filter(|s| s.abs() > nothing);
         let curvature = relevant.map(|s| 1.0 / s).min_by(f64::total_cmp)?;
         let nearest = 1.0 / eigenvalues.amax();
         Some(SecondOrderWork { negative, turned, symmetric, curvature, nearest, half, basis: None })
     }
 
-    /// The motion of the least second-order work, of unit size in the unknowns' units.
+    /// Returns the motion of least second-order work, of unit size in the units of the unknowns.
     pub fn critical_mode(&self) -> Vec<f64> {
         let eigen = self.half.clone().symmetric_eigen();
         let off = |i: &usize| (1.0 / eigen.eigenvalues[*i] - self.curvature).abs();
@@ -121,7 +123,7 @@ impl SecondOrderWork {
         mode.as_slice().to_vec()
     }
 
-    /// Whether second-order work is positive with the load point held, whose displacement grows by `yields` a unit of
+    /// Returns true if second-order work is positive with the load point held. `yields`: its displacement per unit of
     /// the load with the modes held.
     pub fn stable_under_control(&self, yields: f64) -> bool {
         self.negative == usize::from(yields < 0.0)
@@ -132,7 +134,7 @@ impl SecondOrderWork {
 mod tests {
     use super::*;
 
-    /// K of two springs of stiffnesses −1 and 2 turned by 30°, and of nothing that a third motion can do.
+    /// K of two springs of stiffnesses −1 and 2 turned by 30°; a third motion is excluded.
     #[test]
     fn a_negative_spring_is_counted_and_an_excluded_motion_is_not() {
         let (c, s) = (0.75f64.sqrt(), 0.5);
@@ -142,11 +144,12 @@ mod tests {
         let found = SecondOrderWork::of(&flexibility, 1e-12).expect("eigenvalues");
         assert_eq!((found.negative, found.turned, found.symmetric), (1, 1, true));
         assert!((found.curvature + 1.0).abs() < 1e-12 && (found.critical_mode()[0].abs() - c).abs() < 1e-12);
-        // Held at a point whose load softens it, the structure is stable; at one whose load does not, unstable.
+        // // With a held load point the structure is stable if the load softens it at that point, otherwise unstable.
         assert!(found.stable_under_control(-1.0) && !found.stable_under_control(1.0));
     }
 
-    /// A follower-like coupling: eigenvalues of K are ±i, second-order work is nothing, no real eigenvalue changes sign.
+    /// Coupling as by a follower load: eigenvalues of K are ±i, second-order work is zero, no real eigenvalue changes
+    /// its sign.
     #[test]
     fn eigenvalues_that_are_not_real_turn_no_path() {
         let flexibility = DMatrix::from_row_slice(2, 2, &[1.0, 5.0, -5.0, 1.0]);

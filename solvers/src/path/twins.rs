@@ -1,12 +1,12 @@
 //! The choice among twins: continuations with the same energy or dissipation.
 //!
-//! Numbers of blocks and rounding must not decide. The loads of the present and of later stages do more work on one twin
-//! than on another, or the blocks lean to the right on it.
+//! The choice must not depend on the numbers of blocks or on rounding. The rule prefers the twin on which the loads of
+//! the present and of later stages do more work, or on which the blocks lean to the right.
 
 use crate::settings::SETTINGS;
 use voussoir_core::path::PathProblem;
 
-/// The number of the motion that is followed. `load_step`: the present one.
+/// Returns the index of the motion that is followed. `load_step`: the present one.
 pub(super) fn favoured(problem: &PathProblem, load_step: usize, motions: &[&[[f64; 3]]]) -> usize {
     let mut left: Vec<usize> = (0..motions.len()).collect();
     let loads = problem.load_steps[load_step..].iter().map(|later| problem.wrenches(&later.loading));

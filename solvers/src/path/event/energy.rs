@@ -1,8 +1,8 @@
-//! What a record needs of a state: the deformation of the blocks, which gives gaps and the energy stored in blocks and
-//! joints, displacements of loaded points, and reactions of held blocks.
+//! Data of a state for its record: the deformation of the blocks (gaps, energy stored in blocks and joints),
+//! displacements of loaded points, and reactions of held blocks.
 //!
-//! Elastic energy of a block in equilibrium: ½ Σ f·u over its contact and load points (Clapeyron);
-//! the work of gravity on the elastic displacements vanishes, since their mean does.
+//! Elastic energy of a block in equilibrium: ½ Σ f·u over its contact and load points (Clapeyron); the work of gravity
+//! on the elastic displacements vanishes, since their mean does.
 
 use crate::linear::dense::add_product;
 use crate::linear::inner;
@@ -10,16 +10,16 @@ use crate::path::energy::WorkState;
 use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::path::{Attachment, Contact, PathProblem, PathState};
 
-/// What forces do to the blocks of a state.
+/// The deformation of the blocks of a state by their forces.
 pub struct Deformation {
-    /// Displacements (x, y) of every body's points beside its rigid motion \[m\]; none of a rigid body.
+    /// Displacements (x, y) of every body's points relative to its rigid motion \[m\]; empty for a rigid body.
     points: Vec<Vec<f64>>,
     /// Elastic energy of blocks and joints \[J\].
     pub stored: f64,
 }
 
 impl Deformation {
-    /// By the contact forces and loads of a state.
+    /// Computes the deformation from the contact forces and loads of a state.
     pub fn new(problem: &PathProblem, state: &PathState) -> Self {
         let of_joint = |(contact, f): (&Contact, &[f64; 2])| {
             0.5 * (contact.compliance[0] * f[0] * f[0] + contact.compliance[1] * f[1] * f[1])
@@ -39,7 +39,7 @@ impl Deformation {
         Deformation { points: points.collect(), stored }
     }
 
-    /// Displacement of a point of a body beside its rigid motion.
+    /// Returns the displacement of a point of a body relative to its rigid motion.
     fn at(&self, body: usize, slot: Option<usize>) -> Vec2 {
         let Some(own) = slot.and_then(|slot| self.points[body].get(2 * slot..2 * slot + 2)) else {
             return Vec2::zeros();
@@ -47,7 +47,7 @@ impl Deformation {
         Vec2::new(own[0], own[1])
     }
 
-    /// Gaps of all contact points \[m\].
+    /// Returns the gaps of all contact points \[m\].
     pub fn gaps(&self, problem: &PathProblem, state: &PathState) -> Vec<[f64; 2]> {
         let place = |side: Attachment, point: Vec2| {
             problem.rigid_displacement(&state.motion, side.body, point, false) + self.at(side.body, side.slot)
@@ -61,7 +61,7 @@ impl Deformation {
     }
 }
 
-/// What the work of a step needs of a state with its deformation.
+/// Returns the data of a state, with its deformation, for the work of a step.
 pub fn work_state(problem: &PathProblem, state: &PathState, deformation: &Deformation) -> WorkState {
     let place = |&(body, slot, point, _): &(usize, Option<usize>, Vec2, Vec2)| {
         problem.rigid_displacement(&state.motion, body, point, false) + deformation.at(body, slot)
@@ -73,7 +73,7 @@ pub fn work_state(problem: &PathProblem, state: &PathState, deformation: &Deform
     WorkState { factors, displacements, motion: state.motion.clone(), unbalanced }
 }
 
-/// What loads and contact forces leave on every body about its pole.
+/// Returns the unbalanced loads and contact forces of every body about its pole.
 fn unbalanced(problem: &PathProblem, state: &PathState, factors: &[f64]) -> Vec<[f64; 3]> {
     let mut all = vec![[0.0; 3]; problem.bodies.len()];
     for (contact, f) in problem.contacts.iter().zip(&state.force) {

@@ -1,7 +1,7 @@
-//! The modes with which a structure begins to move from nothing.
+//! The modes at the first motion of an unloaded structure.
 //!
-//! Without forces nothing has turned yet, so that the rates with small and with finite displacements are the same: the rate
-//! problem of the first piece, with all contact points in its active set.
+//! Without forces there is no rotation yet, so that the rates with small and with finite displacements are the same:
+//! the rate problem of the first piece, with all contact points in its active set.
 
 use super::direction::{Next, next_direction};
 use super::trace::Trace;
@@ -9,8 +9,8 @@ use crate::contact::mode::ContactMode;
 use crate::path::system::Load;
 use voussoir_core::path::{PathProblem, PathSettings, Unobserved};
 
-/// Modes of all contact points just after a load step has begun at a state without forces, with its factor going in the
-/// sense `sense` (1 or −1).
+/// Returns the modes of all contact points just after the start of a load step at a state without forces; the factor
+/// changes in the sense `sense` (1 or −1).
 ///
 /// # Errors
 /// The reason why no such modes are found.

@@ -1,4 +1,4 @@
-//! Following the path: from load step to load step and from event to event, and how it ends.
+//! Follows the path from load step to load step and from event to event, up to its end.
 
 use super::direction::{Continued, Next, next_direction};
 use super::joint_chain::JointChain;
@@ -19,31 +19,32 @@ use voussoir_core::path::{
     LimitPointEnd, LoadStepEnd, PathAnswer, PathObserver, PathProblem, PathSettings, PathState, ProvenPeak, Witness,
 };
 
-/// The first events of a chain are all recorded, this many; of later ones the same number each time the number of events grows e-fold.
+/// Number of first events of a chain that are all recorded; later the same number is recorded each time the number of
+/// events grows e-fold.
 const RECORDED: u64 = 512;
 
-/// How a path ended.
+/// The end of a path.
 enum End {
     /// The loads are carried.
     Stands,
-    /// At a limit point.
+    /// A limit point.
     LimitPoint,
-    /// At a limit point that no rate leaves, rising or falling.
+    /// A limit point from which no rate, rising or falling, continues.
     NoRate,
-    /// Not followed further, and why.
+    /// Not followed further, with the reason.
     Stalled(String),
-    /// A direction without end under a load.
+    /// A direction without an end under a load.
     Ray(Box<Ray>),
 }
 
-/// A direction without end under a load, and the proof that no rate raises the load, if there is one.
+/// A direction without an end under a load, and the proof that no rate raises the load, if there is one.
 struct Ray {
     direction: Direction,
     load: Load,
     proof: Option<NoRate>,
 }
 
-/// One load step while it is followed.
+/// The present load step.
 struct Run {
     load: Load,
     /// Sense of λ: 1 or −1.
@@ -55,7 +56,7 @@ struct Run {
     unrecorded: Unrecorded,
 }
 
-/// What happened since the last record.
+/// Changes since the last record.
 #[derive(Default)]
 struct Unrecorded {
     events: u64,
@@ -67,7 +68,7 @@ struct Unrecorded {
 }
 
 impl Unrecorded {
-    /// A step along a direction from a factor to the present one.
+    /// Adds a step along a direction from a factor to the present one.
     fn add(&mut self, trace: &Trace, direction: &Direction, load: &Load, (step, before, sense): (f64, f64, f64)) {
         if self.events == 0 {
             *self = Unrecorded { factor: before, ..Unrecorded::default() };
@@ -76,7 +77,8 @@ impl Unrecorded {
         let dot = |own: &mut dyn Iterator<Item = &f64>, rates: &[f64]| -> f64 {
             own.zip(rates).map(|(own, rate)| own * rate).sum()
         };
-        // By reciprocity of the blocks: what the load opens is what contact forces move at the load.
+        // // By reciprocity of the blocks: the work of contact forces on the gaps of the load gives the displacement at
+        // the load.
         let rate = dot(&mut load.wrench.iter().flatten(), &direction.x[forces..])
             + dot(&mut load.gap.iter().flatten(), &direction.x[..forces]);
         let moved = sense * rate * step;
@@ -96,7 +98,7 @@ impl Unrecorded {
     }
 }
 
-/// A path with what only its end needs.
+/// A path with the data that only its end needs.
 struct Follower<'a> {
     trace: Trace<'a>,
     limits: LimitPoints,
@@ -107,18 +109,18 @@ struct Follower<'a> {
 /// The limit points of a load step.
 #[derive(Default)]
 struct LimitPoints {
-    /// The greatest.
+    /// The greatest limit point.
     greatest: Option<PathState>,
-    /// Displacement of the load at the last \[m\].
+    /// Displacement of the load at the last limit point \[m\].
     last: f64,
-    /// Whether λ has not grown since.
+    /// True if λ has not grown since.
     falling: bool,
-    /// All, in order.
+    /// All limit points, in order.
     proven: Vec<ProvenPeak>,
 }
 
 impl LimitPoints {
-    /// Notes one.
+    /// Adds a limit point.
     fn add(&mut self, state: PathState, sense: f64) {
         (self.last, self.falling) = (state.displacement, true);
         self.proven.push(proven(&state));
@@ -127,14 +129,14 @@ impl LimitPoints {
         }
     }
 
-    /// Takes note of how far λ has fallen after the last.
+    /// Records the decrease of λ after the last limit point.
     fn falls_to(&mut self, factor: f64, sense: f64) {
         if let Some(last) = self.proven.last_mut().filter(|last| (last.lowest - factor) * sense > 0.0) {
             last.lowest = factor;
         }
     }
 
-    /// Whether a factor lies above all of them.
+    /// Returns true if all limit points are below a factor.
     fn below(&self, factor: f64, sense: f64) -> bool {
         let above =
             |greatest: &PathState| (factor - greatest.factor) * sense > SETTINGS.inequality() * greatest.factor.abs();
@@ -142,7 +144,7 @@ impl LimitPoints {
     }
 }
 
-/// A limit point at a state.
+/// Returns the limit point at a state.
 fn proven(state: &PathState) -> ProvenPeak {
     let PathState { load_step, factor, displacement, .. } = *state;
     ProvenPeak { load_step, factor, displacement, lowest: factor }
@@ -208,7 +210,7 @@ fn begin(follower: &mut Follower, load_step: usize) -> Run {
     Run { load, sense, start: present.start, target, events: 0, most_events, unrecorded }
 }
 
-/// Goes on to the next event; whether the load step goes on. An error is the end.
+/// Continues to the next event. Returns true if the load step continues; an error is the end of the path.
 fn step(follower: &mut Follower, run: &mut Run) -> Result<bool, End> {
     if (run.target - follower.trace.state.factor) * run.sense <= 0.0 {
         return Ok(false);
@@ -246,7 +248,7 @@ fn step(follower: &mut Follower, run: &mut Run) -> Result<bool, End> {
     trace.state.stable_under_load = regains_limit_point(&follower.limits.proven, trace.state.load_step, factors)
         .then(|| stage_stability(trace, &run.load).under_load)
         .flatten();
-    // A chain has many events: few of them are recorded.
+    // // A chain has many events; only some of them are recorded.
     let all = !by_chain || whole || follower.limits.greatest.is_some();
     if (all || run.unrecorded.events * RECORDED >= trace.log.counts.rate_problems) && !run.unrecorded.record(trace) {
         return Err(End::Stalled("stopped by its observer".into()));
@@ -259,7 +261,7 @@ fn step(follower: &mut Follower, run: &mut Run) -> Result<bool, End> {
     stops(follower, run)
 }
 
-/// Whether a load step goes on: it ends as far beyond its last limit point as was asked for.
+/// Returns true if a load step continues; it ends at the requested distance beyond its last limit point.
 fn stops(follower: &Follower, run: &Run) -> Result<bool, End> {
     let (trace, limits) = (&follower.trace, &follower.limits);
     if limits.greatest.is_none() {
@@ -282,8 +284,8 @@ fn stops(follower: &Follower, run: &Run) -> Result<bool, End> {
     }
 }
 
-/// The direction in which the path goes on, a proof that no rate raises the load, and whether the chain gave the direction. If λ
-/// begins to fall, the limit point is noted.
+/// Returns the direction of the path, a proof that no rate raises the load, and true if the chain gave the direction.
+/// If λ begins to fall, the limit point is recorded.
 fn direction(follower: &mut Follower, run: &mut Run) -> Result<(Direction, Option<NoRate>, bool), End> {
     let factor = follower.trace.state.factor;
     let Continued { next, none_rises: proof, by_chain } = next_direction(&mut follower.trace, &run.load);
@@ -334,7 +336,7 @@ fn direction(follower: &mut Follower, run: &mut Run) -> Result<(Direction, Optio
     }
 }
 
-/// The answer of an end.
+/// Returns the answer for an end.
 fn finish(mut follower: Follower, end: End, sense: f64) -> PathAnswer {
     let outcome = match end {
         End::Stands => Outcome::at(Status::Stands, Some(follower.trace.state.factor)),
@@ -349,7 +351,8 @@ fn finish(mut follower: Follower, end: End, sense: f64) -> PathAnswer {
     answer(follower, outcome)
 }
 
-/// A direction without end: a mechanism where λ stands still, else a ray that carries any load.
+/// Returns the outcome of a direction without an end: a mechanism if λ is constant, otherwise a ray that carries any
+/// load.
 fn ray_outcome(follower: &mut Follower, Ray { direction, load, proof }: &Ray, sense: f64) -> Outcome {
     let trace = &mut follower.trace;
     let (contacts, force_unit) = (trace.system.contacts, trace.system.units.force);
@@ -387,21 +390,21 @@ fn ray_outcome(follower: &mut Follower, Ray { direction, load, proof }: &Ray, se
             Outcome::at(Status::LimitPoint, None)
         }
     };
-    // With associated flow the mechanism itself is the proof.
+    // // With associated flow the mechanism is itself the proof.
     if matches!(outcome.status, Status::Collapse | Status::NoEquilibrium) {
         let witness = if trace.associated { None } else { none_rises(trace, load, proof.as_ref()) };
         follower.witnesses.extend(witness);
     }
     let trace = &mut follower.trace;
     let unique = unique(&trace.system, &trace.state.points, load, &direction.x, &direction.gaps);
-    // The mechanism belongs to the last state; the one at the limit point may not allow it.
+    // // The mechanism belongs to the last state; the state at the limit point may not allow it.
     let allowed = |state: &PathState| flow_residual(trace.problem, &state.force, &motion) <= SETTINGS.distinct();
     let limit = follower.limits.greatest.as_ref().filter(|_| outcome.status == Status::LimitPoint);
     let allowed = limit.is_none_or(allowed);
     Outcome { unique, ..outcome.moving(allowed.then_some(motion)) }
 }
 
-/// The answer at the present state, or at the limit point with the present state as its last one.
+/// Returns the answer at the present state, or at the limit point with the present state as its last one.
 fn answer(follower: Follower, mut outcome: Outcome) -> PathAnswer {
     let Follower { trace, mut limits, witnesses, .. } = follower;
     let present = trace.present();

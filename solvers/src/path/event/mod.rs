@@ -1,8 +1,8 @@
 //! `event_path`: elastic blocks with facet laws and small displacements, exactly from event to event.
 //!
-//! Between events everything is linear. At an event the points of the active set pose a rate
-//! problem (`rate`); its solution is the direction of the next piece of the path. λ is no
-//! parameter of the path: it may stand still (a mechanism) or fall.
+//! Between events everything is linear. At an event the points of the active set define a rate problem (`rate`); its
+//! solution is the direction of the next piece of the path. λ is not the parameter of the path: it may be constant (a
+//! mechanism) or fall.
 #![doc = include_str!("event_path.md")]
 
 mod direction;
@@ -27,7 +27,8 @@ pub(super) fn is_piecewise_linear(problem: &PathProblem, settings: &PathSettings
     obstacle(problem, settings).is_none()
 }
 
-/// The reason why the path does not consist of linear pieces: small displacements, facet laws and linear blocks.
+/// Returns the reason why the path does not consist of linear pieces. It does with small displacements, facet laws and
+/// linear blocks.
 fn obstacle(problem: &PathProblem, settings: &PathSettings) -> Option<&'static str> {
     if settings.finite {
         return Some("it follows small displacements only; newton_path follows finite ones");

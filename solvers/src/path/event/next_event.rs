@@ -1,4 +1,4 @@
-//! A step along a direction: how far it is to the next events, and what they change.
+//! A step along a direction: the distance to the next events, and their changes.
 
 use super::piece::point::Point;
 use super::piece::rates::Direction;
@@ -11,10 +11,10 @@ use crate::settings::SETTINGS;
 use voussoir_core::law::{Facet, FacetMode};
 use voussoir_core::path::{ContactEvent, PathEvent};
 
-/// How far it is to the next events along a direction, and which facets (or `usize::MAX` for a
-/// closing) of which points they are; slacks and gaps below `same` are events of one moment.
+/// Returns the distance to the next events along a direction, and their points with facets (`usize::MAX` for a
+/// closing). Slacks and gaps below `same` are events at the same moment.
 pub fn next_event(trace: &Trace, direction: &Direction, same: f64) -> (f64, Vec<(usize, usize)>) {
-    // A rate that is rounding brings no event.
+    // // A rate within rounding of zero causes no event.
     let size = largest(&direction.x[..2 * trace.system.contacts]);
     let gap_size = largest(direction.gaps.as_flattened());
     let (of_forces, share) =
@@ -52,14 +52,14 @@ pub fn next_event(trace: &Trace, direction: &Direction, same: f64) -> (f64, Vec<
     (step, hits.iter().filter(now).map(|e| (e.2, e.3)).collect())
 }
 
-/// Rate of the opening above the dilated surface.
+/// Returns the rate of the opening above the dilated surface.
 pub fn opening_rate(trace: &Trace, c: usize, gap: [f64; 2]) -> f64 {
     let Some(facets) = &trace.system.facets[c] else { return 0.0 };
     dot(trace.state.points[c].mode.opening(facets, if gap[1] < 0.0 { -1.0 } else { 1.0 }), gap)
 }
 
-/// Rate of the gap without its `opening` rate, which is reversible: a tensile strength that opens stores
-/// the work of its force and gives it back.
+/// Returns the rate of the gap without its `opening` rate, which is reversible: a tensile strength that opens stores
+/// the work of its force and releases it.
 fn irreversible(trace: &Trace, c: usize, gap: [f64; 2], opening: f64) -> [f64; 2] {
     match (&trace.system.facets[c], trace.state.points[c].opening_facet) {
         (Some(facets), Some(open)) if trace.state.points[c].mode != ContactMode::Open => {
@@ -69,7 +69,7 @@ fn irreversible(trace: &Trace, c: usize, gap: [f64; 2], opening: f64) -> [f64; 2
     }
 }
 
-/// Goes a step along a direction and notes the events at its end.
+/// Moves a step along a direction and records the events at its end.
 pub fn advance(trace: &mut Trace, direction: &Direction, step: f64, sense: f64, hits: &[(usize, usize)]) {
     let unit = trace.system.units.energy();
     let opening = |(c, point): (usize, &Point)| match point.mode {
@@ -101,8 +101,8 @@ pub fn advance(trace: &mut Trace, direction: &Direction, step: f64, sense: f64, 
     arrive(trace, hits);
 }
 
-/// What a step changes of a contact point: its opening, which facets it leaves, and what it then notes as
-/// having happened at the factor `before` it. `size`: greatest rate of force.
+/// Applies a step to a contact point: its opening, the facets that it leaves, and the events recorded at the factor
+/// `before` the step. `size`: greatest rate of force.
 pub fn stepped(trace: &mut Trace, c: usize, rate: [f64; 2], opening: f64, before: f64, size: f64) {
     let Some(facets) = &trace.system.facets[c] else { return };
     let was_open = trace.state.points[c].open();
@@ -114,7 +114,7 @@ pub fn stepped(trace: &mut Trace, c: usize, rate: [f64; 2], opening: f64, before
     let flows = point.mode != ContactMode::Stick;
     point.opening = if was_open || flows { (point.opening + opening).max(0.0) } else { 0.0 };
     let mut happened = begun(point.mode, facets, was_hit, !was_open && point.open());
-    // Facets that this direction leaves are active no more.
+    // // Facets that this direction leaves become inactive.
     if !(point.open() && point.apex) {
         let force = [trace.state.x[2 * c], trace.state.x[2 * c + 1]];
         let had = point.active.len();
@@ -131,7 +131,7 @@ pub fn stepped(trace: &mut Trace, c: usize, rate: [f64; 2], opening: f64, before
     trace.log.events.extend(happened.into_iter().map(|what| PathEvent { load_step, factor, contact, what }));
 }
 
-/// The events with which a point begins a piece: it opens, or, if it has just arrived at a facet, it flows.
+/// Returns the events at a point at the start of a piece: it opens, or, if it has just reached a facet, it flows.
 fn begun(mode: ContactMode, facets: &[Facet], arrived: bool, opens: bool) -> Vec<ContactEvent> {
     let mut happened = Vec::new();
     if opens {
@@ -146,7 +146,7 @@ fn begun(mode: ContactMode, facets: &[Facet], arrived: bool, opens: bool) -> Vec
     happened
 }
 
-/// Notes the events with which a piece without an end begins.
+/// Records the events at the start of a piece without an end.
 pub fn begin_without_end(trace: &mut Trace, direction: &Direction) {
     let least = SETTINGS.active * largest(direction.gaps.as_flattened());
     let (load_step, factor) = (trace.state.load_step, trace.state.factor);
@@ -159,7 +159,7 @@ pub fn begin_without_end(trace: &mut Trace, direction: &Direction) {
     }
 }
 
-/// Contact points that arrive at a facet, or (`usize::MAX`) close.
+/// Updates contact points that reach a facet or (`usize::MAX`) close.
 pub fn arrive(trace: &mut Trace, hits: &[(usize, usize)]) {
     let state = &mut trace.state;
     for &(c, f) in hits {

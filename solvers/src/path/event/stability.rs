@@ -1,10 +1,10 @@
-//! Stability of the state at which a stage of an exact path ends, by its own factorised equations.
+//! Stability of the state at the end of a stage of an exact path, by its factorised equations.
 //!
-//! With small displacements K is what holds the bodies together with the modes of the contact points held. Where nothing
-//! slides against a flow that is not associated it is GᵀC⁻¹G, which is positive semidefinite: the state is stable unless
-//! some motion has no stiffness. Where slip is not associated K is not symmetric, and its second-order work is examined
-//! ([`stability`](crate::path::stability)). Points that slide, or are about to, may move on or stick: positive with all of
-//! them free suffices, negative with all of them held is instability, else nothing is proven.
+//! With small displacements K is the stiffness that connects the bodies with the modes of the contact points held. If
+//! no point slides with non-associated flow, K is GᵀC⁻¹G, which is positive semidefinite: the state is stable unless
+//! some motion has no stiffness. If slip is not associated, K is not symmetric, and its second-order work is examined
+//! ([`stability`](crate::path::stability)). Points that slide, or are about to, may continue or stick: positive with
+//! all of them free is sufficient, negative with all of them held is instability, otherwise nothing is proved.
 
 use super::piece::factorisation::FactorisedModes;
 use super::piece::point::Point;
@@ -17,10 +17,10 @@ use crate::settings::SETTINGS;
 use nalgebra::DMatrix;
 use voussoir_core::path::StageStability;
 
-/// Iterations that find the softest motion.
+/// Number of iterations that find the softest motion.
 const ITERATIONS: usize = 8;
 
-/// What is known of the equations with the modes of all points held.
+/// Properties of the equations with the modes of all points held.
 struct HeldModes {
     equations: FactorisedModes,
     work: Work,
@@ -28,13 +28,13 @@ struct HeldModes {
 
 /// Their second-order work.
 enum Work {
-    /// Semidefinite, and whether it is positive.
+    /// Semidefinite; true if it is positive definite.
     Symmetric(bool),
     Examined(SecondOrderWork),
 }
 
 impl HeldModes {
-    /// With some modes; `None` where motions without stiffness leave nothing to be told.
+    /// Creates the equations with some modes; `None` if motions without stiffness make the result undecided.
     fn new(trace: &Trace, modes: Vec<ContactMode>) -> Option<Self> {
         let system = &trace.system;
         let associated = modes.iter().zip(&system.facets).all(|(mode, facets)| match (mode, facets) {
@@ -49,7 +49,7 @@ impl HeldModes {
             columns.map(|columns| DMatrix::from_fn(motions, columns.len(), |i, j| columns[j][i]))
         };
         let work = if associated {
-            // Of the softest motion no more is asked than the order of its flexibility.
+            // // Only the order of magnitude of the flexibility of the softest motion matters.
             Work::Symmetric(is_stiff(motions, |wrenches| respond(wrenches, false))?)
         } else {
             Work::Examined(work_by_responses(motions, |wrenches| respond(wrenches, true))?)
@@ -57,7 +57,7 @@ impl HeldModes {
         Some(HeldModes { equations, work })
     }
 
-    /// Whether second-order work is positive with all loads held.
+    /// Returns true if second-order work is positive with all loads held.
     fn positive(&self) -> bool {
         match &self.work {
             Work::Symmetric(positive) => *positive,
@@ -65,7 +65,7 @@ impl HeldModes {
         }
     }
 
-    /// The same with the load point held; `None` where the load has no response.
+    /// Returns true if second-order work is positive with the load point held; `None` if the load has no response.
     fn positive_under_control(&mut self, trace: &Trace, load: &Load) -> Option<bool> {
         let Work::Examined(work) = &self.work else { return Some(self.positive()) };
         self.equations.forget_load();
@@ -79,7 +79,7 @@ impl HeldModes {
     }
 }
 
-/// Whether a semidefinite stiffness leaves no motion free, by the softest one.
+/// Returns true if a semidefinite stiffness leaves no motion free, by the softest motion.
 fn is_stiff(motions: usize, respond: impl Fn(&DMatrix<f64>) -> Option<DMatrix<f64>>) -> Option<bool> {
     let mut random = Lcg::new(7);
     let mut motion = DMatrix::from_fn(motions, 1, |_, _| random.next());
@@ -95,14 +95,14 @@ fn is_stiff(motions: usize, respond: impl Fn(&DMatrix<f64>) -> Option<DMatrix<f6
     Some(flexibility < SETTINGS.soft())
 }
 
-/// Stability of the present state under a load that has come to its end, of a stage in which supports may settle.
+/// Returns the stability of the present state under a completed load; supports may settle in the stage.
 pub fn stage_stability(trace: &Trace, load: &Load) -> StageStability {
     let stage = trace.problem.load_steps[trace.state.load_step].stage;
     let (free, held) = (modes(trace, released), modes(trace, |_, _| ContactMode::Stick));
     let same = free == held;
     let mut free = HeldModes::new(trace, free);
     let positive = |found: &Option<HeldModes>| found.as_ref().map(HeldModes::positive);
-    // Positive with all of them free suffices.
+    // // Positive with all of them free is sufficient.
     let enough = same || positive(&free) == Some(true);
     let mut stuck = if enough { None } else { HeldModes::new(trace, held) };
     let under_load = if same { positive(&free) } else { over_weak_points(positive(&free), positive(&stuck)) };
@@ -117,7 +117,7 @@ pub fn stage_stability(trace: &Trace, load: &Load) -> StageStability {
     StageStability { stage, under_load, under_control, sufficient_only }
 }
 
-/// Modes of all points, those without a choice in their own.
+/// Returns the modes of all points; points without a choice keep theirs.
 fn modes(trace: &Trace, choose: impl Fn(&Point, f64) -> ContactMode) -> Vec<ContactMode> {
     let points = &trace.state.points;
     let largest = (0..points.len()).flat_map(|c| trace.state.force(c)).fold(0.0, |a: f64, r| a.max(r.abs()));
@@ -125,7 +125,7 @@ fn modes(trace: &Trace, choose: impl Fn(&Point, f64) -> ContactMode) -> Vec<Cont
     points.iter().enumerate().map(|(c, point)| point.settled().unwrap_or_else(|| choose(point, share(c)))).collect()
 }
 
-/// The mode in which a weakly active point gives way, with its force as a share of the greatest.
+/// Returns the mode in which a weakly active point yields, with its force relative to the greatest.
 fn released(point: &Point, force: f64) -> ContactMode {
     match (point.mode, point.active.first()) {
         (ContactMode::Stick, _) if point.apex && force <= SETTINGS.admissible => ContactMode::Open,

@@ -1,5 +1,5 @@
-//! What a path is made of: the problem in its units, the present state, the factorisation that serves many events,
-//! and what was noted on the way.
+//! The data of a path: the problem in its units, the present state, the factorisation that is used for many events, and
+//! the records.
 
 use super::energy::{Deformation, work_state};
 use super::joint_chain::{JointChain, Question, by_joint_chain};
@@ -31,12 +31,12 @@ pub struct State {
     pub sense: f64,
     /// Stability under the loads, if it was examined.
     pub stable_under_load: Option<bool>,
-    /// Work of loads and supports, and what dissipated \[J\].
+    /// Work of loads and supports, and dissipated energy \[J\].
     pub energy: EnergyBalance,
 }
 
 impl State {
-    /// Without forces and motions.
+    /// Creates a state without forces and motions.
     pub fn at_rest(system: &System, points: Vec<Point>, load_step: usize) -> State {
         State {
             x: vec![0.0; system.size()],
@@ -49,24 +49,24 @@ impl State {
         }
     }
 
-    /// Force at a contact point.
+    /// Returns the force at a contact point.
     pub fn force(&self, c: usize) -> [f64; 2] {
         [self.x[2 * c], self.x[2 * c + 1]]
     }
 }
 
-/// The factorisation that serves many events.
+/// The factorisation that is used for many events.
 #[derive(Default)]
 pub struct Factors {
-    /// None before the first event.
+    /// The present factorisation; `None` before the first event.
     pub present: Option<FactorisedModes>,
-    /// Whether responses are refined one by one: close to a collapse.
+    /// True close to a collapse: responses are refined one by one.
     pub refine_columns: bool,
     /// The joints in a chain, if they form one.
     pub chain: Option<JointChain>,
 }
 
-/// What happened, and what it took.
+/// Events, notes and counts of the work.
 #[derive(Default)]
 pub struct Log {
     /// Events in their order.
@@ -79,7 +79,7 @@ pub struct Log {
     pub branchings: Vec<Branching>,
     /// Remarks for the answer.
     pub notes: Vec<String>,
-    /// The last record: its place, from which work is counted, and its stored energy.
+    /// The last record: its state, from which work is counted, and its stored energy.
     pub last: Option<(WorkState, f64)>,
 }
 
@@ -102,13 +102,13 @@ pub struct Counts {
 pub struct Trace<'a> {
     /// The problem.
     pub problem: &'a PathProblem,
-    /// Where to stop.
+    /// Stops and other settings.
     pub settings: &'a PathSettings,
-    /// Sees every state.
+    /// Observer of every state.
     pub observer: &'a mut dyn PathObserver,
-    /// The problem in units of its own.
+    /// The problem in scaled units.
     pub system: System,
-    /// Whether all flow is associated.
+    /// True if all flow is associated.
     pub associated: bool,
     /// The present state.
     pub state: State,
@@ -119,7 +119,7 @@ pub struct Trace<'a> {
 }
 
 impl<'a> Trace<'a> {
-    /// At the unloaded state.
+    /// Creates a path at the unloaded state.
     pub fn new(problem: &'a PathProblem, settings: &'a PathSettings, observer: &'a mut dyn PathObserver) -> Self {
         let system = System::new(problem, |_| [0.0; 2]);
         let points = (0..system.contacts).map(|c| Point::untouched(&system, c)).collect();
@@ -136,37 +136,38 @@ impl<'a> Trace<'a> {
         }
     }
 
-    /// Relative residual up to which rates are believed: the tolerance of loads, but not below rounding.
+    /// Returns the relative residual up to which rates are accepted: the tolerance of loads, but not below rounding.
     pub fn believed(&self) -> f64 {
         self.settings.tolerance.clamp(SETTINGS.residual(), SETTINGS.admissible)
     }
 
-    /// Contact points that have a choice.
+    /// Returns the contact points that have a choice.
     pub fn active_points(&self) -> Vec<usize> {
         let points = &self.state.points;
         (0..points.len()).filter(|c| points[*c].settled().is_none()).collect()
     }
 
-    /// Modes of all points. Points of the active set keep their modes.
+    /// Returns the modes of all points. Points of the active set keep their modes.
     pub fn present_modes(&self) -> Vec<ContactMode> {
         self.state.points.iter().map(|p| p.settled().unwrap_or(p.mode)).collect()
     }
 
-    /// Takes rates as the direction, and the modes of all points.
+    /// Accepts rates as the direction, and the modes of all points.
     pub fn take(&mut self, modes: Vec<ContactMode>, rates: Rates, load: &Load) -> Direction {
         self.state.points.iter_mut().zip(modes).for_each(|(point, mode)| point.mode = mode);
         direction_of(&self.system, &mut self.state.points, rates, load)
     }
 
-    /// Factorises the equations in given modes anew; whether they are regular.
+    /// Factorises the equations in given modes again. Returns true if they are regular.
     pub fn factorise(&mut self, modes: Vec<ContactMode>, refine_columns: bool) -> bool {
         self.log.counts.factorisations += 1;
         self.factors.present = FactorisedModes::new(&self.system, modes, refine_columns);
         self.factors.present.is_some()
     }
 
-    /// Modes of all points from a guess and the rates in them with λ̇ = 1, by the chain of joints. `None` if there is no chain, or
-    /// if the whole system is to be asked. From nothing every point has a choice; a moving support is followed with its own care.
+    /// Returns the modes of all points from a guess and the rates in them with λ̇ = 1, by the chain of joints. `None`
+    /// if there is no chain, or if the whole system must be solved: at the unloaded state, where every point has a
+    /// choice, and with a moving support.
     pub fn by_chain(
         &mut self,
         load: &Load,
@@ -185,12 +186,12 @@ impl<'a> Trace<'a> {
         found
     }
 
-    /// Number of contact points of the present event.
+    /// Returns the number of contact points of the present event.
     pub fn arrived(&self) -> usize {
         self.state.points.iter().filter(|point| point.arrived_from.is_some()).count()
     }
 
-    /// The arrival of some contact points at the present event.
+    /// Returns the arrival of some contact points at the present event.
     pub fn arrival(&self, points: &[usize]) -> Arrival {
         let arrived = |c: &usize| self.state.points[*c].arrival(self.state.force(*c));
         Arrival { factor: self.state.sense, points: points.iter().map(arrived).collect() }
@@ -207,7 +208,7 @@ impl<'a> Trace<'a> {
         motion
     }
 
-    /// Displacement at the load \[m\].
+    /// Returns the displacement at the load \[m\].
     pub fn displacement(&self) -> f64 {
         self.displacement_of(&self.motion())
     }
@@ -219,12 +220,12 @@ impl<'a> Trace<'a> {
         self.problem.load_displacement(growing, motion, moved)
     }
 
-    /// The present state in physical units, with the energies of the last record.
+    /// Returns the present state in physical units, with the energies of the last record.
     pub fn present(&self) -> PathState {
         self.deformed().0
     }
 
-    /// The same, with the deformation of the blocks.
+    /// Returns the present state with the deformation of the blocks.
     fn deformed(&self) -> (PathState, Deformation) {
         let motion = self.motion();
         let state = &self.state;
@@ -245,7 +246,7 @@ impl<'a> Trace<'a> {
         (present, deformation)
     }
 
-    /// Energy that the tensile strength of open points has stored \[J\].
+    /// Returns the energy stored by the tensile strength of open points \[J\].
     fn stored_by_opening(&self) -> f64 {
         let held = |(c, point): (usize, &Point)| match (&self.system.facets[c], point.opening_facet) {
             (Some(facets), Some(open)) if point.open() && !point.apex => {
@@ -257,7 +258,7 @@ impl<'a> Trace<'a> {
         sum * self.system.units.energy()
     }
 
-    /// Energy balance and observer. Returns whether to go on.
+    /// Updates the energy balance and calls the observer. Returns true if the path continues.
     pub fn record(&mut self) -> bool {
         let (mut state, deformation) = self.deformed();
         let now = work_state(self.problem, &state, &deformation);

@@ -1,16 +1,15 @@
-//! Whether the mechanism at the end of a path is the only one.
+//! Uniqueness of the mechanism at the end of a path.
 //!
-//! At a field r every mechanism leaves points with slack alone and moves others by flows of their
-//! active facets; where flow is associated that is so of every mechanism at the collapse load,
-//! whichever field is taken (complementary slackness). Let N be the motions with ġ of each point in
-//! the span of those flows, whatever their sign, and N₊ those with ġ in the span of the flows that are
-//! at work with γ > 0. Mechanisms lie in N, and one can be moved a little along N₊ and stays one:
+//! At a field r every mechanism moves only points without slack, by flows of their active facets. With associated flow
+//! this holds for every mechanism at the collapse load and any field (complementary slackness). Let N be the motions
+//! with ġ of each point in the span of those flows, with any sign, and N₊ those with ġ in the span of the flows with γ
+//! > 0. Mechanisms lie in N, and a small change along N₊ gives another mechanism:
 //!
-//! - dim N = 1: the only one;
-//! - dim N₊ > 1: not the only one;
-//! - else the signs decide: the mechanisms with a power of 1, q̇ = N y with ġ = −Σ γ d and γ ≥ 0, are more
-//!   than one where some linear form of y has two values. A random one does; its least and its greatest
-//!   value are two linear programs.
+//! - dim N = 1: it is unique;
+//! - dim N₊ > 1: it is not unique;
+//! - otherwise the signs decide: the mechanisms with a power of 1, q̇ = N y with ġ = −Σ γ d and γ ≥ 0, are not unique
+//!   if some linear form of y has two values. A random form is used; two linear programs give its least and its
+//!   greatest value.
 
 use super::piece::point::Point;
 use crate::contact::facet::{dilatancy, dot, multipliers};
@@ -22,20 +21,20 @@ use crate::rate::mechanism::mechanisms;
 use crate::settings::SETTINGS;
 use nalgebra::DMatrix;
 
-/// Freedoms of motion above which it is not examined.
+/// Greatest number of degrees of freedom for which uniqueness is examined.
 const MOST: usize = 150;
 
-/// Pivots of a linear program.
+/// Greatest number of pivots of a linear program.
 const PIVOTS: u64 = 5000;
 
-/// Whether the mechanism with these gap rates is the only one under a load; `None` where that is not decided.
+/// Returns true if the mechanism with these gap rates is the only one under a load; `None` if that is not decided.
 pub fn unique(system: &System, points: &[Point], load: &Load, x: &[f64], gaps: &[[f64; 2]]) -> Option<bool> {
     let freedoms = 3 * system.bodies;
     if freedoms > MOST {
         return None;
     }
     let size = gaps.iter().flatten().fold(0.0, |a: f64, g| a.max(g.abs()));
-    // Rows of zeros make the matrix high enough for all of its right vectors.
+    // // Rows of zeros make the decomposition return all right singular vectors.
     let space = |flows: &dyn Fn(usize) -> Option<Vec<[f64; 2]>>| {
         let rows: Vec<Vec<f64>> = (0..points.len()).flat_map(|c| constraints(system, c, flows(c))).collect();
         let height = rows.len().max(freedoms);
@@ -92,7 +91,7 @@ pub fn unique(system: &System, points: &[Point], load: &Load, x: &[f64], gaps: &
     by_signs(system, points, &all, &power.iter().map(|p| p * own.signum()).collect::<Vec<_>>())
 }
 
-/// Whether the mechanisms N y with a power of 1 are one only.
+/// Returns true if only one mechanism N y has a power of 1.
 fn by_signs(system: &System, points: &[Point], all: &DMatrix<f64>, power: &[f64]) -> Option<bool> {
     let k = all.ncols();
     // (contact point, flow) of every variable γ.
@@ -135,8 +134,8 @@ fn by_signs(system: &System, points: &[Point], all: &DMatrix<f64>, power: &[f64]
     Some(true)
 }
 
-/// Rows over the motions that keep the gap rate of a point in the span of some flows; `None` of them:
-/// the point is free.
+/// Returns rows over the motions that keep the gap rate of a point in the span of some flows; no rows for `None`: the
+/// point is free.
 fn constraints(system: &System, c: usize, flows: Option<Vec<[f64; 2]>>) -> Vec<Vec<f64>> {
     let Some(flows) = flows else { return Vec::new() };
     let row = |n: [f64; 2]| {

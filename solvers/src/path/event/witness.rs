@@ -11,8 +11,8 @@ use crate::rate::problem::RateProblem;
 use crate::rate::proof::NoRate;
 use voussoir_core::path::{PathRate, RateClaim, Witness};
 
-/// The witness that no rate raises the load at the present state: by a proof over its active set, or by a search. `None` if
-/// the search does not find a proof within its budget.
+/// Returns the witness that no rate raises the load at the present state: by a proof over its active set, or by a
+/// search. `None` if the search does not find a proof within its budget.
 pub fn none_rises(trace: &mut Trace, load: &Load, proof: Option<&NoRate>) -> Option<Witness> {
     let Some(proof) = proof else {
         return prove(trace, load, |problem, active, trials, response| {
@@ -30,27 +30,27 @@ pub fn none_rises(trace: &mut Trace, load: &Load, proof: Option<&NoRate>) -> Opt
     Some(Witness { state, claim: RateClaim::NoneRises(tree) })
 }
 
-/// The proof that no rate continues the path from the present state; `sense` of λ in the load step.
+/// Returns the proof that no rate continues the path from the present state; `sense` of λ in the load step.
 pub fn none_continues(trace: &mut Trace, load: &Load, sense: f64) -> Option<Witness> {
     prove(trace, load, |problem, active, trials, response| {
         dual_vector::none_continues(problem, (active, sense), trials, response).map(RateClaim::NoneContinues)
     })
 }
 
-/// Numbers of the points that may change their modes.
+/// Returns the numbers of the points that may change their modes.
 fn active_set(trace: &Trace) -> Vec<usize> {
     let points = &trace.state.points;
     (0..points.len()).filter(|c| points[*c].settled().is_none()).collect()
 }
 
-/// Factorises the structure with these points closed; the modes of all points.
+/// Factorises the structure with these points closed. Returns the modes of all points.
 fn factorise_closed(trace: &mut Trace) -> Option<Vec<ContactMode>> {
     let closed = |point: &Point| point.settled().unwrap_or(ContactMode::Stick);
     let modes: Vec<ContactMode> = trace.state.points.iter().map(closed).collect();
     trace.factorise(modes.clone(), true).then_some(modes)
 }
 
-/// A witness at the present state by a search over the modes of the active points.
+/// Returns a witness at the present state by a search over the modes of the active points.
 fn prove(
     trace: &mut Trace,
     load: &Load,
@@ -76,7 +76,7 @@ fn prove(
     Some(Witness { state, claim })
 }
 
-/// The rates of a direction from the present state; `sense` of λ in the load step.
+/// Returns the rates of a direction from the present state; `sense` of λ in the load step.
 pub fn rate_witness(trace: &Trace, direction: &Direction, sense: f64) -> Witness {
     let (system, units) = (&trace.system, trace.system.units);
     let (forces, motions) = direction.x.split_at(2 * system.contacts);

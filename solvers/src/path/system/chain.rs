@@ -1,16 +1,16 @@
 //! Bodies in a chain: the order in which factorisations eliminate their unknowns.
 //!
 //! Levels of free bodies from one end, by the joints between them (Cuthill & McKee 1969, Proc. 24th Nat. Conf. ACM,
-//! 157-172). Where no level holds more than two bodies (an arch, a bar, a ring) the unknowns of a joint follow those of
-//! the body before it, so that equations reach over a few ranks only.
+//! 157-172). If no level has more than two bodies (an arch, a bar, a ring), the unknowns of a joint follow those of the
+//! body before it, so that equations contain only a few neighbouring ranks.
 
 use std::collections::VecDeque;
 use voussoir_core::path::PathProblem;
 
-/// Most bodies of a level of a chain.
+/// Greatest number of bodies in a level of a chain.
 const WIDTH: usize = 2;
 
-/// Levels of all bodies from a start, those of its part of the structure in the order in which they are met.
+/// Returns the bodies of the part of the structure that contains `start`, with their levels, in breadth-first order.
 fn levels(beside: &[Vec<usize>], start: usize) -> Vec<(usize, usize)> {
     let mut met = vec![false; beside.len()];
     let (mut all, mut next) = (Vec::new(), VecDeque::from([(start, 0)]));
@@ -26,8 +26,8 @@ fn levels(beside: &[Vec<usize>], start: usize) -> Vec<(usize, usize)> {
     all
 }
 
-/// Ranks of the unknowns (forces of contact points, motions of free bodies) in the order of their elimination. `None`
-/// where the bodies form no chain.
+/// Returns the ranks of the unknowns (forces of contact points, motions of free bodies) in the order of their
+/// elimination. `None` if the bodies form no chain.
 pub fn ranks(problem: &PathProblem, free: &[Option<usize>]) -> Option<Vec<usize>> {
     let bodies = free.iter().flatten().count();
     let mut beside: Vec<Vec<usize>> = vec![Vec::new(); bodies];
@@ -41,7 +41,7 @@ pub fn ranks(problem: &PathProblem, free: &[Option<usize>]) -> Option<Vec<usize>
             beside[b].push(a);
         }
     }
-    // Levels of each part after those of the part before, with a rank free at both of its ends.
+    // // Levels of each part come after those of the previous part, with a free rank at both ends.
     let mut rank_of: Vec<Option<(usize, usize)>> = vec![None; bodies];
     let mut first = 1;
     for body in 0..bodies {
@@ -56,7 +56,7 @@ pub fn ranks(problem: &PathProblem, free: &[Option<usize>]) -> Option<Vec<usize>
         part.iter().for_each(|&(body, level)| rank_of[body] = Some((first + 2 * level, first)));
         first += 2 * part.last()?.1 + 3;
     }
-    // A joint to the ground stands before the first level of its part, or with the joint after its body.
+    // // A joint to the ground comes before the first level of its part, or with the joint after its body.
     let of_joint = |c: usize| match sides(c).map(|b| b.and_then(|b| rank_of[b])) {
         [Some((a, _)), Some((b, _))] => (a + b) / 2,
         [Some((rank, first)), None] | [None, Some((rank, first))] if rank == first => rank - 1,
@@ -64,7 +64,7 @@ pub fn ranks(problem: &PathProblem, free: &[Option<usize>]) -> Option<Vec<usize>
         [None, None] => 0,
     };
     let mut ranks: Vec<usize> = (0..problem.contacts.len()).flat_map(|c| [of_joint(c); 2]).collect();
-    // A body goes with the joint after it.
+    // // A body has the rank of the joint after it.
     ranks.extend(rank_of.iter().flat_map(|rank| [rank.map_or(0, |r| r.0 + 1); 3]));
     Some(ranks)
 }

@@ -10,16 +10,16 @@ pub struct Load {
     pub wrench: Vec<[f64; 3]>,
     /// Gap that it opens at each contact point, per unit of λ.
     pub gap: Vec<[f64; 2]>,
-    /// Whether it opens any.
+    /// True if it opens any gap.
     pub opens: bool,
-    /// Whether it moves supports: then what is statically determinate moves at constant forces while λ goes on.
+    /// True if it moves supports: then statically determinate parts move at constant forces while λ changes.
     pub settles: bool,
-    /// Greatest of them all: the size of forces that it causes, in scaled units.
+    /// Greatest of all these entries: the size of the forces that it causes, in scaled units.
     pub size: f64,
 }
 
 impl Load {
-    /// A loading of a problem.
+    /// Scales a loading of a problem.
     pub fn new(system: &System, problem: &PathProblem, loading: &Loading) -> Self {
         let units = system.units;
         let mut wrench = vec![[0.0; 3]; system.bodies];
@@ -38,7 +38,7 @@ impl Load {
         Load { wrench, gap, opens, settles, size }
     }
 
-    /// The same loading, or the opposite one.
+    /// Returns the same loading, or the opposite one.
     pub fn reversed_if(mut self, reversed: bool) -> Self {
         if reversed {
             self.wrench.iter_mut().flatten().for_each(|v| *v = -*v);

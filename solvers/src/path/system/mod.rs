@@ -1,8 +1,8 @@
-//! The path problem in units of its own, as both path solvers take it: forces by the loads, displacements by what
-//! those loads do to a mean contact point.
+//! The path problem in scaled units, for both path solvers. The unit of force is the size of the loads; the unit of
+//! displacement is the deformation of a mean contact point by these loads.
 //!
-//! Unknowns x = (r, q): (r_n, r_t) of every contact point, then (u_x, u_y, θ L) of every free body; after them, where a
-//! solver steps, the factor λ.
+//! Unknowns x = (r, q): (r_n, r_t) of every contact point, then (u_x, u_y, θ L) of every free body; after them, if a
+//! solver uses steps, the factor λ.
 
 mod chain;
 mod load;

@@ -2,7 +2,7 @@
 
 use voussoir_core::path::PathProblem;
 
-/// Rows of C in physical units: points of a body feel each other.
+/// Returns the rows of C in physical units: the points of an elastic body are coupled.
 pub fn flexibility_rows(problem: &PathProblem) -> Vec<Vec<(usize, f64)>> {
     let mut on_body: Vec<Vec<(usize, usize, f64)>> = vec![Vec::new(); problem.bodies.len()];
     for (index, contact) in problem.contacts.iter().enumerate() {
@@ -40,7 +40,7 @@ pub fn flexibility_rows(problem: &PathProblem) -> Vec<Vec<(usize, f64)>> {
     rows
 }
 
-/// Entries of a row sorted, repeated ones added, by a factor.
+/// Returns the sorted entries of a row, repeated entries added, scaled by a factor.
 pub fn merged(mut row: Vec<(usize, f64)>, scaled: impl Fn(f64) -> f64) -> Vec<(usize, f64)> {
     row.sort_by_key(|e| e.0);
     let mut merged: Vec<(usize, f64)> = Vec::with_capacity(row.len());
@@ -53,7 +53,7 @@ pub fn merged(mut row: Vec<(usize, f64)>, scaled: impl Fn(f64) -> f64) -> Vec<(u
     merged
 }
 
-/// Rows of G over the motions of the free bodies.
+/// Returns the rows of G over the motions of the free bodies.
 pub fn kinematic_rows(problem: &PathProblem, free: &[Option<usize>]) -> Vec<Vec<(usize, f64)>> {
     let mut kinematics: Vec<Vec<(usize, f64)>> = Vec::with_capacity(2 * problem.contacts.len());
     for contact in &problem.contacts {

@@ -20,7 +20,7 @@ pub struct System {
     pub free: Vec<Option<usize>>,
     /// Number of free bodies.
     pub bodies: usize,
-    /// Facets of each contact point, bounds times area in the unit of force; `None` where its law has none.
+    /// Facets of each contact point, bounds times area in the unit of force; `None` if its law has no facets.
     pub facets: Vec<Option<Vec<Facet>>>,
     /// Initial gaps.
     pub gap: Vec<f64>,
@@ -28,15 +28,15 @@ pub struct System {
     pub flexibility: CsrMatrix,
     /// Rows of G: (index of q from 0, value).
     pub kinematics: CsrMatrix,
-    /// Compliance of every contact point with all else held: the diagonal of C, and where the law gives tractions from
-    /// gaps what it adds \[m/N\].
+    /// Compliance of every contact point with all other points held: the diagonal of C, plus the compliance of laws
+    /// that give tractions from gaps \[m/N\].
     pub compliance: Vec<[f64; 2]>,
-    /// Ranks of the unknowns along a chain of bodies, where they form one.
+    /// Ranks of the unknowns along a chain of bodies, if they form one.
     pub chain: Option<Arc<[usize]>>,
 }
 
 impl System {
-    /// Scales a problem; `softening`: what laws of tractions from gaps add to the compliance of contact points.
+    /// Scales a problem; `softening`: additional compliance of contact points from laws of tractions from gaps.
     pub fn new(problem: &PathProblem, softening: impl Fn(usize) -> [f64; 2]) -> Self {
         let contacts = problem.contacts.len();
         let mut indices = 0..;
@@ -70,18 +70,19 @@ impl System {
         }
     }
 
-    /// The two rows of a contact point in a mode over (ṙ_n, ṙ_t, ġ_n, ġ_t). `None` where it has no such facet.
+    /// Returns the two rows of a contact point in a mode over (ṙ_n, ṙ_t, ġ_n, ġ_t). `None` if a facet of the mode does
+    /// not exist.
     pub fn rows(&self, c: usize, mode: ContactMode) -> Option<[[f64; 4]; 2]> {
         mode.rows(self.facets[c].as_deref().unwrap_or_default())
     }
 
-    /// Number of forces and motions.
+    /// Returns the number of forces and motions.
     pub fn size(&self) -> usize {
         2 * self.contacts + 3 * self.bodies
     }
 
-    /// Where a component (n or t of a contact point's force, then x, y, θ of every body, held ones included) stands
-    /// among the unknowns, and its unit; `None` for held bodies.
+    /// Returns the index among the unknowns and the unit of a component (n or t of a contact point's force, then x, y,
+    /// θ of every body, held ones included); `None` for held bodies.
     pub fn column(&self, index: usize) -> Option<(usize, f64)> {
         let base = 2 * self.contacts;
         if index < base {
@@ -91,21 +92,21 @@ impl System {
         self.free[body].map(|free| (base + 3 * free + k, self.units.motion()[k]))
     }
 
-    /// Motions of all bodies in physical units from those of the free ones; held ones stand still.
+    /// Returns the motions of all bodies in physical units from those of the free ones; held bodies do not move.
     pub fn motions(&self, q: &[f64]) -> Vec<[f64; 3]> {
         let unit = self.units.motion();
         let own = |f: usize| [0, 1, 2].map(|k| q[3 * f + k] * unit[k]);
         self.free.iter().map(|free| free.map_or([0.0; 3], own)).collect()
     }
 
-    /// Gaps that forces and motions open: C r + G q, for a vector of all unknowns.
+    /// Returns the gaps that forces and motions open: C r + G q, for a vector of all unknowns.
     pub fn gaps(&self, x: &[f64]) -> Vec<[f64; 2]> {
         let (r, q) = x.split_at(2 * self.contacts);
         let row = |i: usize| self.flexibility.row_dot(i, r) + self.kinematics.row_dot(i, q);
         (0..self.contacts).map(|c| [row(2 * c), row(2 * c + 1)]).collect()
     }
 
-    /// Gᵀ r: generalised forces of contact forces on the free bodies.
+    /// Returns Gᵀ r: generalised forces of contact forces on the free bodies.
     pub fn resultants(&self, x: &[f64]) -> Vec<f64> {
         let mut sum = vec![0.0; 3 * self.bodies];
         for (i, force) in x[..2 * self.contacts].iter().enumerate() {

@@ -22,7 +22,7 @@ fn settled(loading: &Loading, length: f64) -> f64 {
 }
 
 impl Units {
-    /// Of a problem whose contact points have a `mean` compliance \[m/N\].
+    /// Computes the units of a problem whose contact points have a `mean` compliance \[m/N\].
     pub fn new(problem: &PathProblem, mean: f64) -> Self {
         let loadings = || problem.load_steps.iter().map(|step| &step.loading);
         let size = loadings().map(|loading| problem.load_size(loading)).find(|s| *s > 0.0);
@@ -33,7 +33,7 @@ impl Units {
         Units { force, displacement, length: problem.length, factor: 1.0 }
     }
 
-    /// Unit of the factor of a loading that grows.
+    /// Returns the unit of the factor of a loading that grows.
     pub fn of_factor(&self, problem: &PathProblem, loading: &Loading) -> f64 {
         match (problem.load_size(loading), settled(loading, self.length)) {
             (size, _) if size > 0.0 => self.force / size,
@@ -42,12 +42,12 @@ impl Units {
         }
     }
 
-    /// Units of a body's motion (x, y, θ).
+    /// Returns the units of a body's motion (x, y, θ).
     pub fn motion(&self) -> [f64; 3] {
         [self.displacement, self.displacement, self.displacement / self.length]
     }
 
-    /// Unit of energy.
+    /// Returns the unit of energy.
     pub fn energy(&self) -> f64 {
         self.force * self.displacement
     }

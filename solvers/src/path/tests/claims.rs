@@ -1,4 +1,4 @@
-//! False claims about the end of a path: each is refused, and nothing is claimed instead.
+//! False claims about the end of a path: each is refused, and the answer then claims nothing.
 
 use crate::path::self_check::confirmed;
 use crate::path::two_blocks::{STIFFNESS, block, dead, followed, force, pushed_at, traced, v};
@@ -38,7 +38,7 @@ fn a_plateau_in_the_other_direction_is_refused() {
     refused(&block(0.3, pushed_at(0.1)), false, answer, "path_flow");
 }
 
-/// Forces in equilibrium with λ = 0.32 and with their springs do not stand beyond friction: t = 0.16 > μ n = 0.15.
+/// Forces in equilibrium with λ = 0.32 and with their springs violate friction: t = 0.16 > μ n = 0.15.
 #[test]
 fn a_state_beyond_the_friction_does_not_stand() {
     let mut problem = block(0.3, pushed_at(0.0));
@@ -102,7 +102,7 @@ fn gaps_of_another_motion_are_refused() {
     refused(&pushed(0.2), true, answer, "path_kinematics");
 }
 
-/// A state that is refused gives way to the last one that the path reached.
+/// After a refused claim the answer shows the last state of the path.
 #[test]
 fn a_refused_claim_shows_the_last_state() {
     let mut answer = traced(&pushed(0.25));

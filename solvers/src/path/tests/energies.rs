@@ -62,7 +62,7 @@ fn the_displacement_of_a_settlement_is_its_movement() {
     assert_close(found, 7.5e-3, 1e-17);
 }
 
-/// The work of a load that grows from λ₁ to λ₂ in proportion to u is (λ₁ + λ₂)/2 F·Δu.
+/// If a load grows in proportion to u from λ₁ to λ₂, its work is (λ₁ + λ₂)/2 F·Δu.
 #[test]
 fn work_is_the_mean_force_times_the_way() {
     let (problem, loading) = (problem(), force(v(0.0, 0.0), v(2.0, 1.0)));
@@ -71,7 +71,7 @@ fn work_is_the_mean_force_times_the_way() {
     assert_close(balance.work, 2.0 * (2.0 * 0.5 - 0.2), 1e-15);
 }
 
-/// There and back a load does no work.
+/// A load that moves forth and back does no work.
 #[test]
 fn work_there_and_back_is_nothing() {
     let (problem, loading) = (problem(), force(v(0.0, 0.0), v(2.0, 1.0)));
@@ -82,7 +82,7 @@ fn work_there_and_back_is_nothing() {
     assert_close(balance.work, 0.0, 1e-15);
 }
 
-/// A support with the reaction R that moves by u does the work R·u: here R is what balances the unbalanced force.
+/// A support with the reaction R that moves by u does the work R·u; R balances the unbalanced force.
 #[test]
 fn a_moving_support_does_the_work_of_its_reaction() {
     let problem = problem();
@@ -97,7 +97,7 @@ fn a_moving_support_does_the_work_of_its_reaction() {
     assert_close(balance.work, 1.5 * -0.3, 1e-15);
 }
 
-/// A step leaves Δwork − Δstored − Δdissipated, and a stage adds its steps up.
+/// The error of a step is Δwork − Δstored − Δdissipated, and a stage adds the errors of its steps.
 #[test]
 fn a_balance_adds_up_what_steps_leave() {
     let problem = problem();

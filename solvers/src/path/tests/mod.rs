@@ -1,4 +1,4 @@
-//! Tests of what both path solvers share: energies, events, stability, and claims that are checked again.
+//! Tests of the shared parts of both path solvers: energies, events, stability, and checked claims.
 
 mod claims;
 mod energies;

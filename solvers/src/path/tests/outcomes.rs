@@ -4,7 +4,7 @@ use crate::path::outcome::{Outcome, PathRecord, stalled};
 use crate::path::two_blocks::{block, pushed_at, traced};
 use voussoir_core::limit::Status;
 
-/// An answer takes its claim from the outcome and all else from the record.
+/// An answer has its claim from the outcome and all other data from the record.
 #[test]
 fn an_answer_joins_outcome_and_record() {
     let motion = vec![[0.0; 3], [1.0, 0.0, 0.0]];

@@ -1,4 +1,4 @@
-//! Second-order work of a block on springs, and which states a limit point asks for it.
+//! Second-order work of a block on springs, and the states of a path that regain a limit point.
 
 use crate::path::stability::{SecondOrderWork, over_weak_points, regains_limit_point};
 use crate::path::two_blocks::assert_close;

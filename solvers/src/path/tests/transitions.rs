@@ -9,7 +9,7 @@ const BACKWARD: ContactStatus = ContactStatus::Slides { forward: false };
 const ALL: [ContactStatus; 6] =
     [ContactStatus::Sticks, ContactStatus::Open, FORWARD, BACKWARD, ContactStatus::Crushes, ContactStatus::Softens];
 
-/// A point that goes on as before has no event.
+/// A point whose status does not change has no event.
 #[test]
 fn no_change_is_no_event() {
     ALL.iter().for_each(|status| assert_eq!(transition(*status, *status), None));

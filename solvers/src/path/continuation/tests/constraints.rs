@@ -41,7 +41,7 @@ fn constraints_are_homogeneous() {
     }
 }
 
-/// A step that does not move has the length 0 and finite derivatives.
+/// A step without motion has the length 0 and finite derivatives.
 #[test]
 fn a_step_of_no_length_has_no_slope_that_is_not_finite() {
     for strategy in all() {

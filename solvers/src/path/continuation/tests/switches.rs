@@ -39,7 +39,7 @@ fn crack_opening_measures_the_opening_beyond_its_switch() {
     assert_eq!(value(0.19), ArcLength::default().constraint(&some(), None).value);
 }
 
-/// A joint that closes is no crack: arc length goes on.
+/// A closing joint is not controlled: arc length continues.
 #[test]
 fn a_closing_joint_is_not_controlled() {
     let control = CrackOpening::of(3);
@@ -47,7 +47,7 @@ fn a_closing_joint_is_not_controlled() {
     assert_eq!(found, ArcLength::default().constraint(&some(), None));
 }
 
-/// Crack opening watches its joint, and the other strategies watch nothing.
+/// Crack opening monitors its joint; the other strategies monitor no joint.
 #[test]
 fn crack_opening_watches_its_joint() {
     let at = CrackOpening { at: Some(0.25), ..CrackOpening::of(7) };

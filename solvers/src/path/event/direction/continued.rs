@@ -5,15 +5,15 @@ use crate::rate::proof::NoRate;
 
 /// The continuation of the path.
 pub enum Next {
-    /// With λ rising or standing still.
+    /// With λ rising or constant.
     Go(Direction),
     /// With λ falling; on a path that has risen it is proved that no rate rises.
     Falling(Direction),
-    /// It is proved that no rate goes on.
+    /// It is proved that no rate continues the path.
     Nothing,
-    /// It is proved that no rate rises. It is not decided whether one stands still or falls, and why.
+    /// It is proved that no rate rises; the reason why rates with constant or falling λ are undecided.
     NoneRises(String),
-    /// Not decided, and why.
+    /// Undecided, with the reason.
     Lost(String),
 }
 

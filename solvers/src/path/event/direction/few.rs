@@ -1,5 +1,5 @@
-//! The rate problem over a few points, on one factorisation for many events: those next to the arrival, or the whole active
-//! set.
+//! The rate problem over a few points, with one factorisation for many events: the points next to the arrival, or the
+//! whole active set.
 
 use super::continued::{Continued, Next};
 use crate::contact::mode::ContactMode;
@@ -16,17 +16,18 @@ use crate::rate::problem::Rate;
 use crate::settings::SETTINGS;
 use voussoir_core::path::{Branching, PathProblem};
 
-/// Points with a mode of their own beside the factorised one before factorising anew.
+/// Greatest number of points whose mode differs from the factorised one; with more, the matrix is factorised again.
 const UPDATES: usize = 40;
-/// Points whose responses are found for one rate problem: for more of them it is factorised anew.
+/// Greatest number of points whose responses are computed for one rate problem; with more, the matrix is factorised
+/// again.
 const AT_ONCE: usize = 8;
-/// Points of the active set up to which they are solved for next to the arrival; more are solved for all at once.
+/// Greatest size of the active set that is solved next to the arrival; larger sets are solved for all points at once.
 pub const MANY: usize = 24;
-/// Points of the active set up to which its rate problem is solved by itself where flow is not associated: its matrix is
-/// dense, and pivoting takes as many steps of its size squared as it has points.
+/// Greatest size of the active set whose rate problem is solved alone if flow is not associated. Its matrix is dense,
+/// and pivoting needs about one pivot per point, each with work of the size squared.
 const DENSE: usize = 400;
 
-/// The answer to the rate problem of the whole active set.
+/// Returns the answer to the rate problem of the whole active set.
 pub fn by_active_set(trace: &mut Trace, load: &Load, active: &[usize]) -> Continued {
     if active.len() > DENSE {
         return Next::Lost(format!(
@@ -36,12 +37,12 @@ pub fn by_active_set(trace: &mut Trace, load: &Load, active: &[usize]) -> Contin
         ))
         .into();
     }
-    // One attempt on the present factorisation, one on a fresh one.
+    // // First with the present factorisation, then with a new one.
     for fresh in [false, true] {
-        // Closed points of the active set make the best conditioned factorisation: close to a collapse
-        // one in which they flow is nearly singular.
+        // // The matrix with closed points of the active set is best conditioned; with flowing points it is nearly
+        // singular close to a collapse.
         let stale = trace.factors.present.as_ref().is_none_or(|factors| {
-            // What is claimed here rests on the responses themselves.
+            // // The results depend on the responses themselves.
             !factors.refine_columns
                 || factors.responses() > UPDATES.max(2 * active.len())
                 || active.iter().any(|c| factors.modes[*c] != ContactMode::Stick)
@@ -61,7 +62,7 @@ pub fn by_active_set(trace: &mut Trace, load: &Load, active: &[usize]) -> Contin
     Next::Lost("the stiffness of the contact points of the active set could not be found".into()).into()
 }
 
-/// Factorises anew where the present factorisation does not serve to open some points in these modes.
+/// Factorises again if the present factorisation cannot be used with the `open` points free in these modes.
 fn refresh_for(trace: &mut Trace, open: &[usize], modes: &[ContactMode]) -> bool {
     let refine_columns = trace.factors.refine_columns;
     let changed =
@@ -70,17 +71,18 @@ fn refresh_for(trace: &mut Trace, open: &[usize], modes: &[ContactMode]) -> bool
         (!factors.refine_columns && refine_columns)
             || factors.responses() > UPDATES.max(2 * open.len())
             || changed(factors) > 2 * UPDATES
-            // After events that others followed: a factorisation costs less than so many responses.
+            // // Another part of the solver followed the last events: a factorisation costs less than this number of
+            // responses.
             || changed(factors) > factors.responses() + AT_ONCE
     };
     if !trace.factors.present.as_ref().is_none_or(stale) {
         return true;
     }
-    // With open points closed: what flows there may be a mechanism.
+    // // Open points are closed, because flow at them may be a mechanism.
     let mut closed = modes.to_vec();
     open.iter().for_each(|c| closed[*c] = ContactMode::Stick);
     if let Some(present) = trace.factors.present.as_mut().filter(|present| present.modes == closed) {
-        // Stale for its responses alone.
+        // // Only its responses are out of date.
         present.set_refined(refine_columns);
         return true;
     }
@@ -93,12 +95,12 @@ pub enum Neighbourhood {
     Next(Next),
     /// The search found no rate.
     NotFound,
-    /// Several, or not decided.
+    /// Several, or undecided.
     Several,
 }
 
-/// The only rate next to the arrival: over the points of the event and those that it moves
-/// out of their modes, while all others keep theirs.
+/// Returns the only rate next to the arrival. Its modes may change at the points of the event and at points that it
+/// moves out of their modes; all others keep theirs.
 pub fn by_neighbours(trace: &mut Trace, load: &Load, active: &[usize]) -> Neighbourhood {
     let mut open: Vec<usize> =
         active.iter().copied().filter(|c| trace.state.points[*c].arrived_from.is_some()).collect();
@@ -119,14 +121,14 @@ pub fn by_neighbours(trace: &mut Trace, load: &Load, active: &[usize]) -> Neighb
 /// The rates next to the arrival over some open points.
 enum Newcomers {
     Next(Next),
-    /// They move these points out of their modes.
+    /// The rates move these points out of their modes.
     Move(Vec<usize>),
-    /// A mechanism is near: the same with refined responses.
+    /// A mechanism is near: repeat with refined responses.
     Again,
     Several,
 }
 
-/// The only rate over the `open` points while all others keep their modes. `None` if no rate continues the path so.
+/// Returns the only rate over the `open` points while all others keep their modes. `None` if there is not exactly one.
 fn by_newcomers(trace: &mut Trace, load: &Load, active: &[usize], open: &[usize]) -> Option<Newcomers> {
     let mut modes = trace.present_modes();
     if !refresh_for(trace, open, &modes) {
@@ -140,8 +142,8 @@ fn by_newcomers(trace: &mut Trace, load: &Load, active: &[usize], open: &[usize]
     let local = SchurComplement::new((system, &state.points), base, at, open, &modes, &mut log.counts.solves)?;
     let trials = &mut log.counts.rates.trials;
     let rate = if *associated {
-        // All rates that rise have the same forces, and a mechanism proves that none rises. A moving support does no
-        // work on a mechanism: if it can move on, it does.
+        // // All rising rates have the same forces, and a mechanism proves that no rate rises. A moving support does no
+        // work on a mechanism: if it can continue, it does.
         let (guess, free) = (open.iter().map(|c| modes[*c]).collect(), vec![false; open.len()]);
         settled(&local.rate, guess, &free, 1.0, trials)
             .filter(|rate| rate.factor > 0.0 || !load.settles && local.rate.leads_on(rate))?
@@ -177,7 +179,8 @@ fn by_newcomers(trace: &mut Trace, load: &Load, active: &[usize], open: &[usize]
     (!new.is_empty()).then_some(Newcomers::Move(new))
 }
 
-/// Refined rates of all unknowns of a solution over the open points, whose modes are put among all.
+/// Returns the refined rates of all unknowns of a solution over the open points and writes their modes into the list of
+/// all modes.
 fn rates_of(
     local: &SchurComplement,
     base: &mut FactorisedModes,
@@ -190,7 +193,7 @@ fn rates_of(
     Some(refined(local, base, Rates::new(local.system, x, rate.factor, at.1), at.1, modes))
 }
 
-/// The answer to the rate problem over the active set. `None` if linear algebra fails.
+/// Returns the answer to the rate problem over the active set. `None` if linear algebra fails.
 fn by_rate_problem(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<Continued> {
     let mut modes = trace.present_modes();
     let arrival = trace.arrival(active);
@@ -209,7 +212,7 @@ fn by_rate_problem(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<C
         }
         Continuation::Open(why) => return Some(Next::Lost(lost(state.factor, active.len(), &why)).into()),
     };
-    // A mechanism of associated flow is the proof itself.
+    // // A mechanism of associated flow is itself the proof.
     let proved = none_rises.is_some() || arrival.factor < 0.0 || (*associated && rate.factor == 0.0);
     if rate.factor <= 0.0 && !proved {
         let why = "it is not decided whether a rate raises the load";
@@ -241,7 +244,7 @@ fn lost(factor: f64, points: usize, why: &str) -> String {
     )
 }
 
-/// A rate or the one of its twins that later loads favour. Twins are noted.
+/// Returns a rate, or the twin that later loads favour. Twins are recorded.
 fn favoured_twin(
     local: &SchurComplement,
     base: &mut FactorisedModes,
@@ -269,8 +272,8 @@ fn favoured_twin(
     Some(rates.swap_remove(chosen))
 }
 
-/// Refined against all equations in the modes that were found: responses of single points are not,
-/// and close to a collapse they cancel.
+/// Refines rates with all equations in the modes found. The responses of single points are not refined, and they cancel
+/// close to a collapse.
 fn refined(
     local: &SchurComplement,
     base: &FactorisedModes,
@@ -304,7 +307,7 @@ fn refined(
     rates
 }
 
-/// The direction solved anew with all modes in the factorisation, where refinement leaves residuals.
+/// Solves the direction again with all modes in the factorisation, if refinement leaves residuals.
 fn solved_anew(trace: &mut Trace, rates: Rates, load: &Load, modes: &[ContactMode]) -> Rates {
     if rates.factor == 0.0 || rates.worst <= SETTINGS.residual() {
         return rates;
@@ -316,7 +319,7 @@ fn solved_anew(trace: &mut Trace, rates: Rates, load: &Load, modes: &[ContactMod
     };
     let Some(direct) = base.load_rate(system, trace.state.load_step, load) else { return rates };
     let x: Vec<f64> = direct.iter().map(|v| v * rates.factor).collect();
-    // Where the matrix is singular the sense of its solution is rounding.
+    // // If the matrix is singular, the sign of its solution is rounding.
     let along: f64 = x.iter().zip(&rates.x).map(|(a, b)| a * b).sum();
     let direct = Rates::new(system, x, rates.factor, load);
     if along > 0.0 && residual(system, &direct, load, modes).0 < rates.worst {

@@ -1,4 +1,4 @@
-//! The direction of the next piece of the path: the order in which its rate problem is solved.
+//! The direction of the next piece of the path: the order of the methods for its rate problem.
 
 mod continued;
 mod few;
@@ -13,12 +13,12 @@ use crate::path::event::piece::rates::Rates;
 use crate::path::event::trace::Trace;
 use crate::path::system::Load;
 
-/// The direction from the present state: of a chain by its joints, else by the only rate next to the arrival if there is one,
-/// else by the answer to the rate problem of the whole active set.
+/// Returns the direction from the present state. A chain is solved by its joints. Otherwise it is the only rate next to
+/// the arrival, if there is one, or the answer to the rate problem of the whole active set.
 pub fn next_direction(trace: &mut Trace, load: &Load) -> Continued {
     trace.log.counts.rate_problems += 1;
     let active = trace.active_points();
-    // One point that arrives has one cell to go to: the present modes lead there.
+    // // A single point that arrives can enter one cell only: the present modes lead there.
     if trace.state.sense > 0.0 && (trace.associated || trace.arrived() <= 1) {
         let modes = trace.present_modes();
         if let Some((modes, rates)) = trace.by_chain(load, &active, modes) {
@@ -26,7 +26,7 @@ pub fn next_direction(trace: &mut Trace, load: &Load) -> Continued {
             return Continued { by_chain: true, ..Next::Go(trace.take(modes, rates, load)).into() };
         }
     }
-    // From nothing all points are in the active set, and no rate is next to another one.
+    // // At the unloaded state all points are in the active set, and no rate is next to another one.
     let many = if trace.state.x.iter().all(|v| *v == 0.0) {
         true
     } else {
@@ -40,7 +40,7 @@ pub fn next_direction(trace: &mut Trace, load: &Load) -> Continued {
         if let Some(direction) = on_whole_system(trace, load, &active) {
             return Next::Go(direction).into();
         }
-        // With associated flow a mechanism is the proof itself that no rate raises the load.
+        // // With associated flow a mechanism itself proves that no rate raises the load.
         let proves =
             |rates: &Rates, associated| rates.factor > 0.0 || associated && rates.factor == 0.0 && !load.settles;
         if let Some((modes, rates)) = by_strength(trace, load, &active)

@@ -1,12 +1,14 @@
-//! The rate problem of many points at once, by the path of the same structure with a little strength.
+//! The rate problem of many points at once, solved by the path of the same structure with a small strength.
 //!
-//! With facets a_i·r ≤ b_i, b_i > 0, in the place of the active facets a_i·ṙ ≤ 0, the structure at rest has no active point. Its
-//! path under the growing load goes from event to event, one or a few points at a time. Beyond the last event its forces grow
-//! without end, so that strength is nothing beside them: the modes and rates of the last piece solve the rate problem of
-//! strength zero. This is Lemke's path with b as covering vector, followed with the factorisations of the whole structure.
-//! For associated flow without softening it always ends, with a rate on which λ grows or with a mechanism.
+//! The active facets a_i·ṙ ≤ 0 are replaced by facets a_i·r ≤ b_i with b_i > 0, so that the structure at rest has no
+//! active point. Its path under the growing load goes from event to event, with one or a few points at a time. Beyond
+//! the last event its forces grow without limit, so that the strength is negligible: the modes and rates of the last
+//! piece solve the rate problem of strength zero. This is Lemke's path with b as covering vector, followed with the
+//! factorisations of the whole structure. For associated flow without softening it always ends, with a rate on which λ
+//! grows or with a mechanism.
 //!
-//! Sources: Lemke (1965), Management Science 11, 681-689; Cottle, Pang & Stone (1992), The Linear Complementarity Problem, ch. 4.
+//! Sources: Lemke (1965), Management Science 11, 681-689; Cottle, Pang & Stone (1992), The Linear Complementarity
+//! Problem, ch. 4.
 
 use super::continued::Next;
 use super::few::{Neighbourhood, by_active_set, by_neighbours};
@@ -21,11 +23,11 @@ use crate::settings::SETTINGS;
 use voussoir_core::law::Facet;
 use voussoir_core::path::Unobserved;
 
-/// Events after which the path is given up, for each active point.
+/// Greatest number of events of the path for each active point.
 const EVENTS: usize = 20;
 
-/// The rates of the last piece of the path with strength, and the modes of all points. `None` if this path does not end, or if
-/// its rates do not solve the problem.
+/// Returns the rates of the last piece of the path with strength, and the modes of all points. `None` if this path does
+/// not end, or if its rates do not solve the problem.
 pub fn by_strength(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<(Vec<ContactMode>, Rates)> {
     let (direction, modes) = last_piece(trace, load, active)?;
     let modes: Vec<ContactMode> =
@@ -38,7 +40,7 @@ pub fn by_strength(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<(
     holds.then_some((modes, rates))
 }
 
-/// The direction of the last piece and the modes in it.
+/// Returns the direction of the last piece and the modes in it.
 fn last_piece(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<(Direction, Vec<ContactMode>)> {
     let mut observer = Unobserved;
     let system = with_strength(&trace.system, &trace.state.points);
@@ -71,7 +73,7 @@ fn last_piece(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<(Direc
     found
 }
 
-/// The direction of the path with strength, on which a few points at a time are active.
+/// Returns the direction of the path with strength, on which a few points at a time are active.
 fn direction(strong: &mut Trace, load: &Load) -> Option<Direction> {
     let active = strong.active_points();
     if active.is_empty() {
@@ -87,11 +89,11 @@ fn direction(strong: &mut Trace, load: &Load) -> Option<Direction> {
     }
 }
 
-/// The system with strength in the place of each active facet. Facets with slack are out of reach.
+/// Returns the system with strength instead of each active facet. Facets with slack cannot be reached.
 fn with_strength(system: &System, points: &[Point]) -> System {
     let strong = |(facets, point): (&Option<Vec<Facet>>, &Point)| {
         let bound = |f: usize, facet: &Facet| match point.settled().is_none() && point.active.contains(&f) {
-            // The corners of opening and sliding stay apart: at the strength of opening a point may slide as well.
+            // // The corners of opening and sliding stay separate: at the strength of opening a point may also slide.
             true => facet.normal[0].abs() + facet.normal[1].abs(),
             false => f64::INFINITY,
         };
@@ -101,7 +103,8 @@ fn with_strength(system: &System, points: &[Point]) -> System {
     System { facets: system.facets.iter().zip(points).map(strong).collect(), ..system.clone() }
 }
 
-/// A point of the structure with strength before any load. A point without a choice keeps its mode, and an open one stays open.
+/// Returns a point of the structure with strength before any load. A point without a choice keeps its mode, and an open
+/// one stays open.
 fn at_rest(point: &Point) -> Point {
     let opening = if point.open() { f64::INFINITY } else { 0.0 };
     let rests = Point { opening, arrived_from: None, noted: true, ..point.clone() };
@@ -112,7 +115,7 @@ fn at_rest(point: &Point) -> Point {
     }
 }
 
-/// The mode in the rate problem without strength: at the apex all that opens is open.
+/// Returns the mode in the rate problem without strength: at the apex every opening mode is the open mode.
 fn mode_without_strength(point: &Point, mode: ContactMode) -> ContactMode {
     let opens = |f: u8| point.opening_facet == Some(f as usize);
     match mode {

@@ -6,10 +6,10 @@ use crate::path::event::piece::rates::{Direction, Rates, leaving, residual};
 use crate::path::event::trace::Trace;
 use crate::path::system::Load;
 
-/// Rounds, and those in which all points change at once.
+/// Greatest number of rounds, and the number of first rounds in which all points change at once.
 const ROUNDS: [usize; 2] = [80, 40];
 
-/// The direction with λ̇ = 1 if the active set finds it: points change their modes until none leaves its own.
+/// Returns the direction with λ̇ = 1 if the active set finds it: points change their modes until no rate violates one.
 pub fn on_whole_system(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<Direction> {
     let mut modes = trace.present_modes();
     let mut seen: Vec<Vec<ContactMode>> = Vec::new();

@@ -1,4 +1,4 @@
-//! What all joints of the chain do for the redundants and the load, while points change their modes.
+//! Responses of all joints of the chain to the redundants and the load, updated when points change their modes.
 
 use super::factors::{Factor, Factors};
 use super::joint::joints;
@@ -13,22 +13,22 @@ use crate::settings::SETTINGS;
 use nalgebra::{DMatrix, DVector, Matrix3xX, Vector3};
 use voussoir_core::path::PathProblem;
 
-/// Changes of modes after which everything is factorised anew.
+/// Number of changes of modes after which everything is factorised again.
 const CHANGES: usize = 1000;
-/// Changes at once from which on that is cheaper.
+/// Number of simultaneous changes above which a new factorisation is cheaper.
 const AT_ONCE: usize = 24;
 
 /// A chain of joints in the present modes.
 pub struct JointChain {
-    /// The sections that the joints are.
+    /// The sections of the joints.
     sections: Sections,
     factors: Factors,
-    /// Joint and place in it of every contact point.
+    /// Joint of every contact point, and position in the joint.
     places: Vec<(usize, usize)>,
     modes: Vec<ContactMode>,
     load: LoadStatics,
     columns: Columns,
-    /// Rates with λ̇ = 1. Each change of modes corrects them, so that they stay as exact as they were made.
+    /// Rates with λ̇ = 1. Each change of modes corrects them, so that they keep their accuracy.
     rates: Option<ChainRates>,
     updates: Updates,
 }
@@ -36,18 +36,18 @@ pub struct JointChain {
 /// The statics of a load.
 #[derive(Default)]
 struct LoadStatics {
-    /// R about the centre of every joint from (X, s).
+    /// R about the centre of every joint as functions of (X, s).
     resultants: Vec<Matrix3xX<f64>>,
-    /// The load step whose load it is.
+    /// The load step of this load.
     step: Option<usize>,
 }
 
 /// Responses of every joint.
 #[derive(Default)]
 struct Columns {
-    /// To (X, s) and the twists of weak joints.
+    /// Responses to (X, s) and to the twists of weak joints.
     responses: Vec<DMatrix<f64>>,
-    /// Joints with a twist of their own, in the order of its columns.
+    /// Joints with a separate twist, in the order of its columns.
     weak: Vec<usize>,
 }
 
@@ -56,14 +56,14 @@ struct Columns {
 struct Updates {
     /// True if there are factors.
     ready: bool,
-    /// Changes of modes since they were made.
+    /// Number of changes of modes since the last factorisation.
     changes: usize,
     /// Number of factorisations of all joints.
     factorisations: u64,
 }
 
 impl JointChain {
-    /// Of the joints of a problem. `None` where they do not form chains.
+    /// Creates the chain of a problem. `None` if its joints do not form chains.
     pub fn new(system: &System, problem: &PathProblem) -> Option<Self> {
         let sections = Sections::new(system, problem)?;
         let (joints, places) = joints(system, &sections)?;
@@ -79,22 +79,22 @@ impl JointChain {
         })
     }
 
-    /// Number of joints.
+    /// Returns the number of joints.
     pub fn joints(&self) -> usize {
         self.factors.all.len()
     }
 
-    /// Number of factorisations of all joints.
+    /// Returns the number of factorisations of all joints.
     pub fn factorisations(&self) -> u64 {
         self.updates.factorisations
     }
 
-    /// Another load comes.
+    /// Forgets the load, before another one is applied.
     pub fn forget_load(&mut self) {
         self.load.step = None;
     }
 
-    /// Gives the points these modes. `None` where the equations are singular.
+    /// Sets the modes of the points. `None` if the equations are singular.
     pub fn set_modes(&mut self, system: &System, (step, load): (usize, &Load), modes: &[ContactMode]) -> Option<()> {
         if self.load.step != Some(step) {
             let resultants = self.sections.resultants(&load.wrench);
@@ -117,7 +117,7 @@ impl JointChain {
         Some(())
     }
 
-    /// Factorises everything in given modes. `None` where that is singular.
+    /// Factorises everything in given modes. `None` if the equations are singular.
     pub fn factorise(&mut self, system: &System, load: &Load, modes: &[ContactMode]) -> Option<()> {
         self.updates.factorisations += 1;
         (self.updates.changes, self.updates.ready, self.rates) = (0, false, None);
@@ -153,7 +153,7 @@ impl JointChain {
         Some(())
     }
 
-    /// One step of refinement of all responses.
+    /// Refines all responses by one step.
     fn refine_responses(&mut self, mut right: Vec<DMatrix<f64>>) {
         for (e, factor) in self.factors.all.iter().enumerate() {
             let m = 2 * factor.joint.contacts.len();
@@ -210,7 +210,8 @@ impl JointChain {
         Some(())
     }
 
-    /// Adds what right-hand sides of some rows of a joint give to all columns, and to the rates where any are `kept`.
+    /// Adds the response to right-hand sides of some rows of a joint to all columns, and to the rates if any are
+    /// `kept`.
     fn respond(&mut self, e: usize, first: usize, left: &DMatrix<f64>, kept: &[f64]) {
         let window = self.factors.respond(e, first, left.nrows());
         for (response, columns) in self.columns.responses[window.first..].iter_mut().zip(&window.columns) {
@@ -226,7 +227,7 @@ impl JointChain {
         }
     }
 
-    /// Gives a joint a twist of its own.
+    /// Gives a joint a separate twist.
     fn set_weak(&mut self, e: usize) -> Option<()> {
         if self.columns.weak.len() == MOST_WEAK {
             return None;
@@ -251,7 +252,7 @@ impl JointChain {
         Some(())
     }
 
-    /// Finds what the joints do in the present modes with λ̇ = 1. `None` near a mechanism.
+    /// Computes the rates of the joints in the present modes with λ̇ = 1. `None` near a mechanism.
     pub fn find_rates(&mut self) -> Option<()> {
         if let Some(mut rates) = self.rates.take() {
             let before = rates.size();
@@ -275,12 +276,12 @@ impl JointChain {
         closing(&self.sections, &self.factors.all, &self.columns.responses, &self.columns.weak, open)
     }
 
-    /// Changes of modes since the rates were last examined. `None` without rates.
+    /// Returns the number of changes of modes since the rates were last examined. `None` without rates.
     pub fn unchecked(&self) -> Option<usize> {
         self.rates.as_ref().map(|rates| rates.unchecked)
     }
 
-    /// Rates as those of the whole system; gaps of points that stick are zero.
+    /// Returns the rates as those of the whole system; gaps of points that stick are zero.
     pub fn rates(&self, system: &System, load: &Load) -> Option<Rates> {
         let rates = self.rates.as_ref()?;
         let mut gaps = vec![[0.0; 2]; system.contacts];
@@ -304,8 +305,8 @@ impl JointChain {
         Some(Rates { x: self.unknowns(system, &rates.own), factor: 1.0, gaps, worst: 0.0, refinements: 0 })
     }
 
-    /// What the rates leave of the resultants, at most: a correction that is far smaller than a step that follows may
-    /// leave more than that may.
+    /// Returns the greatest residual of the resultants. A correction that is much smaller than a later step may leave a
+    /// larger one than that step may.
     pub fn unbalanced(&self) -> f64 {
         let Some(rates) = &self.rates else { return f64::INFINITY };
         let mut worst = 0.0f64;
@@ -317,7 +318,7 @@ impl JointChain {
         worst
     }
 
-    /// The worst relative residual of the rates, with what they leave of the equations of every joint. `sizes`: of
+    /// Returns the worst relative residual of the rates, and the residual of the equations of every joint. `sizes`: of
     /// forces and motions.
     pub fn examined(&self, load: &Load, [forces, motions]: [f64; 2]) -> Option<(f64, Vec<DMatrix<f64>>)> {
         let rates = self.rates.as_ref()?;
@@ -346,7 +347,7 @@ impl JointChain {
         Some((worst, left))
     }
 
-    /// Takes away what is left of the equations. Returns the rates before. `None` near a mechanism.
+    /// Corrects the rates by the residual of the equations. Returns the previous rates. `None` near a mechanism.
     pub fn refine(&mut self, left: Vec<DMatrix<f64>>) -> Option<ChainRates> {
         let before = self.rates.clone()?;
         let added = self.factors.solve(left);
@@ -357,17 +358,17 @@ impl JointChain {
         Some(before)
     }
 
-    /// Puts rates in the place of the present ones, or forgets these.
+    /// Replaces the present rates; `None` removes them.
     pub fn set_rates(&mut self, rates: Option<ChainRates>) {
         self.rates = rates;
     }
 
-    /// The present rates have been examined: as if after so many corrections.
+    /// Records that the present rates have been examined, with this number of corrections counted.
     pub fn checked(&mut self, unchecked: usize) {
         self.rates.iter_mut().for_each(|rates| rates.unchecked = unchecked);
     }
 
-    /// All unknowns of the system from what the joints do.
+    /// Returns all unknowns of the system from the unknowns of the joints.
     fn unknowns(&self, system: &System, own: &[Vec<f64>]) -> Vec<f64> {
         let mut x = vec![0.0; system.size()];
         let mut twists = vec![Vector3::zeros(); own.len()];
@@ -385,17 +386,17 @@ impl JointChain {
     }
 }
 
-/// What a force and a gap leave of the two equations of a point.
+/// Returns the residual of the two equations of a point for a force and a gap.
 fn left_of(rows: &[[f64; 4]; 2], force: [f64; 2], gap: [f64; 2]) -> [f64; 2] {
     rows.map(|row| -(row[0] * force[0] + row[1] * force[1] + row[2] * gap[0] + row[3] * gap[1]))
 }
 
-/// A component of the resultant that redundants and load give.
+/// Returns a component of the resultant for given redundants and load.
 fn given(statics: &Matrix3xX<f64>, i: usize, share: &DVector<f64>) -> f64 {
     (0..statics.ncols()).map(|j| statics[(i, j)] * share[j]).sum()
 }
 
-/// One column.
+/// Returns one column.
 fn column(columns: &DMatrix<f64>, j: usize) -> &[f64] {
     &columns.as_slice()[columns.nrows() * j..columns.nrows() * (j + 1)]
 }

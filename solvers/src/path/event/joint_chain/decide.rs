@@ -1,4 +1,4 @@
-//! The rate problem on the chain: modes change until no point leaves its own.
+//! The rate problem on the chain: modes change until no point violates its mode.
 
 use super::chain::JointChain;
 use crate::contact::mode::ContactMode;
@@ -9,10 +9,10 @@ use crate::path::event::piece::rates::{Rates, leaving};
 use crate::path::system::{Load, System};
 use crate::settings::SETTINGS;
 
-/// Rounds of the active set, and those in which all points change at once.
+/// Greatest number of rounds of the active set, and the number of first rounds in which all points change at once.
 const ROUNDS: [usize; 2] = [40, 12];
-/// Corrections after which rates are examined again: each errs by rounding of what it changes. Resultants, on which the
-/// load at collapse rests, are examined each time.
+/// Number of corrections after which rates are examined again; each adds rounding errors of its change. Resultants,
+/// which determine the collapse load, are examined each time.
 const UNCHECKED: usize = 8;
 
 /// A rate problem of the chain.
@@ -27,8 +27,8 @@ pub struct Question<'a> {
     pub active: &'a [usize],
 }
 
-/// Modes of all points from a guess, and the rates in them with λ̇ = 1. `None` if the whole system is to be asked. `trials` counts
-/// rounds.
+/// Returns the modes of all points, starting from a guess, and the rates in them with λ̇ = 1. `None` if the whole
+/// system must be solved. `trials` counts rounds.
 pub fn by_joint_chain(
     chain: &mut JointChain,
     question: &Question,
@@ -63,19 +63,19 @@ pub fn by_joint_chain(
     None
 }
 
-/// Sizes of forces and motions to which residuals are relative.
+/// Returns the sizes of forces and motions to which residuals are relative.
 fn sizes((system, load): (&System, &Load), rates: &Rates) -> [f64; 2] {
     let (forces, motions) = rates.x.split_at(2 * system.contacts);
     let forces = largest(forces).max(load.size).max(f64::MIN_POSITIVE);
     [forces, largest(motions).max(forces)]
 }
 
-/// Relative residual up to which rates of these sizes need no refinement.
+/// Returns the relative residual up to which rates of these sizes need no refinement.
 fn enough([forces, motions]: &[f64; 2]) -> f64 {
     SETTINGS.refined.max(SETTINGS.error_of_forces() * forces / motions)
 }
 
-/// Rates refined against the equations of all joints. `None` where they are not believed.
+/// Returns rates refined with the equations of all joints. `None` if they are not accurate.
 fn refined(
     chain: &mut JointChain,
     (system, load): (&System, &Load),

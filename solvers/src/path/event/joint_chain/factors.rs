@@ -1,13 +1,13 @@
-//! The block tridiagonal equations of the joints, as the inverse P_e of every joint's own with all joints before it
-//! condensed out.
+//! The block tridiagonal equations of the joints: each joint stores the inverse P_e of its equations with all joints
+//! before it condensed out.
 //!
 //! ```text
 //! [M_e Ĉ_e + A_e   M_e H_e]        Ĉ_e = C_ee − C_e,e−1 [P_e−1 M_e−1] C_e−1,e
 //! [H_eᵀ             −κ_e  ]  = P_e⁻¹
 //! ```
 //!
-//! M and A: what the modes of the points ask of gaps and forces. A change of a few rows of one joint is a change of the
-//! same rank of what the next one sees of it, and so on (Sherman, Morrison & Woodbury in every joint).
+//! M and A: the coefficients of gaps and forces in the modes of the points. A change of a few rows of one joint changes
+//! the condensed flexibility of the next one by the same rank, and so on (Sherman, Morrison & Woodbury in every joint).
 
 use super::joint::{Joint, ModeRows};
 use crate::linear::dense::{add_outer, dot, product, row_product};
@@ -16,17 +16,17 @@ use nalgebra::DMatrix;
 
 /// A joint with its equations in the present modes.
 pub struct Factor {
-    /// What stays.
+    /// The joint, which does not depend on modes.
     pub joint: Joint,
     /// Rows of its points.
     pub rows: ModeRows,
-    /// Whether it has a spring.
+    /// True if it has a spring.
     pub weak: bool,
     /// P.
     inverse: DMatrix<f64>,
 }
 
-/// M times columns, in place: what the modes ask of gaps.
+/// Multiplies columns by M, in place.
 pub fn ask_gaps(rows: &ModeRows, columns: &mut DMatrix<f64>) {
     for column in columns.as_mut_slice().chunks_exact_mut(2 * rows.len()) {
         for (gap, [first, second]) in column.chunks_exact_mut(2).zip(rows) {
@@ -36,7 +36,7 @@ pub fn ask_gaps(rows: &ModeRows, columns: &mut DMatrix<f64>) {
     }
 }
 
-/// Rows, given as columns of which the first entries count, times M.
+/// Multiplies rows, given as columns whose first entries count, by M.
 fn by_gaps(rows: &ModeRows, columns: &DMatrix<f64>) -> DMatrix<f64> {
     let mut out = DMatrix::zeros(2 * rows.len(), columns.ncols());
     for i in 0..columns.ncols() {
@@ -49,13 +49,13 @@ fn by_gaps(rows: &ModeRows, columns: &DMatrix<f64>) -> DMatrix<f64> {
     out
 }
 
-/// The inverse of a small matrix, where it loses few digits.
+/// Returns the inverse of a small matrix if it loses few digits.
 fn small_inverse(small: DMatrix<f64>) -> Option<DMatrix<f64>> {
     small.try_inverse().filter(|inverse| inverse.amax() < SETTINGS.largest_inverse())
 }
 
 impl Factor {
-    /// Not factorised yet.
+    /// Creates a joint without factorisation.
     pub fn new(joint: Joint) -> Self {
         let n = joint.size();
         Factor { joint, rows: Vec::new(), weak: false, inverse: DMatrix::zeros(n, n) }
@@ -65,7 +65,7 @@ impl Factor {
         2 * self.rows.len()
     }
 
-    /// Ĉ.
+    /// Returns Ĉ.
     fn flexibility(&self, before: Option<&Factor>) -> DMatrix<f64> {
         let own: &DMatrix<f64> = &self.joint.own;
         let beside = before.and_then(|b| Some((b, self.joint.before.as_deref()?, b.joint.after.as_deref()?)));
@@ -76,7 +76,7 @@ impl Factor {
         own - block * (before.inverse.view((0, 0), (m, m)) * asked)
     }
 
-    /// Two rows of Ĉ and H, as columns.
+    /// Returns two rows of Ĉ and H, as columns.
     fn flexibility_of(&self, point: usize, before: Option<&Factor>) -> DMatrix<f64> {
         let (m, n) = (self.forces(), self.joint.size());
         let mut own = DMatrix::from_fn(n, 2, |j, i| match j < m {
@@ -93,7 +93,7 @@ impl Factor {
         own
     }
 
-    /// Factorises with the joint before it. `None` where it is singular.
+    /// Factorises with the joint before it. `None` if the matrix is singular.
     fn factorise(&mut self, before: Option<&Factor>) -> Option<()> {
         let (m, n) = (self.forces(), self.joint.size());
         let flexibility = self.flexibility(before);
@@ -121,7 +121,7 @@ impl Factor {
         (error < SETTINGS.active).then_some(())
     }
 
-    /// Where a point has no force its rows are exact, so that what is zero costs nothing.
+    /// Sets the rows of a point without force to exact zeros, so that products skip them.
     fn clear(&mut self, point: usize) {
         if self.rows[point] == [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0]] {
             for j in 0..self.inverse.ncols() {
@@ -130,37 +130,37 @@ impl Factor {
         }
     }
 
-    /// P M y for y at the points.
+    /// Returns P M y for y at the points.
     fn solve_gaps(&self, mut gaps: DMatrix<f64>) -> DMatrix<f64> {
         ask_gaps(&self.rows, &mut gaps);
         product(&self.inverse, &gaps)
     }
 }
 
-/// Rows of a joint that change: first and number, by how much, and what that changes of M at a point.
+/// A change of rows of a joint: first row and number, the change, and the change of M at a point.
 struct RowChange {
     first: usize,
-    /// As columns.
+    /// The change, as columns.
     by: DMatrix<f64>,
     gaps: Option<[[f64; 4]; 2]>,
 }
 
 /// All joints.
 pub struct Factors {
-    /// In their order.
+    /// Joints in their order.
     pub all: Vec<Factor>,
 }
 
-/// Columns over some joints.
+/// Columns over a range of joints.
 pub struct Window {
     /// The first joint.
     pub first: usize,
-    /// Its and the following ones' columns.
+    /// Columns of this joint and the following ones.
     pub columns: Vec<DMatrix<f64>>,
 }
 
 impl Factors {
-    /// Factorises all joints. `None` where one is singular.
+    /// Factorises all joints. `None` if one is singular.
     pub fn factorise(&mut self) -> Option<()> {
         for e in 0..self.all.len() {
             let (done, rest) = self.all.split_at_mut(e);
@@ -173,7 +173,7 @@ impl Factors {
         e.checked_sub(1).map(|b| &self.all[b])
     }
 
-    /// Gives a point of a joint other rows. `None` where that loses too many digits.
+    /// Replaces the rows of a point of a joint. `None` if that loses too many digits.
     pub fn set_rows(&mut self, e: usize, point: usize, rows: [[f64; 4]; 2]) -> Option<()> {
         let factor = &self.all[e];
         let difference = [0, 1].map(|i| [0, 1, 2, 3].map(|t| rows[i][t] - factor.rows[point][i][t]));
@@ -189,7 +189,7 @@ impl Factors {
         Some(())
     }
 
-    /// Gives a joint a spring.
+    /// Adds a spring to a joint.
     pub fn set_weak(&mut self, e: usize) -> Option<()> {
         let (m, n) = (self.all[e].forces(), self.all[e].joint.size());
         let mut by = DMatrix::zeros(n, 3);
@@ -216,7 +216,7 @@ impl Factors {
         self.hand_on(e, left.rows(0, m).clone_owned(), right)
     }
 
-    /// Hands a change a bᵀ of P M at the points of a joint on to the following ones.
+    /// Passes a change a bᵀ of P M at the points of a joint to the following joints.
     fn hand_on(&mut self, e: usize, mut left: DMatrix<f64>, mut right: DMatrix<f64>) -> Option<()> {
         let least = SETTINGS.negligible() * left.amax() * right.amax();
         let q = left.ncols();
@@ -242,7 +242,8 @@ impl Factors {
         Some(())
     }
 
-    /// What unit right-hand sides of some rows of a joint give, as far as it does not die away.
+    /// Returns the response to unit right-hand sides of some rows of a joint, up to the joint where it becomes
+    /// negligible.
     pub fn respond(&self, e: usize, first: usize, count: usize) -> Window {
         let mut ahead = vec![self.all[e].inverse.columns(first, count).clone_owned()];
         let least = SETTINGS.negligible() * ahead[0].amax();
@@ -276,13 +277,13 @@ impl Factors {
         Window { first: start, columns: behind }
     }
 
-    /// P M C x for x of the next joint.
+    /// Returns P M C x for x of the next joint.
     fn by_next(&self, e: usize, next: &DMatrix<f64>) -> Option<DMatrix<f64>> {
         let block = self.all[e].joint.after.as_ref()?;
         Some(self.all[e].solve_gaps(product(block, next)))
     }
 
-    /// Solutions for several right-hand sides of all rows, joint after joint.
+    /// Solves for several right-hand sides of all rows, joint by joint.
     pub fn solve(&self, right: Vec<DMatrix<f64>>) -> Vec<DMatrix<f64>> {
         let mut all: Vec<DMatrix<f64>> = Vec::with_capacity(right.len());
         for (e, mut right) in right.into_iter().enumerate() {

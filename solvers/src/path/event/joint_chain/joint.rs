@@ -1,4 +1,5 @@
-//! A joint of the chain: which points it has, what they feel of each other and of the joints beside them.
+//! A joint of the chain: its points, and the flexibilities that couple them with each other and with the neighbouring
+//! joints.
 
 use super::sections::{Section, Sections};
 use crate::contact::mode::ContactMode;
@@ -8,7 +9,7 @@ use crate::settings::SETTINGS;
 use nalgebra::{DMatrix, Vector3};
 use std::rc::Rc;
 
-/// Kinds of matrices that are looked through.
+/// Number of different matrices that are compared.
 const KINDS: usize = 16;
 
 /// A joint.
@@ -17,22 +18,22 @@ pub struct Joint {
     pub section: usize,
     /// Its contact points.
     pub contacts: Vec<usize>,
-    /// H of all of them.
+    /// H of all its points.
     pub by_twist: DMatrix<f64>,
     /// Gaps from the joint's own forces.
     pub own: Rc<DMatrix<f64>>,
-    /// Gaps from the forces of the joint before, where a voussoir lies between them.
+    /// Gaps from the forces of the joint before, if a voussoir connects them.
     pub before: Option<Rc<DMatrix<f64>>>,
-    /// The same of the joint after.
+    /// Gaps from the forces of the joint after, if a voussoir connects them.
     pub after: Option<Rc<DMatrix<f64>>>,
-    /// The three the other way round, so that the gap of one point reads columns.
+    /// The three matrices transposed, so that the gap of one point reads columns.
     rows: [Option<Rc<DMatrix<f64>>>; 3],
     /// κ.
     pub spring: Vector3<f64>,
 }
 
-/// Order of the sections in which each feels its neighbours only, and where a chain of them begins. `None` where there
-/// is no such order.
+/// Returns an order of the sections in which each is coupled only with its neighbours; true marks the start of a chain.
+/// `None` if no such order exists.
 fn ordered(system: &System, sections: &Sections) -> Option<Vec<(usize, bool)>> {
     let mut beside: Vec<Vec<usize>> = vec![Vec::new(); sections.all.len()];
     for (e, section) in sections.all.iter().enumerate() {
@@ -60,7 +61,7 @@ fn ordered(system: &System, sections: &Sections) -> Option<Vec<(usize, bool)>> {
     (order.len() == beside.len()).then_some(order)
 }
 
-/// Gaps at the points of a section from forces at those of another.
+/// Returns the gaps at the points of a section from forces at another section.
 fn felt(system: &System, at: &Section, from: &Section, place: &[usize]) -> DMatrix<f64> {
     let mut block = DMatrix::zeros(2 * at.places.len(), 2 * from.places.len());
     let own: Vec<usize> = from.places.iter().map(|p| p.contact).collect();
@@ -76,7 +77,7 @@ fn felt(system: &System, at: &Section, from: &Section, place: &[usize]) -> DMatr
     block
 }
 
-/// Matrices that differ by rounding only are one: those of congruent voussoirs then stay in the cache.
+/// Matrices that differ only by rounding are stored once: the matrices of congruent voussoirs then stay in the cache.
 #[derive(Default)]
 struct Shared(Vec<Rc<DMatrix<f64>>>);
 
@@ -98,11 +99,10 @@ impl Shared {
     }
 }
 
-/// The joints in their order, and the place (joint, position in it) of every contact point.
+/// The joints in their order, and (joint, position in it) of every contact point.
 pub type Ordered = (Vec<Joint>, Vec<(usize, usize)>);
 
-/// The joints of chains. `None` where sections do
-/// not form chains, or where nothing gives way in one.
+/// Returns the joints of chains. `None` if sections do not form chains, or if a section has no flexibility.
 pub fn joints(system: &System, sections: &Sections) -> Option<Ordered> {
     let order = ordered(system, sections)?;
     let mut within = vec![usize::MAX; system.contacts];
@@ -146,22 +146,22 @@ pub fn joints(system: &System, sections: &Sections) -> Option<Ordered> {
 pub type ModeRows = Vec<[[f64; 4]; 2]>;
 
 impl Joint {
-    /// Number of its equations.
+    /// Returns the number of its equations.
     pub fn size(&self) -> usize {
         2 * self.contacts.len() + 3
     }
 
-    /// Rows of its points in given modes of all points. `None` where there is no such facet.
+    /// Returns the rows of its points in given modes of all points. `None` if a facet of a mode does not exist.
     pub fn rows(&self, system: &System, modes: &[ContactMode]) -> Option<ModeRows> {
         self.contacts.iter().map(|c| system.rows(*c, modes[*c])).collect()
     }
 
-    /// Whether it may have no room for a resultant.
+    /// Returns true if the joint may not be able to carry every resultant.
     pub fn is_weak(&self, modes: &[ContactMode]) -> bool {
         self.contacts.iter().filter(|c| modes[**c] == ContactMode::Stick).count() < 2
     }
 
-    /// Gaps of its points, it being joint `e`, by what the joints do.
+    /// Returns the gaps of the points of joint `e` from the unknowns of the joints.
     pub fn gaps<'a>(&self, e: usize, of: &dyn Fn(usize) -> &'a [f64]) -> Vec<f64> {
         let m = 2 * self.contacts.len();
         let mut gaps = vec![0.0; m];
@@ -175,7 +175,7 @@ impl Joint {
         gaps
     }
 
-    /// Gap of one of its points.
+    /// Returns the gap of one of its points.
     pub fn gap<'a>(&self, e: usize, p: usize, of: &dyn Fn(usize) -> &'a [f64]) -> [f64; 2] {
         let m = 2 * self.contacts.len();
         let row = |k: usize, i: usize, e: usize| {
@@ -190,7 +190,7 @@ impl Joint {
         })
     }
 
-    /// A component of the resultant of its forces.
+    /// Returns a component of the resultant of its forces.
     pub fn resultant(&self, i: usize, forces: &[f64]) -> f64 {
         let rows = self.by_twist.nrows();
         dot(&self.by_twist.as_slice()[i * rows..(i + 1) * rows], &forces[..rows])

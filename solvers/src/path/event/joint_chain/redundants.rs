@@ -1,4 +1,4 @@
-//! The few equations that are left of a rate problem: compatibility of the cycles, and the twists of weak joints.
+//! The few remaining equations of a rate problem: compatibility of the cycles, and the twists of weak joints.
 
 use super::factors::Factor;
 use super::rates::ChainRates;
@@ -6,27 +6,27 @@ use super::sections::Sections;
 use crate::settings::SETTINGS;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
-/// Joints with a twist of their own above which the whole system is asked.
+/// Greatest number of joints with a separate twist; with more, the whole system is solved.
 pub const MOST_WEAK: usize = 24;
 
-/// Twist of a joint in a column of its unknowns.
+/// Returns the twist of a joint in a column of its unknowns.
 fn twist(factor: &Factor, columns: &DMatrix<f64>, column: usize) -> Vector3<f64> {
     let m = 2 * factor.joint.contacts.len();
     Vector3::from_fn(|i, _| columns[(m + i, column)])
 }
 
-/// What the redundants close: the rates for λ̇ = 1, or what a step of refinement leaves.
+/// The rates whose cycles the redundants close: for λ̇ = 1, or for the residual in a step of refinement.
 pub enum Open<'a> {
     /// The load alone.
     Load,
-    /// Rates of the joints, and what right-hand sides of their own equations add to them.
+    /// Rates of the joints, and the additions from right-hand sides of their own equations.
     Refined(&'a [Vec<f64>], &'a [DMatrix<f64>]),
-    /// Rates whose joints satisfy their own equations with the resultants that they had.
+    /// Rates whose joints satisfy their own equations with the previous resultants.
     Corrected(&'a ChainRates),
 }
 
-/// Factors of the columns of all responses that close the cycles and give weak joints their twists: redundants, then
-/// λ̇, then twists of the `weak` joints. `None` near a mechanism.
+/// Returns the factors of the columns of all responses that close the cycles and give weak joints their twists:
+/// redundants, then λ̇, then twists of the `weak` joints. `None` near a mechanism.
 pub fn closing(
     sections: &Sections,
     factors: &[Factor],
@@ -83,8 +83,8 @@ pub fn closing(
     }))
 }
 
-/// The solution of a small system: rows and columns scaled to one, full pivoting, one step of refinement. `None` if the
-/// matrix is singular to rounding.
+/// Solves a small system: rows and columns scaled to one, full pivoting, one step of refinement. `None` if the matrix
+/// is singular to rounding.
 fn solved(matrix: DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
     let n = matrix.nrows();
     if n == 0 {

@@ -1,16 +1,16 @@
-//! The assembly as sections between bodies: which section forces statics leaves open.
+//! The assembly as sections between bodies, and the section forces that statics does not determine.
 
 use crate::path::system::System;
 use nalgebra::{Matrix2, Matrix2x3, Matrix3, Matrix3xX, Vector3};
 use std::collections::BTreeMap;
 use voussoir_core::path::PathProblem;
 
-/// Cycles of sections above which statics leaves too much open.
+/// Greatest number of cycles of sections.
 const MOST_CYCLES: usize = 8;
 
 /// A contact point of a section.
 pub struct Place {
-    /// Which contact point.
+    /// Index of the contact point.
     pub contact: usize,
     /// H: gap from the relative twist about the section's centre.
     pub rows: Matrix2x3<f64>,
@@ -18,25 +18,25 @@ pub struct Place {
 
 /// All contact points between two bodies, or one and the ground.
 pub struct Section {
-    /// Free bodies that it joins; `None`: the ground. Twists are those of the second relative to the first.
+    /// Free bodies that it joins; `None`: the ground. Twists are those of the second body relative to the first.
     pub bodies: [Option<usize>; 2],
     /// Its contact points.
     pub places: Vec<Place>,
-    /// E: resultants about the centre from those about the origin.
+    /// E: converts resultants about the origin to resultants about the centre.
     pub to_centre: Matrix3<f64>,
-    /// Share of each cycle's redundants in its resultant: −1, 0 or 1.
+    /// Coefficient of each cycle's redundants in its resultant: −1, 0 or 1.
     pub shares: Vec<f64>,
 }
 
-/// A body as a branch of the tree: the section to what is nearer the ground.
+/// A body as a branch of the tree, with the section towards the ground.
 struct Branch {
     body: usize,
     section: usize,
-    /// 1 where it is the second body of that section.
+    /// 1 if it is the second body of that section, otherwise −1.
     sign: f64,
 }
 
-/// Sections, and a tree of them that holds all bodies.
+/// Sections, and a tree of them that contains all bodies.
 pub struct Sections {
     /// All sections.
     pub all: Vec<Section>,
@@ -50,7 +50,7 @@ pub struct Sections {
     poles: Vec<[f64; 2]>,
 }
 
-/// Row of a contact point over (u_x, u_y, θ) of a body.
+/// Returns the row of a contact point over (u_x, u_y, θ) of a body.
 fn row_of(system: &System, row: usize, body: usize) -> Vector3<f64> {
     let mut g = Vector3::zeros();
     for &(j, v) in system.kinematics.row(row).iter().filter(|e| e.0 / 3 == body) {
@@ -60,7 +60,7 @@ fn row_of(system: &System, row: usize, body: usize) -> Vector3<f64> {
 }
 
 impl Sections {
-    /// Groups the contact points. `None` if a contact point is rigid, if a body hangs on nothing, or if
+    /// Groups the contact points. `None` if a contact point is rigid, if a body has no connection to the ground, or if
     /// there are too many cycles.
     pub fn new(system: &System, problem: &PathProblem) -> Option<Self> {
         let mut poles = vec![[0.0; 2]; system.bodies];
@@ -133,7 +133,7 @@ impl Sections {
         if self.cycles > MOST_CYCLES {
             return None;
         }
-        // R of a branch balances what closes cycles beyond it.
+        // // R of a branch balances the redundants of the cycles beyond it.
         let mut beyond = vec![vec![0.0; self.cycles]; bodies];
         self.all.iter_mut().for_each(|s| s.shares = vec![0.0; closing.len()]);
         for (k, &s) in closing.iter().enumerate() {
@@ -154,7 +154,7 @@ impl Sections {
         Some(())
     }
 
-    /// Resultant of each section by forces on the bodies, about the origin, without redundants.
+    /// Returns the resultant of each section from forces on the bodies, about the origin, without redundants.
     pub fn resultants(&self, wrench: &[[f64; 3]]) -> Vec<Vector3<f64>> {
         let mut beyond: Vec<Vector3<f64>> = wrench
             .iter()
@@ -172,8 +172,8 @@ impl Sections {
         resultants
     }
 
-    /// Motions of the free bodies (u_x, u_y, θ L about their poles) from the relative twists of all sections
-    /// about their centres.
+    /// Returns the motions of the free bodies (u_x, u_y, θ L about their poles) from the relative twists of all
+    /// sections about their centres.
     pub fn motions(&self, twists: &[Vector3<f64>]) -> Vec<[f64; 3]> {
         let mut own = vec![Vector3::zeros(); self.poles.len()];
         for branch in &self.tree {
@@ -187,7 +187,7 @@ impl Sections {
 }
 
 impl Section {
-    /// R about the centre from (X, s): resultants from redundants and the arc of the load.
+    /// Returns R about the centre as a function of (X, s): redundants and the arc of the load.
     pub fn statics(&self, load: &Vector3<f64>) -> Matrix3xX<f64> {
         let cycles = self.shares.len();
         let mut all = Matrix3xX::zeros(3 * cycles + 1);
@@ -214,7 +214,7 @@ impl Place {
                     compliance[(i, j % 2)] += v;
                 }
             }
-            // By the second body, or against the first.
+            // // From the second body, or with opposite sign from the first.
             let about = |body: usize| {
                 let g = row_of(system, 2 * contact + i, body);
                 let p = [poles[body][0] - centre[0], poles[body][1] - centre[1]];

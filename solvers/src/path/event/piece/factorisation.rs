@@ -1,7 +1,7 @@
-//! One factorisation for many events: every contact point has a mode in the factorised matrix, and points that have
-//! changed theirs since enter as right-hand sides of their own two rows. Contact
-//! forces with equations of their own are condensed out ([`condensed`](crate::linear::condensed)): of the
-//! responses to changed points only what is kept is stored.
+//! One factorisation for many events. Every contact point has a mode in the factorised matrix; points that have changed
+//! their mode since then are right-hand sides of their own two rows. Contact forces with their own equations are
+//! condensed out ([`condensed`](crate::linear::condensed)); of the responses to changed points only the kept unknowns
+//! are stored.
 //!
 //! ```text
 //! stick   C ṙ + G q̇ = ε − λ̇ g_p          free    ṙ = ε
@@ -18,21 +18,21 @@ use crate::settings::SETTINGS;
 use nalgebra::DMatrix;
 use voussoir_core::linear::Entries;
 
-/// Steps of refinement of a solution, at most.
+/// Greatest number of refinement steps of a solution.
 pub const REFINEMENTS: usize = 3;
 
 /// The equations in given modes, factorised.
 pub struct FactorisedModes {
     /// Mode of each contact point in the matrix.
     pub modes: Vec<ContactMode>,
-    /// Whether responses to single points are refined, as what is claimed of the rate problem needs.
+    /// True if responses to single points are refined, as claims about the rate problem require.
     pub refine_columns: bool,
     updated: UpdatedFactorisation,
     load_rate: Option<(usize, Vec<f64>)>,
 }
 
 impl FactorisedModes {
-    /// Assembles and factorises. `None` where the system is singular.
+    /// Assembles and factorises. `None` if the system is singular.
     pub fn new(system: &System, modes: Vec<ContactMode>, refine_columns: bool) -> Option<Self> {
         let nc = system.contacts;
         let (mut entries, mut regularisation): (Entries, Entries) = (Vec::new(), Vec::new());
@@ -74,7 +74,7 @@ impl FactorisedModes {
         Some(FactorisedModes { modes, refine_columns, updated, load_rate: None })
     }
 
-    /// x for λ̇ = 1 with every mode as factorised.
+    /// Returns x for λ̇ = 1 with every mode as factorised.
     pub fn load_rate(&mut self, system: &System, index: usize, load: &Load) -> Option<&Vec<f64>> {
         if self.load_rate.as_ref().is_none_or(|(i, _)| *i != index) {
             let right = self.right(system, load);
@@ -83,7 +83,7 @@ impl FactorisedModes {
         self.load_rate.as_ref().map(|(_, x)| x)
     }
 
-    /// Motions that a wrench on the bodies makes with every mode as factorised, in units; `refined` or not.
+    /// Returns the motions caused by a wrench on the bodies with every mode as factorised, in units; `refined` or not.
     pub fn moved_by(&self, system: &System, wrench: &[f64], refined: bool) -> Option<Vec<f64>> {
         let first = 2 * system.contacts;
         let mut right = vec![0.0; system.size()];
@@ -92,7 +92,7 @@ impl FactorisedModes {
         self.updated.factors.solve(&right, refinements).map(|mut x| x.split_off(first))
     }
 
-    /// All unknowns for gaps of points that stick, at a held load.
+    /// Returns all unknowns for gaps of points that stick, at a held load.
     pub fn opened(&self, system: &System, points: &[usize], gaps: &[[f64; 2]]) -> Option<Vec<f64>> {
         let mut right = vec![0.0; system.size()];
         for (c, gap) in points.iter().zip(gaps) {
@@ -101,13 +101,13 @@ impl FactorisedModes {
         self.updated.factors.solve(&right, REFINEMENTS)
     }
 
-    /// Forgets responses to single points; whether those to come are refined.
+    /// Forgets responses to single points, and sets if later ones are refined.
     pub fn set_refined(&mut self, refine_columns: bool) {
         self.refine_columns = refine_columns;
         self.updated.forget_responses();
     }
 
-    /// Another load comes.
+    /// Forgets the load, before another one is applied.
     pub fn forget_load(&mut self) {
         self.load_rate = None;
     }
@@ -132,12 +132,12 @@ impl FactorisedModes {
         right
     }
 
-    /// Kept unknowns for any right-hand side with every mode as factorised, not refined.
+    /// Returns the kept unknowns for any right-hand side with every mode as factorised, not refined.
     pub fn kept(&self, right: &[f64]) -> Option<Vec<f64>> {
         Some(self.updated.factors.condense(&[right.to_vec()])?.swap_remove(0))
     }
 
-    /// Makes sure that the responses to the rows of these points are known. `solves` counts.
+    /// Computes the responses to the rows of these points if they are not known. `solves` counts right-hand sides.
     pub fn respond(&mut self, points: &[usize], solves: &mut u64) -> Option<()> {
         let refinements = if self.refine_columns { REFINEMENTS } else { 0 };
         for c in points {
@@ -146,13 +146,13 @@ impl FactorisedModes {
         Some(())
     }
 
-    /// Number of points whose responses are known.
+    /// Returns the number of points with known responses.
     pub fn responses(&self) -> usize {
         self.updated.responses()
     }
 
-    /// (ṙ, ġ) at `points`, 4 rows each, per ε of `points` (2 columns each) and, last, per λ̇.
-    /// Responses and the load rate must be known.
+    /// Returns (ṙ, ġ) at `points`, 4 rows each, per ε of `points` (2 columns each) and, last, per λ̇. Responses and the
+    /// load rate must be known.
     pub fn local(&self, system: &System, points: &[usize], load: &Load) -> DMatrix<f64> {
         let n = points.len();
         let mut out = DMatrix::zeros(4 * n, 2 * n + 1);
@@ -184,7 +184,7 @@ impl FactorisedModes {
         out
     }
 
-    /// (ṙ, ġ) at `points` from kept unknowns and the right-hand sides of contact points.
+    /// Returns (ṙ, ġ) at `points` from kept unknowns and the right-hand sides of contact points.
     pub fn seen(
         &self,
         system: &System,
@@ -205,7 +205,7 @@ impl FactorisedModes {
         points.iter().map(at).collect()
     }
 
-    /// x for ε at `points`, on top of right-hand sides of all rows with their kept unknowns.
+    /// Returns x for ε at `points`, added to right-hand sides of all rows with their kept unknowns.
     pub fn combine(&self, points: &[usize], epsilon: &[f64], onto: (Vec<f64>, Vec<f64>)) -> Vec<f64> {
         let (mut right, mut y) = onto;
         for (c, epsilon) in points.iter().zip(epsilon.chunks_exact(2)) {
@@ -215,7 +215,7 @@ impl FactorisedModes {
         self.updated.factors.expand(&right, &y)
     }
 
-    /// Nothing on the right-hand side, and its kept unknowns.
+    /// Returns a zero right-hand side, and its kept unknowns.
     pub fn nothing(&self) -> (Vec<f64>, Vec<f64>) {
         self.updated.factors.nothing()
     }

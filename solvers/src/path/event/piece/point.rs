@@ -1,4 +1,4 @@
-//! A contact point between events: which facets have no slack, whether it is open, what it does.
+//! A contact point between events: facets without slack, opening, and mode.
 
 use crate::contact::active_point::ActivePoint;
 use crate::contact::mode::ContactMode;
@@ -6,20 +6,20 @@ use crate::path::system::System;
 use crate::rate::arrival::ArrivalPoint;
 use voussoir_core::law::{Facet, FacetMode};
 
-/// What is kept of a contact point between events.
+/// State of a contact point between events.
 #[derive(Debug, Clone)]
 pub struct Point {
     /// Facets without slack.
     pub active: Vec<usize>,
-    /// Opening: gap above the dilated surface; > 0 where open.
+    /// Opening: gap above the dilated surface; > 0 if the point is open.
     pub opening: f64,
     /// Its mode on the present piece of the path.
     pub mode: ContactMode,
     /// If it is a point of the present event: its mode on the piece before.
     pub arrived_from: Option<ContactMode>,
-    /// Whether anything has been noted as having happened to it.
+    /// True if an event of the point has been recorded.
     pub noted: bool,
-    /// Bound at the apex: opening and both senses of slip end in one corner.
+    /// True if facets at the apex have bounds: opening and both senses of slip meet in one corner.
     pub apex: bool,
     /// Index of the opening facet.
     pub opening_facet: Option<usize>,
@@ -28,7 +28,7 @@ pub struct Point {
 }
 
 impl Point {
-    /// A contact point before any load.
+    /// Returns a contact point before any load.
     pub fn untouched(system: &System, c: usize) -> Self {
         let diagonal = |row: usize| system.flexibility.row(row).iter().find(|e| e.0 == row).map_or(0.0, |e| e.1);
         let flexibility = diagonal(2 * c);
@@ -52,12 +52,12 @@ impl Point {
         Point { active, opening, mode, arrived_from: Some(mode), apex, opening_facet, ..closed }
     }
 
-    /// Whether it is open.
+    /// Returns true if it is open.
     pub fn open(&self) -> bool {
         self.opening > 0.0
     }
 
-    /// As the rate problem sees it, with its facets.
+    /// Returns the point of the rate problem, with its facets.
     pub fn as_active<'s>(&self, facets: &'s [Facet]) -> ActivePoint<'s> {
         ActivePoint {
             facets,
@@ -69,15 +69,15 @@ impl Point {
         }
     }
 
-    /// As it arrives at the present event.
+    /// Returns the point at the arrival at the present event.
     pub fn arrival(&self, force: [f64; 2]) -> ArrivalPoint {
         let present = || self.settled().unwrap_or(self.mode);
         let (mode, hit) = (self.arrived_from.unwrap_or_else(present), self.arrived_from.is_some());
-        // Rates are constant on a piece: slip ends at events of other points only.
+        // // Rates are constant on a piece: slip ends only at events of other points.
         ArrivalPoint { mode, hit, stops: false, force }
     }
 
-    /// The mode of a point that has no choice; `None` in the active set.
+    /// Returns the mode of a point without a choice; `None` in the active set.
     pub fn settled(&self) -> Option<ContactMode> {
         match (self.open(), self.apex) {
             (true, true) => Some(ContactMode::Open),
@@ -88,7 +88,7 @@ impl Point {
     }
 }
 
-/// Some points as the rate problem sees them.
+/// Returns some points as points of the rate problem.
 pub fn active_points<'s>(system: &'s System, points: &[Point], at: &[usize]) -> Vec<ActivePoint<'s>> {
     at.iter().map(|&c| points[c].as_active(system.facets[c].as_deref().unwrap_or_default())).collect()
 }

@@ -1,5 +1,4 @@
-//! Rates of all unknowns in given modes: what they leave of the equations, and which points they move out of
-//! their modes.
+//! Rates of all unknowns in given modes: their residuals, and the points that they move out of their modes.
 
 use super::point::{Point, active_points};
 use crate::contact::mode::ContactMode;
@@ -17,22 +16,22 @@ pub struct Direction {
     pub gaps: Vec<[f64; 2]>,
 }
 
-/// Rates on the way to a direction.
+/// Rates before they are accepted as a direction.
 pub struct Rates {
-    /// Of all unknowns.
+    /// Rates of all unknowns.
     pub x: Vec<f64>,
     /// λ̇.
     pub factor: f64,
-    /// Of all gaps, the load's own included.
+    /// Rates of all gaps, including the gaps opened by the load.
     pub gaps: Vec<[f64; 2]>,
     /// Worst relative residual.
     pub worst: f64,
-    /// Steps of refinement.
+    /// Number of refinement steps.
     pub refinements: u64,
 }
 
 impl Rates {
-    /// With the gaps that they open.
+    /// Creates rates with their gaps.
     pub fn new(system: &System, x: Vec<f64>, factor: f64, load: &Load) -> Rates {
         let mut gaps = system.gaps(&x);
         if load.opens && factor != 0.0 {
@@ -43,14 +42,14 @@ impl Rates {
         Rates { x, factor, gaps, worst: 0.0, refinements: 0 }
     }
 
-    /// Whether motions are so large beside the forces that a mechanism is near.
+    /// Returns true if motions are so large compared with forces that a mechanism is near.
     pub fn nears_mechanism(&self, forces: usize) -> bool {
         largest(&self.x[..forces]) < SETTINGS.fine * largest(&self.x[forces..])
     }
 }
 
-/// Points of the active set that rates move out of their modes: how far, which, and the mode that mends it. `None`
-/// where gaps have no bound.
+/// Returns the points of the active set that rates move out of their modes: violation, point, and the mode that repairs
+/// it. `None` if gaps have no bound.
 pub fn leaving(
     (system, points): (&System, &[Point]),
     (rates, load): (&Rates, &Load),
@@ -77,12 +76,12 @@ pub fn leaving(
     Some(changes)
 }
 
-/// The worst residual of rates relative to the forces and gaps, and what they leave of the equations: the rows of
+/// Returns the worst residual of rates relative to the forces and gaps, and the residuals of the equations: the rows of
 /// the modes, then equilibrium.
 pub fn residual(system: &System, rates: &Rates, load: &Load, modes: &[ContactMode]) -> (f64, Vec<f64>) {
     let nc = system.contacts;
     let x = &rates.x;
-    // Where everything comes apart forces are zero, up to what is left of them.
+    // // If all joints open, forces are zero up to their residual.
     let forces = largest(&x[..2 * nc]).max(1e-300).max(rates.factor.abs() * load.size);
     let motions = largest(&x[2 * nc..]).max(1e-300).max(forces);
     let mut worst: f64 = 0.0;
@@ -111,8 +110,8 @@ pub fn residual(system: &System, rates: &Rates, load: &Load, modes: &[ContactMod
     (worst, left)
 }
 
-/// What is left of rates whose system is singular to rounding: the motion alone, where forces are small
-/// beside it and it keeps to its modes, in the sense in which it does.
+/// Returns the motion without forces of rates whose system is singular to rounding, in the sense in which it keeps its
+/// modes. `None` if forces are not small compared with the motion, or if the motion violates its modes.
 pub fn motion_alone(
     (system, points): (&System, &[Point]),
     rates: &Rates,
@@ -134,8 +133,8 @@ pub fn motion_alone(
     })
 }
 
-/// Rates with a moving support, their forces taken for rounding: `None` where they are more than that, because the
-/// motion alone does not keep the points in their modes or a load grows too.
+/// Returns rates with a moving support and zero forces. `None` if the forces are more than rounding, because the motion
+/// alone violates the modes or a load grows too.
 fn at_constant_forces((system, points): (&System, &[Point]), (x, factor): (&[f64], f64), load: &Load) -> Option<Rates> {
     let forces = 2 * system.contacts;
     let loaded = load.wrench.iter().flatten().any(|w| *w != 0.0);
@@ -148,10 +147,10 @@ fn at_constant_forces((system, points): (&System, &[Point]), (x, factor): (&[f64
     (residual(system, &moved, load, &modes).0 <= SETTINGS.shift()).then_some(moved)
 }
 
-/// The direction of rates, with points without a choice in their modes; gaps of stuck points are made exact.
+/// Returns the direction of rates and sets the modes of points without a choice; gaps of stuck points are made exact.
 pub fn direction_of(system: &System, points: &mut [Point], rates: Rates, load: &Load) -> Direction {
     let Rates { mut x, mut gaps, mut factor, .. } = rates;
-    // In a mechanism forces and λ stand still; what is left of them beside the motion is rounding.
+    // // In a mechanism forces and λ are constant; their rates are rounding errors.
     let forces = 2 * system.contacts;
     let stiffest = points.iter().map(|p| p.stiffness).fold(1.0, f64::max);
     let still = if factor == 0.0 { 100.0 * SETTINGS.active * stiffest } else { SETTINGS.active };

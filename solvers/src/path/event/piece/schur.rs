@@ -1,5 +1,5 @@
-//! The Schur complement of a factorisation on some contact points: ṙ = S ġ + s λ̇ over those whose mode is open,
-//! while all others keep theirs, whichever the factorised matrix has for them.
+//! The Schur complement of a factorisation on some contact points: ṙ = S ġ + s λ̇ over the points with open modes,
+//! while all others keep theirs, for any modes in the factorised matrix.
 
 use super::factorisation::FactorisedModes;
 use super::point::{Point, active_points};
@@ -9,23 +9,23 @@ use crate::path::system::{Load, System};
 use crate::rate::problem::{Rate, RateProblem};
 use nalgebra::{DMatrix, DVector};
 
-/// A rate problem over points with the way back to all unknowns.
+/// A rate problem over points, with the data to recover all unknowns.
 pub struct SchurComplement<'a> {
-    /// Over the points whose mode is open.
+    /// The rate problem over the points with open modes.
     pub rate: RateProblem<'a>,
     /// The problem in its units.
     pub system: &'a System,
-    /// Those points, then others whose mode is not the factorised one.
+    /// These points, then others whose mode is not the factorised one.
     points: Vec<usize>,
-    /// Number of points whose mode is open.
+    /// Number of points with open modes.
     open: usize,
-    /// (ṙ, ġ) of all of them per ε and, last, λ̇.
+    /// (ṙ, ġ) of all `points` per ε and, last, λ̇.
     response: DMatrix<f64>,
-    /// ε of all of them per ġ of the open points and, last, λ̇.
+    /// ε of all `points` per ġ of the open points and, last, λ̇.
     epsilon: DMatrix<f64>,
 }
 
-/// Rows that fix ε of points times (ṙ, ġ) there.
+/// Returns the rows that fix ε of points times (ṙ, ġ) there.
 fn picked(picks: &[[[f64; 4]; 2]], seen: &DMatrix<f64>, columns: usize) -> DMatrix<f64> {
     DMatrix::from_fn(2 * picks.len(), columns, |i, j| {
         let (k, pick) = (i / 2, &picks[i / 2][i % 2]);
@@ -34,7 +34,7 @@ fn picked(picks: &[[[f64; 4]; 2]], seen: &DMatrix<f64>, columns: usize) -> DMatr
 }
 
 impl<'a> SchurComplement<'a> {
-    /// Reduces to the `open` points; all others keep their `modes`. `None` where linear algebra fails.
+    /// Reduces to the `open` points; all others keep their `modes`. `None` if linear algebra fails.
     pub fn new(
         (system, all): (&'a System, &[Point]),
         base: &mut FactorisedModes,
@@ -50,7 +50,7 @@ impl<'a> SchurComplement<'a> {
         base.respond(&points, solves)?;
         base.load_rate(system, load_step, load)?;
         let response = base.local(system, &points, load);
-        // Rows that fix ε: ġ of the open points, the mode of the others.
+        // // Rows that fix ε: ġ of the open points, the modes of the others.
         let mode = |(k, c): (usize, &usize)| system.rows(*c, if k < m { ContactMode::Stick } else { modes[*c] });
         let picks: Vec<[[f64; 4]; 2]> = points.iter().enumerate().map(mode).collect::<Option<_>>()?;
         let fixed = picked(&picks, &response, 2 * n + 1);
@@ -75,7 +75,7 @@ impl<'a> SchurComplement<'a> {
         Some(SchurComplement { rate, system, points, open: m, response, epsilon })
     }
 
-    /// All unknowns of a solution. `None` where the response to the load is not known.
+    /// Returns all unknowns of a solution. `None` if the response to the load is not known.
     pub fn combine(
         &self,
         base: &mut FactorisedModes,
@@ -95,8 +95,8 @@ impl<'a> SchurComplement<'a> {
         Some(x)
     }
 
-    /// Adds the products of motions and the displacement of the load, by which the rule compares rates. `factor`: the unit
-    /// of the load factor. `None` if linear algebra fails.
+    /// Adds the products of motions and the displacement of the load, which the rule uses to compare rates. `factor`:
+    /// the unit of the load factor. `None` if linear algebra fails.
     pub fn measure(&mut self, base: &mut FactorisedModes, at: (usize, &Load), factor: f64) -> Option<()> {
         let (n, forces) = (2 * self.open, 2 * self.system.contacts);
         let unit = |i: usize| {
@@ -115,9 +115,9 @@ impl<'a> SchurComplement<'a> {
         Some(())
     }
 
-    /// What takes away what a direction leaves of the equations: one step of refinement with the points'
-    /// `modes`, or, where these are `still` (a mechanism: with its modes nothing holds it), with the gaps
-    /// of the open points held. `None` where linear algebra fails.
+    /// Returns the correction for the residual of a direction: one step of refinement with the points' `modes`. If they
+    /// are `still` (a mechanism, whose modes hold nothing), the gaps of the open points are held. `None` if linear
+    /// algebra fails.
     pub fn refinement(
         &self,
         base: &FactorisedModes,
@@ -128,7 +128,7 @@ impl<'a> SchurComplement<'a> {
         let n = self.points.len();
         let mut right = left.to_vec();
         self.points.iter().for_each(|c| right[2 * c..2 * c + 2].fill(0.0));
-        // Where only these points are left over, nothing else is to be solved.
+        // // If the residual concerns only these points, the remaining equations need no solution.
         let y = if right.iter().any(|v| *v != 0.0) { base.kept(&right)? } else { base.nothing().1 };
         let held = |k: usize| still && k < self.open;
         let mode = |(k, c): (usize, &usize)| self.system.rows(*c, if held(k) { ContactMode::Stick } else { modes[*c] });

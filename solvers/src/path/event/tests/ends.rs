@@ -9,7 +9,7 @@ use voussoir_core::path::{
     LoadStepEnd, PathObserver, PathProblem, PathSettings, PathSolver, PathState, StageSettings, Unobserved,
 };
 
-/// Lets a path go on for some states.
+/// Lets a path continue for some states.
 struct Patient(usize);
 
 impl PathObserver for Patient {
@@ -71,7 +71,7 @@ fn a_path_ends_at_its_first_limit_point_on_request() {
     assert_close(answer.state.factor, 1.25, 1e-12);
 }
 
-/// A stop below the limit point keeps the limit point as the result and the falling state as the last one.
+/// A stop below the limit point gives the limit point as the result and the falling state as the last one.
 #[test]
 fn a_stop_factor_ends_a_falling_branch() {
     let how = PathSettings { stop_factor: Some(1.1), ..settings(None) };
@@ -89,7 +89,7 @@ fn a_stop_factor_that_is_not_reached_does_not_matter() {
     assert_eq!(answer.status, traced(&turning()).status, "{:?}", answer.notes);
 }
 
-/// An observer that returns false ends the path at the state that it has seen.
+/// An observer that returns false ends the path at the observed state.
 #[test]
 fn an_observer_stops_the_path() {
     let mut seen = Patient(2);
@@ -110,7 +110,7 @@ fn a_block_that_sticks_is_stable() {
     }
 }
 
-/// No strategy, no finite displacements: the solver refuses both, and a scene that does not deform.
+/// The solver refuses a strategy, finite displacements, and a scene that does not deform.
 #[test]
 fn what_the_solver_refuses() {
     let problem = block(0.3, pushed_at(0.1));

@@ -63,7 +63,7 @@ fn the_rotation_with_an_open_point() {
     assert_close(answer.state.force[0][0], 0.0, 1e-15);
 }
 
-/// A point that a couple opened closes again on the way back: after loading and unloading nothing is left.
+/// A point that a couple opened closes again on the way back: after loading and unloading all gaps are zero.
 #[test]
 fn an_opening_is_reversible() {
     let couple = |sense: f64| forces(&[(1, v(0.5, 1.0), v(sense, 0.0)), (1, v(0.5, 0.0), v(-sense, 0.0))]);

@@ -15,7 +15,7 @@ fn on_incline(angle: f64, friction: f64, then: Option<LoadStep>) -> PathProblem 
     scene(vec![ground(), rigid(centre)], contacts, [weight].into_iter().chain(then).collect())
 }
 
-/// A block stands on a plane of inclination α if tan α < μ.
+/// A block rests on a plane of inclination α if tan α < μ.
 #[test]
 fn a_block_stands_on_a_gentle_incline() {
     let answer = traced(&on_incline(0.3, 0.32, None));

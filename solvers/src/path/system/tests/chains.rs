@@ -65,7 +65,7 @@ fn three_arms_are_a_chain() {
     assert!(of(&joined(7, &[(1, 2), (2, 3), (1, 4), (4, 5), (1, 6), (6, 7)])).is_some());
 }
 
-/// Four arms are no chain: three bodies lie in one level.
+/// Four arms do not form a chain: three bodies lie in one level.
 #[test]
 fn four_arms_are_no_chain() {
     assert_eq!(of(&joined(5, &[(1, 2), (1, 3), (1, 4), (1, 5)])), None);

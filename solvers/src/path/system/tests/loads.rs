@@ -53,7 +53,7 @@ fn a_settlement_opens_the_joints_of_its_support() {
     assert!(load.wrench.iter().flatten().all(|w| *w == 0.0));
 }
 
-/// A settlement of nothing moves no support.
+/// A settlement of zero moves no support.
 #[test]
 fn a_settlement_of_nothing_does_not_settle() {
     let problem = uneven();

@@ -99,7 +99,7 @@ fn forces_do_as_much_work_on_gaps_as_on_motions() {
     assert_close(on_gaps, on_motions, 1e-12);
 }
 
-/// Motions in units and back are the same, and held bodies rest.
+/// Motions converted to units and back are the same, and held bodies rest.
 #[test]
 fn motions_come_back_from_their_units() {
     let problem = uneven();
