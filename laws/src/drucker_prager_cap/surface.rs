@@ -270,7 +270,7 @@ impl Surface {
         Way { x, q, ratio, w, centre, slope, gauge, stiffening, rates: [w_rate, q_rate, rate] }
     }
 
-    /// Returns a trial point (P, Q) at some ε_v of the table to the surface; `None` if it is elastic.
+    /// Computes the return of a trial point (P, Q) at some ε_v of the table to the surface; `None` if it is elastic.
     pub fn project(&self, table: Table, trial: [f64; 2], compaction: f64) -> Result<Option<Returned>, UpdateFailure> {
         let side = if trial[0] >= table.piece(compaction, Side::Cap).1 { Side::Cap } else { Side::Shear };
         let at = |eta: f64| self.way(table, side, trial, compaction, eta);

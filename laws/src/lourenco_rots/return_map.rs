@@ -88,7 +88,7 @@ struct Place {
 }
 
 impl Return<'_> {
-    /// Returns the stress to the surfaces; `None` if the trial stress is inside all surfaces within `rounding` \[Pa\].
+    /// Computes the return to the surfaces; `None` if the trial stress is inside all surfaces within `rounding` \[Pa\].
     pub fn solve(&self, rounding: f64) -> Result<Option<Returned>, UpdateFailure> {
         let Surface { tension, cohesion, cap, .. } = *self.surface;
         let [sigma, tau] = self.trial;

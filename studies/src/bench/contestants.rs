@@ -18,8 +18,9 @@ pub(super) fn of_variants<'a>(cases: impl Iterator<Item = &'a Case>) -> Vec<Cont
     cases.map(own).collect()
 }
 
-/// Returns every solver that supports the case. A path solver also takes part with meshes half and twice as fine, with
-/// elements of lower and higher order, and with steps of a half and of a quarter. The finest mesh is the last one.
+/// Returns every solver; a solver that does not support the case has the reason instead. A path solver also takes part with
+/// meshes half and twice as fine, with elements of lower and higher order, and with steps of a half and of a quarter. Its
+/// finest mesh is the last one.
 pub(super) fn contestants(case: &Case) -> Vec<Contestant> {
     let mut found = Vec::new();
     for card in candidates(PluginKind::LimitSolver) {

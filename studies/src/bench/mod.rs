@@ -113,7 +113,8 @@ fn measure(problem: usize, contestant: String, case: &Case, options: &BenchOptio
 }
 
 /// Sets the errors of a problem's measurements. The reference is, in this order: the requested one; the variant that the
-/// study names; limit analysis, if it answers the `same` question; the last path with the largest number of unknowns.
+/// study names; limit analysis, if it answers the `same` question; the last contestant with a load factor, usually the finest
+/// mesh of a path solver.
 fn refer(bench: &mut Bench, problem: usize, (asked, named): (Option<&Reference>, Option<&str>), same: bool) {
     let own = || bench.measurements.iter().filter(|own| own.problem == problem);
     let of = |found: Option<&Measurement>| found.and_then(|own| Some((own.factor()?, own.contestant.clone())));

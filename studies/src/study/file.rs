@@ -29,7 +29,8 @@ const SMALL_PATH_PROOF: usize = 200_000;
 const MAX_MISTAKES: usize = 100;
 /// Number of cases that are made before they are passed on.
 const AT_ONCE: usize = 64;
-/// Greatest number of cases that a command keeps in memory. Further cases are made one at a time when they are needed.
+/// Greatest number of cases of a study that a command keeps in memory. The cases of a larger study are made one at a time
+/// when they are needed.
 pub const HELD: usize = 1000;
 /// Greatest number of different notes of a study that are kept.
 const MAX_NOTES: usize = 100;

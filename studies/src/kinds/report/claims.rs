@@ -7,7 +7,7 @@ use serde::Serialize;
 use serde_json::{Value as Json, json};
 use voussoir_core::plugin::Keys;
 
-/// `[[report.claims]]`, read.
+/// The table `[[report.claims]]`.
 #[derive(Debug, Clone, PartialEq, Keys)]
 pub struct Claim {
     /// number or name of the claim

@@ -14,7 +14,7 @@ use crate::writers::markdown::images;
 use std::collections::BTreeMap;
 use voussoir_core::plugin::Keys;
 
-/// `[report]`, read.
+/// The table `[report]`.
 #[derive(Debug, Clone, Keys)]
 pub struct Contents {
     /// heading of the page

@@ -12,7 +12,7 @@ use crate::writers::page;
 use std::collections::BTreeMap;
 use voussoir_core::plugin::Keys;
 
-/// `[[report.charts]]`, read.
+/// The table `[[report.charts]]`.
 #[derive(Debug, Clone, Keys)]
 pub struct Chart {
     /// name: the chart replaces !\[caption\](chart:NAME) in texts
@@ -40,7 +40,7 @@ pub struct Chart {
     pub peaks: bool,
 }
 
-/// `[[report.tables]]`, read.
+/// The table `[[report.tables]]`.
 #[derive(Debug, Clone, Keys)]
 pub struct Table {
     /// name: the table replaces !\[caption\](table:NAME) in texts

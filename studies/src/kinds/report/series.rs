@@ -8,7 +8,7 @@ use serde_json::{Map, Value as Json};
 use voussoir_core::certificate::{Hinge, Side};
 use voussoir_core::plugin::Keys;
 
-/// `[report.series.NAME]`, read.
+/// The table `[report.series.NAME]`.
 #[derive(Debug, Clone, PartialEq, Keys)]
 pub struct Selection {
     /// name of one of the studies
