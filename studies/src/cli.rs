@@ -81,7 +81,7 @@ enum Command {
     Bench {
         /// Study file (TOML)
         study: PathBuf,
-        /// Where bench.csv and figures go \[default: results/NAME/bench\]
+        /// Folder for bench.csv and figures \[default: results/NAME/bench\]
         #[arg(long)]
         out: Option<PathBuf>,
         /// Override a key of the study

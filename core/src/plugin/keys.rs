@@ -6,11 +6,11 @@ use super::units::same;
 #[doc(hidden)]
 pub use serde;
 
-/// A table of keys that a struct declares, each once.
+/// A table of keys; a struct declares each key once.
 ///
 /// `#[derive(Keys)]` makes the card's parameters, the reader and the writer (serde's `Deserialize` and `Serialize`) from the
-/// fields. The doc comment of a field is what users read as the meaning of the key; its first paragraph counts, and a
-/// single sentence loses its full stop. Give meaning and sign convention.
+/// fields. Users read the doc comment of a field as the meaning of the key: only its first paragraph, and a single
+/// sentence without its full stop. Give meaning and sign convention.
 ///
 /// ```
 /// use voussoir_core::plugin::{Card, Keys, PluginKind};
@@ -38,19 +38,20 @@ pub use serde;
 /// | `unit = "Pa"` | `f64` | the SI unit of the number; `"-"` for a pure number |
 /// | `range = "> 0"` | number | comparisons with numbers or constants: `">= 0, < 90"`, or a constant of type `Range` |
 /// | `default = 0.0` | any | the value of an absent key: number, text, bool, list, or `{}` |
-/// | `optional = "…"` | `Option` | there is no single default: what happens then |
+/// | `optional = "…"` | `Option` | there is no single default: the effect if the key is absent |
 /// | `reference = "joints"` | `String` | the name of an entry of a top-level table of the study |
 /// | `names = ["x", "y"]` | array | the entries of `[f64; 2]`; `unit` and `range` may be lists, one for each |
 /// | `len = ">= 1"` | `Vec` | the number of entries |
 /// | `like = Shared` | any | the key of the same name of another struct, which describes it; `Option`, `default` and `optional` are the field's own; `default` without a value is the shared one |
-/// | `name = "…"`, `doc = "…"` | any | instead of the field's name and doc comment |
+/// | `name = "…"`, `doc = "…"` | any | replaces the field's name or doc comment |
 /// | `shape = …`, `of = …` | any | a constant of type [`Shape`] for the value, or for the entries of a list or map |
 ///
-/// Other types of a field implement [`KeyValue`]: another struct with keys, an enum of words (`#[derive(Keys)]`), of tables
-/// told apart by a word (`#[keys(tag = "shape")]`) or by their form (`#[keys(untagged)]`), or a plug-in, `Box<dyn Scene>`.
+/// Other types of a field implement [`KeyValue`]: another struct with keys, a plug-in (`Box<dyn Scene>`), or an enum with
+/// `#[derive(Keys)]`. An enum is a list of words, or of tables that are distinguished by a word (`#[keys(tag = "shape")]`) or
+/// by their form (`#[keys(untagged)]`).
 /// `#[keys(check = Law::validate)]` on a struct names the check of the whole table.
 ///
-/// A unit that does not exist and a default outside of its range do not compile:
+/// A unit that does not exist, or a default outside its range, is a compile error:
 /// ```compile_fail
 /// #[derive(voussoir_core::plugin::Keys)]
 /// struct Law {

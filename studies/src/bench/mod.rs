@@ -1,7 +1,7 @@
 //! Run time against error: the variants of a study, or every compatible solver with several settings of its accuracy.
 //!
-//! All contestants get the same question. A case that is not a certified collapse or limit point counts as failed. The error is
-//! |λ/λ* − 1| with one reference λ* for each problem. Time is the least of several runs on one thread.
+//! All contestants get the same question. A case that is not a certified collapse or limit point counts as failed. The error
+//! is |λ/λ* − 1| with one reference λ* for each problem. Time is the least of several runs on one thread.
 
 mod contestants;
 mod measured;
