@@ -1,10 +1,11 @@
-//! Compiles its origin into the program: target, commit, and a hash of its sources. Results store them, see `results::Origin`.
+//! Compiles the origin of results into the program: target, commit, and a hash of its sources. Results store it, see
+//! `results::Origin`.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs};
 
-/// Folders and files of the workspace that decide the numbers of a result.
+/// Folders and files of the workspace that affect the numbers of a result.
 const SOURCES: [&str; 5] = ["Cargo.lock", "core", "laws", "solvers", "studies/src"];
 
 fn main() {
@@ -25,10 +26,10 @@ fn git(folder: &Path, arguments: &[&str]) -> Option<String> {
     output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_string())
 }
 
-/// The commit of the repository that this file belongs to; `None` without git, and in a foreign repository.
+/// The commit of the repository that this file belongs to; `None` without git, or in another repository.
 fn commit(studies: &Path) -> Option<String> {
     git(studies, &["ls-files", "--error-unmatch", "build.rs"])?;
-    // The log of HEAD grows with each commit and each change of the branch.
+    // The log of HEAD changes with each commit and each change of the branch.
     for name in ["HEAD", "logs/HEAD"] {
         let file = studies.join(git(studies, &["rev-parse", "--git-path", name])?);
         if file.exists() {
@@ -45,7 +46,7 @@ fn packed(studies: &Path) -> Option<String> {
     after.split('"').nth(1).filter(|commit| commit.len() == 40).map(Into::into)
 }
 
-/// A hash of all sources; `None` where the crates of the workspace are not beside each other.
+/// A hash of all sources; `None` if the crates of the workspace are not in one folder.
 fn sources(workspace: &Path) -> Option<String> {
     let mut files = Vec::new();
     for name in SOURCES {
@@ -54,7 +55,7 @@ fn sources(workspace: &Path) -> Option<String> {
         collect(&path, &mut files)?;
     }
     files.sort();
-    // FNV-1a of 64 bits: it finds a difference, not a forger.
+    // FNV-1a of 64 bits. It detects differences, but does not protect against forgery.
     let mut hash: u64 = 0xcbf2_9ce4_8422_2325;
     let mut add =
         |bytes: &[u8]| bytes.iter().for_each(|byte| hash = (hash ^ u64::from(*byte)).wrapping_mul(0x100_0000_01b3));
@@ -65,7 +66,7 @@ fn sources(workspace: &Path) -> Option<String> {
     Some(format!("{hash:016x}"))
 }
 
-/// The file, or all files below the folder. Licences are links, which not every system checks out as such.
+/// The file, or all files below the folder. Licences are links, which some systems do not check out as links.
 fn collect(path: &Path, files: &mut Vec<PathBuf>) -> Option<()> {
     if path.file_name()?.to_string_lossy().starts_with("LICENSE") {
         return Some(());

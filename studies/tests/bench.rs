@@ -1,9 +1,9 @@
-//! `voussoir bench`: who takes part, what errors are measured from, what is written.
+//! `voussoir bench`: the compared solvers, the reference of errors, and the written files.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// Five bonded voussoirs that crush, elastic: limit analysis and paths ask for the same load.
+/// Five bonded, elastic voussoirs that crush: limit analysis and paths compute the same load.
 const STUDY: &str = r#"
 name = "small"
 [scene]
@@ -59,7 +59,7 @@ fn bench(folder: &Path, text: &str, more: &[&str]) -> Output {
     Command::new(voussoir).current_dir(folder).args(arguments).args(more).output().expect("the program")
 }
 
-/// Columns of bench.csv of one contestant; no name of these studies holds a comma and a quote at once.
+/// The columns of one solver in bench.csv. No name in these studies contains both a comma and a quote.
 fn rows(folder: &Path) -> Vec<Vec<String>> {
     let text = std::fs::read_to_string(folder.join("out/bench.csv")).expect("bench.csv");
     let cells = |line: &str| {
@@ -83,7 +83,7 @@ fn solvers_that_take_a_study_are_measured_against_limit_analysis() {
     let rows = rows(&folder);
     let of = |name: &str| rows.iter().find(|row| row[1] == name).unwrap_or_else(|| panic!("no {name}: {rows:?}"));
     let number = |name: &str, column: usize| of(name)[column].parse::<f64>().expect("a number");
-    // The reference has no error; another program of limit analysis has none to speak of; paths on one element do.
+    // The reference has no error; another program of limit analysis has almost none; paths with one element have some.
     assert_eq!(of("limit_chain")[8], "");
     assert!(number("limit_conic", 8) < 1e-9);
     let error = (number("event_path", 5) / number("limit_chain", 5) - 1.0).abs();
@@ -107,11 +107,11 @@ fn variants_are_measured_side_by_side_from_what_is_asked_for() {
     assert!(found.iter().all(|row| row[7] == "path" && row[8].is_empty() == (row[1] == "path")), "{found:?}");
     let profile = std::fs::read_to_string(folder.join("out/profile.svg")).expect("a profile");
     assert!(profile.contains("share of problems answered"));
-    // A load factor that is known.
+    // A known load factor.
     let output = bench(&folder, &text, &["--reference", "100.0", "--quiet"]);
     assert!(output.status.success());
     assert!(rows(&folder).iter().all(|row| row[6] == "100.0" && row[7] == "given" && !row[8].is_empty()));
-    // A name of nobody, and a kind of study without cases.
+    // An unknown name, and a kind of study without cases.
     let output = bench(&folder, &text, &["--reference", "paht"]);
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(output.status.code() == Some(2) && said.contains("did you mean \"path\""), "{said}");

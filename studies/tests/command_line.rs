@@ -1,4 +1,4 @@
-//! The command line as a user meets it: exit codes, files written, nothing overwritten by mistakes.
+//! The command line: exit codes, written files, and no files overwritten by mistake.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -11,7 +11,7 @@ fn code(output: &Output) -> i32 {
     output.status.code().expect("it ends by itself")
 }
 
-/// A folder of a test's own, below Cargo's for such things.
+/// An empty folder for a test, in Cargo's folder for temporary files.
 fn empty_folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     drop(std::fs::remove_dir_all(&folder));
@@ -27,7 +27,7 @@ fn text(path: &Path) -> String {
     std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// Results without the time they took.
+/// Results without running times.
 fn timeless(dir: &Path) -> serde_json::Value {
     let mut results: serde_json::Value = serde_json::from_str(&text(&dir.join("results.json"))).expect("JSON");
     for case in results["cases"].as_array_mut().expect("cases") {
@@ -36,8 +36,8 @@ fn timeless(dir: &Path) -> serde_json::Value {
     results
 }
 
-/// `run` answers the study, `verify` confirms it, a tampered factor is found, `--jobs` and `--resume`
-/// change nothing.
+/// `run` solves the study, `verify` confirms it and finds a changed factor; `--jobs` and `--resume` do not change
+/// results.
 #[test]
 fn run_verify_tamper_and_resume() {
     let folder = empty_folder("run_verify_tamper_and_resume");
@@ -56,7 +56,7 @@ fn run_verify_tamper_and_resume() {
     assert_eq!(code(&voussoir(&["run", study, "--out", out_two, "--jobs", "2", "--quiet"])), 0);
     assert_eq!(timeless(&one), timeless(&two));
 
-    // A run killed after some cases: the rest is done, what was there is kept.
+    // A run was killed after some cases: the next run solves the rest and keeps the finished cases.
     let whole = text(&one.join("results.json"));
     let results: serde_json::Value = serde_json::from_str(&whole).expect("JSON");
     let journal: String =
@@ -81,7 +81,7 @@ fn sealed(case: &str) -> String {
     format!("{{\"checksum\":\"{sum:016x}\",\"case\":{case}}}\n")
 }
 
-/// Wrong input: code 2, the message on standard error, results of an earlier run untouched.
+/// Wrong input gives exit code 2 and a message on standard error; the results of the previous run are not changed.
 #[test]
 fn wrong_input_overwrites_nothing() {
     let folder = empty_folder("wrong_input_overwrites_nothing");
@@ -96,7 +96,7 @@ fn wrong_input_overwrites_nothing() {
     assert_eq!(text(&out.join("results.json")), "precious");
     assert_eq!(std::fs::read_dir(&out).expect("a folder").count(), 1);
     assert_eq!(code(&voussoir(&["check", wrong.to_str().expect("a path")])), 2);
-    // A solver that does not exist, or a key that it does not have, is a mistake too, never another solver.
+    // An unknown solver or solver key is a mistake too; no other solver is used instead.
     for (set, right) in [("solver.solver=limit_chian", "limit_chain"), ("solver.tolerence=1e-6", "tolerance")] {
         let study = study();
         let output =
@@ -111,7 +111,7 @@ fn wrong_input_overwrites_nothing() {
     assert_eq!(code(&voussoir(&["run", study().to_str().expect("a path"), "--case", "99"])), 2);
 }
 
-/// `list`, `explain`, `schema` and `check` answer.
+/// `list`, `explain`, `schema` and `check` work.
 #[test]
 fn the_program_explains_itself() {
     let output = voussoir(&["list"]);
@@ -146,8 +146,8 @@ fn the_program_explains_itself() {
     assert_eq!(code(&voussoir(&["check", study().to_str().expect("a path")])), 0);
 }
 
-/// `run` drives every point study there is, writes a row per step, and says where a stress cannot be
-/// reached; `verify` drives it again; `point` is another name of `run`.
+/// `run` solves every point study, writes a row for each step, and reports a stress that cannot be reached. `verify`
+/// repeats it. `point` is another name of `run`.
 #[test]
 fn points_are_driven() {
     let folder = empty_folder("points_are_driven");
@@ -172,7 +172,7 @@ fn points_are_driven() {
     assert_eq!(code(&voussoir(&["verify", out_text])), 0);
     let plan = voussoir(&["explain", &uniaxial]);
     assert!(String::from_utf8_lossy(&plan.stdout).contains("at one point"));
-    // 40 MPa of uniaxial stress are beyond the strength.
+    // A uniaxial stress of 40 MPa is greater than the strength.
     let set = "point.path.0={ steps = 4, stress = { xx = \"-40 MPa\", yy = 0.0, zz = 0.0 } }";
     let output = voussoir(&["run", &uniaxial, "--out", out_text, "--set", set]);
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
@@ -180,8 +180,8 @@ fn points_are_driven() {
     assert!(said.contains("cannot be reached"), "{said}");
 }
 
-/// Words that a user may ask for are known, and a wrong one gets the nearest; completions and the manual page name every
-/// command.
+/// `explain` knows the words that a user may enter, and suggests the nearest word for a misspelt one. Completions and
+/// the manual page contain every command.
 #[test]
 fn words_completions_and_manual() {
     let said = |arguments: &[&str]| {
@@ -225,7 +225,8 @@ fn words_completions_and_manual() {
     assert_eq!(code(&new(&["new", "wall", "../x"])), 2);
 }
 
-/// `conform` says 0 for a law that conforms, 2 for an unknown tag with the nearest right one; `new law` writes into a crate, once.
+/// `conform` returns 0 for a law that conforms, and 2 for an unknown tag with the nearest known one. `new law` writes
+/// into a crate, but only once.
 #[test]
 fn a_law_is_checked_and_a_new_one_is_written() {
     let output = voussoir(&["conform", "coulomb", "elastic"]);

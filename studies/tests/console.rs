@@ -1,11 +1,12 @@
-//! The console blocks of the README and of the pages run, and their output is the text of the pages.
+//! Runs the console blocks of the README and of the pages, and compares their output with the pages.
 //!
-//! A block of the language `console` runs: each line `$ voussoir …` is a command, and the lines after it are its output, both
-//! streams together. In the output `[..]` is any characters and a line `...` is any lines. A line `? 1` after a command is
-//! its exit code. A block of the language `toml` that begins with `name = "NAME"` is saved as `NAME.toml` before the commands run.
-//! A block with `,ignore` after its language does not run.
+//! A block of the language `console` runs: each line `$ voussoir …` is a command, and the lines after it are its
+//! output, with both streams together. In the output `[..]` matches any characters and a line `...` matches any lines.
+//! A line `? 1` after a command is its exit code. A block of the language `toml` that begins with `name = "NAME"` is
+//! saved as `NAME.toml` before the commands run. A block with `,ignore` after its language does not run.
 //!
-//! The crate `trycmd` does the same, but it changes features of crates below `toml`, so that Cargo compiles `voussoir` twice.
+//! The crate `trycmd` does the same, but it changes the features of dependencies of `toml`, so that Cargo compiles
+//! `voussoir` twice.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -13,7 +14,7 @@ use std::process::Command;
 /// A block of code of a page.
 struct Block {
     page: PathBuf,
-    /// Line of its first row, from 1.
+    /// Line number of its first row, from 1.
     line: usize,
     language: String,
     ignored: bool,
@@ -24,7 +25,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..").canonicalize().expect("the tree")
 }
 
-/// The pages that are read: all but the notebook, which is history.
+/// The pages that are read: all except the notebook, which is a record of past work.
 fn pages(folder: &Path, out: &mut Vec<PathBuf>) {
     let mut paths: Vec<PathBuf> =
         std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path()).collect();
@@ -91,14 +92,14 @@ fn steps(block: &Block) -> Vec<Step> {
     found
 }
 
-/// Returns true if a line fits a pattern with `[..]`.
+/// Returns true if a line matches a pattern with `[..]`.
 fn fits_line(pattern: &str, line: &str) -> bool {
     let Some((before, after)) = pattern.split_once("[..]") else { return pattern.trim_end() == line.trim_end() };
     let Some(rest) = line.strip_prefix(before) else { return false };
     rest.char_indices().map(|(place, _)| place).chain([rest.len()]).any(|place| fits_line(after, &rest[place..]))
 }
 
-/// Returns true if lines fit patterns, of which `...` fits any number of lines.
+/// Returns true if lines match patterns; the pattern `...` matches any number of lines.
 fn fits(patterns: &[String], lines: &[&str]) -> bool {
     match (patterns.split_first(), lines.split_first()) {
         (None, None) => true,
@@ -110,7 +111,7 @@ fn fits(patterns: &[String], lines: &[&str]) -> bool {
     }
 }
 
-/// Runs a step; the words of what differs.
+/// Runs a step. Returns a description of the differences.
 fn run(step: &Step, folder: &Path) -> Result<(), String> {
     let [program, arguments @ ..] = step.words.as_slice() else { return Err("no command".into()) };
     if program != "voussoir" {
@@ -129,7 +130,7 @@ fn run(step: &Step, folder: &Path) -> Result<(), String> {
     if fits(&shown[..end], &lines) { Ok(()) } else { Err(format!("it prints\n{printed}")) }
 }
 
-/// A folder for a page, with the cases of the project and the studies that the page shows.
+/// Creates a folder for a page, with the cases of the project and the studies of the page.
 fn folder(page: &Path, blocks: &[Block]) -> PathBuf {
     let name = page.strip_prefix(root()).unwrap_or(page).to_string_lossy().replace(['/', '\\', '.'], "_");
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("console").join(name);
@@ -157,7 +158,7 @@ fn copy(from: &Path, to: &Path) {
     }
 }
 
-/// Commands of the pages print the lines below them.
+/// Commands of the pages print the output that the pages show.
 #[test]
 fn console_blocks_print_what_the_pages_show() {
     let mut wrong = Vec::new();
@@ -177,7 +178,7 @@ fn console_blocks_print_what_the_pages_show() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
 }
 
-/// Every block of commands runs in the test above, or is marked as one that does not. The files that commands name exist.
+/// Every block of commands is run by the test above, or is marked as not run. The files that commands name exist.
 #[test]
 fn every_block_of_commands_runs_or_is_marked() {
     let mut wrong = Vec::new();

@@ -1,10 +1,10 @@
-//! Drawings as profiles and as blocks.
+//! Drawings (DXF files) as profiles and as blocks.
 
 use voussoir::kinds::read_source;
 use voussoir::solve_case;
 use voussoir::study::{StudyError, StudySource, load};
 
-/// A polyline as DXF; a closed one ends without its first corner.
+/// A polyline as DXF; a closed polyline does not repeat its first corner.
 fn polyline(handle: &str, layer: &str, closed: bool, points: &[[f64; 2]]) -> String {
     let corners: String = points.iter().map(|[x, y]| format!("10\n{x:?}\n20\n{y:?}\n")).collect();
     format!(
@@ -27,7 +27,8 @@ const HEAD: &str = "name = \"drawn\"\n[materials.stone]\nlaw = \"rigid\"\ndensit
     law = \"coulomb_associated\"\nfriction = 0.6\n[[stages]]\nname = \"dead\"\ngravity = 9.81\n[[stages]]\nname = \"live\"\n\
     until = \"collapse\"\n";
 
-/// The load factor of a study, as it is and read again from its resolved text; or what is said against it.
+/// Returns the load factor of a study. It must be the same if the resolved text is read again. Returns the message if
+/// the study is refused.
 fn answered(text: &str, file: &str) -> Result<f64, String> {
     let read = |name: &str| if name == "survey.dxf" { Ok(file.to_string()) } else { Err("not there".into()) };
     let said = |wrong: StudyError| wrong.to_string();
@@ -53,7 +54,7 @@ fn rectangle([x0, y0]: [f64; 2], [x1, y1]: [f64; 2]) -> [[f64; 2]; 4] {
     [[x0, y0], [x1, y0], [x1, y1], [x0, y1]]
 }
 
-/// Two stones on the ground: pushed at its top, the upper one tips at W b/(2 h), the tower at 2 W b/(2 · 0.9).
+/// Two stones on the ground are pushed at the top: the upper one tips at W b/(2 h), the tower at 2 W b/(2 · 0.9).
 #[test]
 fn closed_polylines_are_blocks() {
     let file = drawing(&[
@@ -66,11 +67,11 @@ fn closed_polylines_are_blocks() {
     let tower: f64 = 2.0 * weight * 0.2 / 0.9 / 1000.0;
     let factor = answered(&blocks(""), &file).expect("an answer");
     assert!((factor - upper.min(tower)).abs() < 1e-9 * factor, "{factor} {upper} {tower}");
-    // Another unit than the drawing's own: ten times as great, a thousand times as heavy, pushed where it does not reach.
+    // With a unit other than that in the drawing, the tower is ten times as large, and the load does not act on it.
     assert!(answered(&blocks("unit = \"cm\"\n"), &file).is_err());
 }
 
-/// What is wrong is said with entity, line and layer.
+/// Messages name entity, line and layer.
 #[test]
 fn mistakes_name_the_entity() {
     let ground = polyline("2A", "ground", true, &rectangle([-500.0, -300.0], [1000.0, 0.0]));
@@ -86,7 +87,7 @@ fn mistakes_name_the_entity() {
     assert!(answered(&twice, &drawing(&[])).expect_err("a mistake").contains("is given besides blocks"));
 }
 
-/// Two open polylines, one drawn from right to left, are the profile whose points they are.
+/// Two open polylines, one drawn from right to left, give the same profile as their points.
 #[test]
 fn polylines_are_a_profile() {
     let inner = [[-2.0, 0.0], [-1.3, 0.7], [-0.45, 0.98], [0.45, 0.98], [1.3, 0.7], [2.0, 0.0]];

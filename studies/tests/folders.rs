@@ -1,4 +1,4 @@
-//! Result folders: nothing lost, doubled, foreign or written elsewhere.
+//! Result folders: no case is lost, duplicated or foreign, and nothing is written elsewhere.
 
 use serde_json::Value;
 use std::io::{BufRead, BufReader};
@@ -9,7 +9,8 @@ fn voussoir(arguments: &[&str], at: &Path) -> Output {
     Command::new(env!("CARGO_BIN_EXE_voussoir")).args(arguments).current_dir(at).output().expect("the program starts")
 }
 
-/// Runs the program with `--json` and kills it after so many lines on standard output, each of which is a finished case.
+/// Runs the program with `--json` and kills it after this number of lines on standard output. Each line is a finished
+/// case.
 fn killed_after(lines: usize, arguments: &[&str], at: &Path) {
     let mut run = Command::new(env!("CARGO_BIN_EXE_voussoir"))
         .args(arguments)
@@ -38,7 +39,7 @@ fn sealed(case: &str) -> String {
     format!("{{\"checksum\":\"{sum:016x}\",\"case\":{case}}}\n")
 }
 
-/// A folder of a test's own with a study of eight cases in it.
+/// A folder for one test, with a study of eight cases.
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("folders_{name}"));
     drop(std::fs::remove_dir_all(&folder));
@@ -62,7 +63,7 @@ fn text(path: &Path) -> String {
     std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// Results without the time they took.
+/// Results without running times.
 fn timeless(dir: &Path) -> Value {
     let mut results: Value = serde_json::from_str(&text(&dir.join("results.json"))).expect("JSON");
     for case in results["cases"].as_array_mut().expect("cases") {
@@ -76,7 +77,7 @@ fn ids(dir: &Path) -> Vec<u64> {
     results["cases"].as_array().expect("cases").iter().map(|case| case["id"].as_u64().expect("an id")).collect()
 }
 
-/// What another study has left in the folder is computed again, whole results and journal alike.
+/// Results that another study has left in the folder are computed again, from complete results and from a journal.
 #[test]
 fn resumed_cases_belong_to_the_study() {
     let at = folder("resume");
@@ -89,7 +90,8 @@ fn resumed_cases_belong_to_the_study() {
             .map(|case| sealed(&case.to_string()))
             .collect::<String>()
     };
-    // Edited: other answers. A run of it that was killed at once has written its resolved study only.
+    // The study was edited, so its results differ. A run of it that was killed at once has written only its resolved
+    // study.
     std::fs::write(at.join("a.toml"), study("ring", 0.35)).expect("written");
     assert_eq!(code(&voussoir(&["run", "a.toml", "--out", "fresh", "--quiet"], &at)), 0);
     assert_ne!(timeless(&fresh)["cases"][0]["load_factor"], first["cases"][0]["load_factor"]);
@@ -97,7 +99,7 @@ fn resumed_cases_belong_to_the_study() {
     std::fs::write(out.join("unfinished.jsonl"), lines(&first)).expect("written");
     assert_eq!(code(&voussoir(&["run", "a.toml", "--out", "out", "--resume", "--quiet"], &at)), 0);
     assert_eq!(timeless(&out), timeless(&fresh));
-    // A journal in which one case is forged under a new checksum, and one line is damaged.
+    // A journal with one forged case under a new checksum, and one damaged line.
     let (cases, whole) = (timeless(&fresh), lines(&timeless(&fresh)));
     let factor = cases["cases"][1]["load_factor"].to_string();
     let forged = cases["cases"][1].to_string().replacen(&factor, "9.5", 1);
@@ -119,7 +121,7 @@ fn resumed_cases_belong_to_the_study() {
         ["3 finished cases are kept: 3 proved", "1 finished cases do not hold", "1 lines of the journal are damaged"];
     assert!(words.iter().all(|word| said(&resumed).contains(word)), "{}", said(&resumed));
     assert_eq!(timeless(&out), timeless(&fresh));
-    // A journal that was cut short anywhere, and went on after it.
+    // A journal that was truncated at any place and then continued.
     let journal = lines(&timeless(&fresh));
     for cut in [1, journal.len() / 3, journal.len() / 2, journal.len() - 3] {
         std::fs::remove_dir_all(&out).expect("removed");
@@ -133,7 +135,7 @@ fn resumed_cases_belong_to_the_study() {
     }
 }
 
-/// `--case` adds to, or replaces in, what is there, and says so; `verify` knows which cases were asked for.
+/// `--case` adds or replaces a case in the stored results and reports this; `verify` knows which cases were requested.
 #[test]
 fn one_case_joins_the_others() {
     let at = folder("case");
@@ -159,7 +161,7 @@ fn one_case_joins_the_others() {
     assert_eq!(code(&voussoir(&["verify", "whole", "a.toml"], &at)), 0);
     let other = voussoir(&["verify", "whole", "a.toml", "--set", "joints.dry.friction=0.5"], &at);
     assert!(code(&other) == 1 && said(&other).contains("joints.dry.friction is 0.6 in the folder"), "{}", said(&other));
-    // Deleted cases are found, also if the list of those asked for is forged to nothing.
+    // Deleted cases are found, also if the list of requested cases was forged to be empty.
     let whole = text(&at.join("whole/results.json"));
     let mut results: Value = serde_json::from_str(&whole).expect("JSON");
     results["cases"] = Value::Array(Vec::new());
@@ -168,14 +170,14 @@ fn one_case_joins_the_others() {
         std::fs::write(at.join("whole/results.json"), results.to_string()).expect("written");
         assert_eq!(code(&voussoir(&["verify", "whole"], &at)), 1);
     }
-    // Of an edited study nothing is kept.
+    // No results of the study before the edit are kept.
     std::fs::write(at.join("a.toml"), study("ring", 0.35)).expect("written");
     let edited = voussoir(&["run", "a.toml", "--out", "out", "--case", "0"], &at);
     assert_eq!(ids(&out), vec![0], "{}", said(&edited));
     assert!(said(&edited).contains("no other case is there"), "{}", said(&edited));
 }
 
-/// A study's name is a file name, whoever sets it.
+/// A study's name must be a file name, wherever it is set.
 #[test]
 fn names_are_file_names() {
     let at = folder("names");
@@ -192,7 +194,7 @@ fn names_are_file_names() {
     assert!(!at.join("results").exists());
 }
 
-/// Two studies of one name do not overwrite each other, together or one after the other.
+/// Two studies with the same name do not overwrite each other, in one run or in two.
 #[test]
 fn studies_of_one_name() {
     let at = folder("same");
@@ -205,12 +207,12 @@ fn studies_of_one_name() {
     let after = voussoir(&["run", "b.toml", "--quiet"], &at);
     assert!(code(&after) == 2 && said(&after).contains("a.toml"), "{}", said(&after));
     assert_eq!(timeless(&at.join("results/ring")), before);
-    // The same study again, edited or not, and another place by name.
+    // The same study again, edited or not, and another folder with `--out`.
     assert_eq!(code(&voussoir(&["run", "./a.toml", "--quiet"], &at)), 0);
     assert_eq!(code(&voussoir(&["run", "b.toml", "--out", "other", "--quiet"], &at)), 0);
 }
 
-/// Figures and tables of an earlier run go; what a user has put beside them stays. Altered ones are found.
+/// Figures and tables of the previous run are removed; files of the user stay. Changed files are found.
 #[test]
 fn files_are_those_of_the_results() {
     let at = folder("files");
@@ -225,14 +227,14 @@ fn files_are_those_of_the_results() {
         std::fs::write(out.join(name), original).expect("written");
     }
     assert_eq!(code(&voussoir(&["verify", "out", "--jobs", "2"], &at)), 0);
-    // A list of files that is not that of the study.
+    // The list of files does not belong to the study.
     let whole = text(&out.join("results.json"));
     std::fs::write(out.join("results.json"), whole.replacen("\"report.html\"", "\"rapport.html\"", 1))
         .expect("written");
     let output = voussoir(&["verify", "out"], &at);
     assert!(code(&output) == 1 && said(&output).contains("the list of files"), "{}", said(&output));
     std::fs::write(out.join("results.json"), whole).expect("written");
-    // Files that no run has written stay, whatever their names.
+    // Files that no run has written are kept, whatever their names.
     for name in ["figures/case-0099-mechanism.svg", "curve.csv"] {
         std::fs::write(out.join(name), "foreign").expect("written");
     }
@@ -248,7 +250,7 @@ fn files_are_those_of_the_results() {
     for name in ["figures/case-0099-mechanism.svg", "curve.csv"] {
         assert_eq!(text(&out.join(name)), "foreign", "{name}");
     }
-    // They are not overwritten either; what was solved is kept until they have made room.
+    // They are not overwritten either. Solved cases are kept until the user has moved these files.
     std::fs::write(out.join("results.csv"), "foreign").expect("written");
     let output = voussoir(&["run", "a.toml", "--out", "out"], &at);
     assert!(code(&output) == 3 && said(&output).contains("results.csv: no run has written"), "{}", said(&output));
@@ -258,7 +260,7 @@ fn files_are_those_of_the_results() {
     assert!(code(&output) == 0 && said(&output).contains("8 finished cases are kept"), "{}", said(&output));
 }
 
-/// A list of files that leads out of the folder, or to what every run writes, removes nothing.
+/// If the list of files names files outside the folder, or files that every run writes, nothing is removed.
 #[test]
 fn a_forged_list_of_files_removes_nothing_elsewhere() {
     let at = folder("forged_list");
@@ -278,7 +280,8 @@ fn a_forged_list_of_files_removes_nothing_elsewhere() {
     assert_eq!(text(&at.join("precious")), "precious");
 }
 
-/// Killed at each stage of a run, from the first case to the last figure: no file is half written, and the run goes on.
+/// A run is killed at each stage, from the first case to the last figure: no file is incomplete, and the run can be
+/// continued.
 #[test]
 fn killed_at_every_stage() {
     let at = folder("stages");
@@ -322,7 +325,7 @@ fn killed_at_every_stage() {
     }
 }
 
-/// Nothing is written through a symbolic link: not the folder, not what stands in it.
+/// Nothing is written through a symbolic link, neither the folder nor its contents.
 #[cfg(unix)]
 #[test]
 fn links_are_not_followed() {
@@ -349,7 +352,7 @@ fn links_are_not_followed() {
     assert_eq!(text(&elsewhere.join("precious")), "precious");
 }
 
-/// Two runs into one folder: the second is refused; a lock whose run is gone is none. As many jobs as one likes.
+/// Two runs into one folder: the second is refused. The lock of a dead run is ignored. Any number of jobs is accepted.
 #[test]
 fn one_run_at_a_time() {
     let at = folder("lock");
@@ -364,7 +367,7 @@ fn one_run_at_a_time() {
     assert!(!out.join(".voussoir.lock").exists());
 }
 
-/// Killed at places spread over a sweep and resumed, over and over: the results are those of one run.
+/// A run is killed at many places of a sweep and resumed each time: the results equal those of one run.
 #[test]
 fn killed_and_resumed() {
     let at = folder("killed");
@@ -378,7 +381,7 @@ fn killed_and_resumed() {
     assert_eq!(timeless(&at.join("out")), timeless(&at.join("whole")));
 }
 
-/// A swept text with a unit is a number in every file, in the unit that the header of its column names.
+/// A swept text with a unit is a number in every file, in the unit in the header of its column.
 #[test]
 fn swept_units_are_numbers() {
     let at = folder("units");
@@ -395,7 +398,7 @@ fn swept_units_are_numbers() {
     assert_eq!(results["cases"][3]["parameters"]["stages.live.loads.0.force.1"], -2000.0);
 }
 
-/// A cell of a table that a spreadsheet would take for a formula is text.
+/// A cell of a table that a spreadsheet would read as a formula is text.
 #[test]
 fn cells_are_no_formulas() {
     let at = folder("formula");

@@ -1,5 +1,6 @@
-//! Runs that are killed, whose study is edited, whose disk is full, or that are not alone: run by hand,
-//! `cargo test --release -p voussoir --test interruptions -- --ignored`. What came out stands in docs/theory/verifying.md.
+//! Runs that are killed, whose study is edited, whose disk is full, or that run at the same time. Run these tests by
+//! hand: `cargo test --release -p voussoir --test interruptions -- --ignored`. Their results are in
+//! docs/theory/verifying.md.
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -40,7 +41,7 @@ fn ended(mut run: Child) -> Option<i32> {
     run.wait().expect("it ends").code()
 }
 
-/// Results without the time they took; all ids once, in order.
+/// Results without running times; checks that all ids occur once, in order.
 fn timeless(dir: &Path) -> Value {
     let text = std::fs::read_to_string(dir.join("results.json")).expect("results");
     let mut results: Value = serde_json::from_str(&text).expect("JSON");
@@ -63,7 +64,7 @@ impl Random {
     }
 }
 
-/// What something gives, and how long it took \[ms\].
+/// Returns the result of a function and its running time \[ms\].
 fn timed<T>(what: impl FnOnce() -> T) -> (T, u64) {
     let start = Instant::now();
     let result = what();
@@ -76,8 +77,8 @@ fn reference(at: &Path, friction: f64, out: &str) -> Value {
     timeless(&at.join(out))
 }
 
-/// Killed twenty times anywhere in a sweep, the study edited between some of the kills: the results are those of the
-/// study as it stands at last.
+/// A sweep is killed twenty times at random, and the study is edited between some of the kills: the results are those
+/// of the last version of the study.
 #[test]
 #[ignore = "by hand: twenty kills of a run"]
 fn killed_twenty_times_with_the_study_edited_in_between() {
@@ -90,7 +91,7 @@ fn killed_twenty_times_with_the_study_edited_in_between() {
         let mut run = start(&at, "out");
         let target = random.below(CASES as u64) as usize;
         let stored = || std::fs::read_to_string(at.join("out/unfinished.jsonl")).unwrap_or_default().lines().count();
-        // From the first case of this run on at least: what was stored before is there from the start.
+        // Waits at least for the first case of this run, because stored cases are there from the start.
         let before = stored();
         while stored() < target.max(before + 1) && run.try_wait().expect("a state").is_none() {
             sleep(Duration::from_millis(1));
@@ -107,7 +108,8 @@ fn killed_twenty_times_with_the_study_edited_in_between() {
     }
 }
 
-/// Two runs at once, one or both of them killed, over and over: one writes, the other is refused, and nothing is mixed.
+/// Two runs start at the same time, and one or both are killed, many times: one writes, the other is refused, and
+/// results are never mixed.
 #[test]
 #[ignore = "by hand: pairs of runs"]
 fn two_runs_at_once() {
@@ -130,8 +132,8 @@ fn two_runs_at_once() {
     assert_eq!(timeless(&at.join("out")), expected);
 }
 
-/// A disk that is full (a small file system at `VOUSSOIR_SMALL_DISK`): exit code 3, nothing half written, and with room the
-/// run goes on.
+/// The disk is full (a small file system at `VOUSSOIR_SMALL_DISK`): exit code 3, no file is incomplete, and the run
+/// continues when there is space.
 #[test]
 #[ignore = "by hand: needs a small file system"]
 fn a_full_disk() {
@@ -151,7 +153,7 @@ fn a_full_disk() {
     std::fs::remove_file(&ballast).expect("removed");
     let left = ended(start(&at, name));
     println!("without the ballast: {left:?}");
-    // What was stored there is good: with all the room in the world it is gone on with.
+    // The stored cases are valid: a run with enough space continues from them.
     let copy = at.join("copy");
     std::fs::create_dir_all(&copy).expect("a folder");
     for entry in std::fs::read_dir(&out).expect("a folder").flatten().filter(|entry| entry.path().is_file()) {

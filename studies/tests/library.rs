@@ -1,4 +1,5 @@
-//! Voussoir as a library: studies from values and piece by piece, mistakes as errors, runs that are watched and cancelled.
+//! Voussoir as a library: studies from values or built step by step, mistakes as errors, runs that are observed and
+//! cancelled.
 
 use std::error::Error;
 use std::sync::Mutex;
@@ -16,7 +17,7 @@ fn block() -> StudyBuilder {
         .until_collapse("push", json!([{ "kind": "body", "acceleration": [9.81, 0.0] }]))
 }
 
-/// A value, the same as TOML, and the same piece by piece are one study: the same resolved cases, the same answers.
+/// A study from a value, from TOML and built step by step is the same study: the same resolved cases, the same results.
 #[test]
 fn a_value_and_a_text_are_one_study() -> Result<(), StudyError> {
     let text = r#"
@@ -54,7 +55,7 @@ fn a_value_and_a_text_are_one_study() -> Result<(), StudyError> {
     Ok(())
 }
 
-/// Every mistake at once, each with its key; nothing is dropped in silence.
+/// All mistakes are reported at once, each with its key; no key is ignored silently.
 #[test]
 fn mistakes_are_errors_with_their_keys() {
     let wrong = block()
@@ -75,8 +76,8 @@ fn mistakes_are_errors_with_their_keys() {
     assert!(file.to_string().contains("no/such.toml") && file.source().is_some() && file.mistakes().is_empty());
 }
 
-/// A path is watched state by state, and cancelled in the middle: the case that was cut short has no result, the one before keeps
-/// its own; ids that do not exist are left out.
+/// A path is observed state by state and cancelled in the middle. The cancelled case has no result, the case before it
+/// keeps its result, and unknown ids are ignored.
 #[test]
 fn a_run_is_watched_and_cancelled() -> Result<(), StudyError> {
     let study = Study::builder("arch")

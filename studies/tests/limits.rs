@@ -1,10 +1,10 @@
-//! Inputs without measure: every one ends with an exit code from 0 to 3 and a message, within seconds.
+//! Extreme inputs: each ends within seconds with an exit code from 0 to 3 and a message.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-/// Longest time that an answer may need, on a machine that does other work too.
+/// Longest time of a command, on a machine that is also used for other work.
 const MAX_TIME: Duration = Duration::from_secs(60);
 
 fn voussoir(arguments: &[&str]) -> Output {
@@ -33,7 +33,7 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// Checks the text of a study; its messages.
+/// Checks the text of a study and returns the messages.
 fn refused(folder: &Path, text: &str) -> String {
     let file = folder.join("study.toml");
     std::fs::write(&file, text).expect("a file");
@@ -103,7 +103,7 @@ fn expressions_of_claims_have_limits_and_types() {
     }
 }
 
-/// No message hands a control character of the input on to the terminal.
+/// No message passes a control character of the input to the terminal.
 #[test]
 fn invisible_characters_are_refused_and_escaped() {
     let folder = folder("invisible_characters_are_refused_and_escaped");
@@ -150,10 +150,10 @@ fn output_that_cannot_be_written_is_an_error() {
         assert_eq!(code(&output), 3, "{arguments:?}");
         assert!(messages(&output).contains("cannot write standard output"), "{arguments:?}: {}", messages(&output));
     }
-    // Messages that cannot be written change no exit code.
+    // Messages that cannot be written do not change the exit code.
     let output = Command::new(env!("CARGO_BIN_EXE_voussoir")).args(["check", "none.toml"]).stderr(full()).status();
     assert_eq!(output.expect("the program starts").code(), Some(3));
-    // A reader that closes the pipe early is no error.
+    // A reader that closes the pipe early does not cause an error.
     let mut child = Command::new(env!("CARGO_BIN_EXE_voussoir"))
         .args(["run", &study, "--out", &folder, "--json"])
         .stdout(Stdio::piped())
@@ -163,7 +163,7 @@ fn output_that_cannot_be_written_is_an_error() {
     assert_eq!(child.wait().expect("it ends").code(), Some(0));
 }
 
-/// Sizes far beyond any structure are refused before anything is allocated for them.
+/// Sizes far beyond any structure are refused before memory is allocated for them.
 #[test]
 fn sizes_have_limits() {
     let study = cases().join("strathmashie_rise.toml").display().to_string();

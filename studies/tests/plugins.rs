@@ -1,5 +1,5 @@
-//! What plug-ins of one's own meet: a solver whose table is refused when the study is loaded, `auto` by cards, writers
-//! with options, study kinds that choose values themselves.
+//! External plug-ins: a solver whose table is refused when the study is loaded, `auto` by cards, writers with options,
+//! study kinds that choose values.
 
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -13,7 +13,7 @@ use voussoir::solve::auto::{limit_solvers, path_solvers};
 use voussoir::solve::{CaseInput, Observer, solve_case, solve_cases};
 use voussoir::study::{Case, Outline, SelectedSolver, Study, StudyError, StudySource, load};
 
-/// A number that the card takes up to 10 and the solver up to 5.
+/// A number; the card allows values up to 10, the solver up to 5.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 #[serde(try_from = "u64")]
 struct Effort(u64);
@@ -26,7 +26,7 @@ impl TryFrom<u64> for Effort {
     }
 }
 
-/// A solver whose card promises more than it reads.
+/// A solver whose card allows more than the solver accepts.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Fussy {
@@ -100,14 +100,14 @@ until = "collapse"
 loads = [{ kind = "point", span_fraction = 0.25, force = [0.0, -1000.0] }]
 "#;
 
-/// What is wrong with the arch and more text.
+/// The mistakes in the arch with additional text.
 fn wrong(more: &str, sets: &[(&str, &str)]) -> Vec<String> {
     let sets: Vec<_> = sets.iter().map(|(key, value)| (key.to_string(), value.to_string())).collect();
     let Err(wrong) = load(&format!("{ARCH}{more}"), "a.toml", &sets) else { panic!("{more} is accepted") };
     wrong.mistakes().iter().map(ToString::to_string).collect()
 }
 
-/// A plug-in that panics ends its case, not the others.
+/// If a plug-in panics, its case ends, and the other cases continue.
 #[test]
 fn a_panic_ends_one_case() {
     let more = "[solver]\nsolver = \"fussy_limit\"\n[sweep]\n\"solver.effort\" = { list = [5, 1] }\n";
@@ -118,7 +118,8 @@ fn a_panic_ends_one_case() {
     assert_eq!([said(&results[0]), said(&results[1])], [true, false], "{:?}", results[0].notes);
 }
 
-/// A solver table that its solver cannot read is a mistake with line and key, wherever it was written; never `auto`.
+/// A solver table that its solver cannot read is a mistake with line and key, wherever it is written. It never falls
+/// back to `auto`.
 #[test]
 fn a_solver_table_that_cannot_be_read_is_a_mistake() {
     let lines = ARCH.lines().count();
@@ -140,7 +141,7 @@ fn a_solver_table_that_cannot_be_read_is_a_mistake() {
     let sets = [("solver.solver", "fussy_limit"), ("solver.effort", "6")];
     let [message] = &wrong("", &sets)[..] else { panic!("one mistake") };
     assert!(message.starts_with("--set solver.effort: ") && message.contains("beyond it"), "{message}");
-    // Names that no solver has, by sweep and by variant.
+    // Unknown names of solvers, in a sweep and in a variant.
     let sweep = "[sweep]\n\"solver.solver\" = { list = [\"limit_chain\", \"limit_chian\"] }\n";
     assert!(wrong(sweep, &[])[0].contains("did you mean \"limit_chain\"?"));
     let variant = "[[variants]]\nname = \"a\"\nset = { \"solver.effrt\" = 1, \"solver.solver\" = \"fussy_limit\" }\n";
@@ -161,8 +162,8 @@ fn every_study() -> Vec<(String, Study)> {
     scenes.map(|(path, text)| (path.display().to_string(), read(path, &text))).collect()
 }
 
-/// `auto` chooses by cards what a list of named solvers chose: paths where something deforms, exact ones where laws have
-/// facets, blocks are linear and displacements small; limit analysis elsewhere, for chains by three redundants.
+/// `auto` chooses by the cards. It uses paths if something deforms, and the exact path solver if laws have facets,
+/// blocks are linear and displacements small. Otherwise it uses limit analysis, with three redundants for chains.
 #[test]
 fn auto_chooses_what_it_chose_by_name() {
     let (mut paths, mut limits) = (0, 0);
@@ -200,7 +201,7 @@ fn auto_chooses_what_it_chose_by_name() {
     assert!(paths >= 30 && limits >= 40, "{paths} paths, {limits} stages of limit analysis");
 }
 
-/// A solver without a cost is taken by name only; defaults of cards are those of the types.
+/// A solver without a cost is used only if it is named. Defaults of cards are the defaults of the types.
 #[test]
 fn defaults_of_cards_are_those_of_the_types() {
     let study = Study::from_toml(ARCH).expect("a study");
@@ -214,7 +215,7 @@ fn defaults_of_cards_are_those_of_the_types() {
     assert_eq!(format!("{:?}", chosen[0].1), format!("{least:?}"));
 }
 
-/// A study kind that chooses values itself asks for cases by key and value; mistakes have the key.
+/// A study kind that chooses values requests cases by key and value; mistakes name the key.
 #[test]
 fn a_study_makes_cases_at_other_values() {
     let study =
@@ -229,7 +230,7 @@ fn a_study_makes_cases_at_other_values() {
     assert_eq!(wrong.mistakes()[0].key, "scene.profile.rise");
 }
 
-/// A study kind of one's own: it tries another value of one key for each case, and says which case carries more.
+/// An external study kind. It tries another value of one key for each case, and reports which case carries more.
 struct Try;
 
 impl Try {
@@ -292,7 +293,8 @@ voussoir::core::inventory::submit! {
     }
 }
 
-/// Keys in the schema, cases and results of its own, verified; mistakes in its table have the nearest right name.
+/// Its keys are in the schema, it has cases and results, and these are verified. Mistakes in its table suggest the
+/// nearest known name.
 #[test]
 fn a_study_kind_of_ones_own() {
     let kind = "kind = \"try_value\"\n";
@@ -325,7 +327,8 @@ impl Observer for Silent {
     fn answered(&self, _: &CaseResult) {}
 }
 
-/// `[output] writers` chooses, `[output.options]` says how; unknown names are mistakes with the nearest right one.
+/// `[output] writers` selects the writers, `[output.options]` sets their options; unknown names are mistakes with the
+/// nearest known name.
 #[test]
 fn writers_are_chosen_and_have_options() {
     let run = |more: &str| {
@@ -347,7 +350,7 @@ fn writers_are_chosen_and_have_options() {
     assert!(wrong("[output.options.reprot]\n", &[])[0].contains("did you mean \"report\"?"));
 }
 
-/// Loads and dispersions are plug-ins with cards; mistakes in them have the nearest right name.
+/// Loads and dispersions are plug-ins with cards; mistakes in them suggest the nearest known name.
 #[test]
 fn mistakes_in_loads_have_the_nearest_right_name() {
     let with = |load: &str| {

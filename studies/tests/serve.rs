@@ -1,11 +1,11 @@
-//! `voussoir serve`: who is let in, and that it answers as `run` does. The page is used by `.ci/page`.
+//! `voussoir serve`: access checks, and the same results as `run`. `.ci/page` tests the page itself.
 
 mod served;
 
 use serde_json::{Value, json};
 use served::{STUDY, Served};
 
-/// Nothing passes without its own host, the token, a known path and method, and a body of bounded size.
+/// A request is accepted only with the right host, the token, a known path and method, and a body of limited size.
 #[test]
 fn only_the_page_itself_is_let_in() {
     let served = Served::start(STUDY);
@@ -45,7 +45,8 @@ fn answered(served: &Served, asked: &Value) -> Value {
     serde_json::from_str(&body).unwrap_or_else(|error| panic!("{error}: {body}"))
 }
 
-/// The answer to sliders is that of `run --set`, and its study file gives the same; a mistake has the same words.
+/// The result for slider values equals that of `run --set`, and the downloaded study file gives the same result.
+/// Mistakes have the same messages.
 #[test]
 fn a_served_answer_is_that_of_run() {
     let served = Served::start(STUDY);
@@ -69,7 +70,7 @@ fn a_served_answer_is_that_of_run() {
     let told = voussoir::study::load(&text, STUDY, &[("joints.dry.frction".into(), "0.5".into())]);
     let words = told.expect_err("a mistake").to_string();
     assert!(words.starts_with(mistake["mistakes"].as_str().expect("a text")), "{mistake} {words}");
-    // Nothing is read from files, whatever is set.
+    // No setting makes the server read files.
     let profile = json!({ "shape": "points", "file": "/etc/hostname" });
     let file = answered(&served, &json!({ "case": 0, "set": [["scene.profile", profile]] }));
     assert!(file["mistakes"].as_str().is_some_and(|text| text.contains("file")), "{file}");

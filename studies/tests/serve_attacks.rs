@@ -1,4 +1,4 @@
-//! A process without the token can neither end `voussoir serve`, nor block it, nor slow it down, nor use up its memory.
+//! A process without the token cannot end `voussoir serve`, block it, slow it down, or use up its memory.
 
 mod served;
 
@@ -8,12 +8,12 @@ use std::net::{Shutdown, TcpStream};
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-/// Time in which the page must answer under attack; machines that run tests are busy.
+/// Longest time until the page answers under attack; the machines that run tests are busy.
 const SOON: Duration = Duration::from_secs(4);
-/// Memory that an attack may cost \[KiB\].
+/// Greatest growth of memory under an attack \[KiB\].
 const MAX_GROWTH: u64 = 48 * 1024;
 
-/// A server with few files to open, as an attack would find it.
+/// Starts a server with a small limit of open files, which an attack could reach.
 fn start() -> Served {
     let program = env!("CARGO_BIN_EXE_voussoir");
     if cfg!(unix) {
@@ -30,14 +30,14 @@ fn connect(served: &Served) -> TcpStream {
     stream
 }
 
-/// A connection on which something was sent; a server that closed it before all was sent is no error.
+/// Opens a connection and sends bytes. The server may close it before all bytes are sent.
 fn sent(served: &Served, bytes: &[u8]) -> TcpStream {
     let mut stream = connect(served);
     drop(stream.write_all(bytes));
     stream
 }
 
-/// All that comes until the end; a reset is an end.
+/// Reads all bytes until the end; a reset counts as the end.
 fn received(mut stream: TcpStream) -> String {
     let (mut all, mut chunk) = (Vec::new(), [0; 4096]);
     loop {
@@ -51,7 +51,7 @@ fn received(mut stream: TcpStream) -> String {
     String::from_utf8_lossy(&all).into_owned()
 }
 
-/// Status codes of all answers on a connection.
+/// Status codes of all responses on a connection.
 fn codes(answer: &str) -> Vec<u16> {
     let code = |rest: &str| rest.split(' ').next().and_then(|code| code.parse().ok());
     answer.split("HTTP/1.1 ").skip(1).filter_map(code).collect()
@@ -64,11 +64,11 @@ fn memory(served: &Served) -> Option<u64> {
     line.split_whitespace().next()?.parse().ok()
 }
 
-/// Checks that the page answers soon, and returns the memory used so far.
+/// Checks that the page answers in time, and returns the memory used so far.
 fn assert_answers(served: &mut Served, after: &str) -> Option<u64> {
     let start = Instant::now();
     let mut code = 0;
-    // A connection may be closed for a newer one: a browser would try again.
+    // The server may close a connection for a newer one; a browser would try again.
     while code != 200 && start.elapsed() < SOON {
         let page = format!("GET /?token={} HTTP/1.1\r\nHost: {}\r\n\r\n", served.token, served.own());
         code = codes(&received(sent(served, page.as_bytes()))).first().copied().unwrap_or(0);
@@ -78,7 +78,8 @@ fn assert_answers(served: &mut Served, after: &str) -> Option<u64> {
     memory(served)
 }
 
-/// Bodies of any announced length are refused from the head alone, and cost nothing while they do not come.
+/// A request is refused as soon as its head arrives, whatever the announced length of its body. A body that does not
+/// arrive uses no memory.
 #[test]
 fn announced_bodies_cost_nothing() {
     let mut served = start();
@@ -96,7 +97,7 @@ fn announced_bodies_cost_nothing() {
     for stream in open {
         assert_eq!(codes(&received(stream)), [403]);
     }
-    // With the token only the length decides.
+    // With the token, only the length decides.
     let post = format!("POST /answer?token={} HTTP/1.1\r\nHost: {own}\r\n", served.token);
     for (headers, code) in [
         ("Content-Length: 65537\r\n", 413),
@@ -115,7 +116,8 @@ fn announced_bodies_cost_nothing() {
     assert!(before.zip(after).is_none_or(|(before, after)| after < before + MAX_GROWTH), "{before:?} {after:?}");
 }
 
-/// More idle connections than the server may open files: the page answers at once, and they are closed within seconds.
+/// There are more idle connections than the server may open files: the page answers immediately, and idle connections
+/// are closed within seconds.
 #[test]
 fn idle_connections_make_room() {
     let mut served = start();
@@ -133,14 +135,14 @@ fn idle_connections_make_room() {
         received(stream);
     }
     assert!(start.elapsed() < Duration::from_secs(10), "closed after {:?}", start.elapsed());
-    // Readers that never read their answers.
+    // Clients that never read the responses.
     let whole = format!("{half}\r\n");
     let _unread: Vec<TcpStream> = (0..80).map(|_| sent(&served, whole.as_bytes())).collect();
     let after = assert_answers(&mut served, "80 answers without a reader");
     assert!(before.zip(after).is_none_or(|(before, after)| after < before + MAX_GROWTH), "{before:?} {after:?}");
 }
 
-/// Five seconds are the time of a whole head and a whole body, not of a read.
+/// The limit of five seconds holds for the whole head and the whole body, not for one read.
 #[test]
 fn slow_drips_are_cut_off() {
     let mut served = start();
@@ -160,7 +162,7 @@ fn slow_drips_are_cut_off() {
         let mut answer = String::new();
         drop(stream.set_read_timeout(Some(Duration::from_millis(100))));
         drop(stream.read_to_string(&mut answer));
-        // A reset may have dropped the answer.
+        // A reset may have dropped the response.
         assert!(answer.is_empty() || answer.starts_with("HTTP/1.1 408 "), "{answer}");
         drop(stream.set_read_timeout(Some(Duration::from_millis(100))));
         let end = stream.read(&mut [0; 16]);
@@ -171,7 +173,7 @@ fn slow_drips_are_cut_off() {
     }
 }
 
-/// A head without end is refused after 16 KiB, whatever comes behind.
+/// A head without end is refused after 16 KiB, whatever follows.
 #[test]
 fn heads_have_a_greatest_size() {
     let mut served = start();
@@ -179,7 +181,7 @@ fn heads_have_a_greatest_size() {
     let whole = format!("/?token={}", served.token);
     for first in ["GET / HTTP/1.1\r\nX: ", "GET /", ""] {
         let mut stream = sent(&served, first.as_bytes());
-        // Bounded: 64 MB, or until the server closes.
+        // At most 64 MB, or until the server closes the connection.
         let refused = (0..64).any(|_| stream.write_all(&[b'a'; 1_000_000]).is_err());
         assert!(refused, "64 MB were taken");
         assert_answers(&mut served, "a head without end");
@@ -196,7 +198,7 @@ fn heads_have_a_greatest_size() {
     assert!(before.zip(after).is_none_or(|(before, after)| after < before + MAX_GROWTH), "{before:?} {after:?}");
 }
 
-/// Odd requests get one answer each, and the next reader gets the page.
+/// Unusual requests get one response each, and the next client gets the page.
 #[test]
 fn odd_requests_are_refused() {
     let mut served = start();
@@ -221,7 +223,7 @@ fn odd_requests_are_refused() {
         (format!("GET {whole} HTTP/1.1\r\nHost: {own}\r\nHost: {own}\r\n\r\n").into_bytes(), &[403]),
         (format!("GET http://{own}{whole} HTTP/1.1\r\nHost: {own}\r\n\r\n").into_bytes(), &[400]),
         (format!("GET {whole} HTTP/3.0\r\nHost: {own}\r\n\r\n").into_bytes(), &[505]),
-        // The second request of a connection is never read.
+        // The second request on a connection is never read.
         (format!("{page}{page}").into_bytes(), &[200]),
         (format!("GET / HTTP/1.1\r\nHost: x\r\nContent-Length: 9\r\n\r\n{page}").into_bytes(), &[403]),
         (
@@ -238,7 +240,7 @@ fn odd_requests_are_refused() {
         assert_eq!(codes(&received(sent(&served, &bytes))), expected, "{said}");
         assert_answers(&mut served, &said);
     }
-    // Sockets that are closed for writing at any byte of a request.
+    // Connections that the client closes for writing after any byte of a request.
     for end in 0..=page.len() {
         let stream = sent(&served, &page.as_bytes()[..end]);
         stream.shutdown(Shutdown::Write).expect("half closed");

@@ -1,4 +1,4 @@
-//! Studies solved in parts and put together again, and studies of so many cases that none is held.
+//! Studies that are solved in parts and merged, and studies with too many cases to hold in memory.
 
 use serde_json::Value;
 use std::io::{BufRead, BufReader};
@@ -21,7 +21,7 @@ fn text(path: &Path) -> String {
     std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// An arch, two variants over some rises.
+/// An arch with two variants and several rises.
 fn study(rises: usize) -> String {
     format!(
         "name = \"ring\"\n[scene]\nscene = \"arch\"\nprofile = {{ shape = \"segmental\", span = 9.42, rise = 2.99 }}\n\
@@ -42,13 +42,13 @@ fn sealed(case: &str) -> String {
     format!("{{\"checksum\":\"{sum:016x}\",\"case\":{case}}}")
 }
 
-/// Ids of cases in lines of JSON, of labels and of a part.
+/// Ids of cases in lines of JSON: of labels or of a part.
 fn ids(text: &str) -> Vec<u64> {
     let lines = text.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
     lines.filter_map(|line| line["id"].as_u64().or(line["case"]["id"].as_u64())).collect()
 }
 
-/// A folder of a test's own with a study of eight cases in it.
+/// A folder for one test, with a study of eight cases.
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("shards_{name}"));
     drop(std::fs::remove_dir_all(&folder));
@@ -57,7 +57,7 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// The text of results.json without the time that cases took.
+/// The text of results.json without running times.
 fn timeless(path: &Path) -> String {
     let seconds = |line: &&str| !line.trim_start().starts_with("\"seconds\"");
     text(path).lines().filter(seconds).collect::<Vec<_>>().join("\n")
@@ -71,7 +71,7 @@ fn solve_parts(at: &Path, out: &str, more: &[&str]) {
     }
 }
 
-/// Three parts together are the whole, byte for byte but for seconds, and the cases of each kind that can be held.
+/// Three merged parts equal the whole run, byte by byte except for seconds.
 #[test]
 fn parts_make_the_whole() {
     let at = folder("whole");
@@ -85,7 +85,7 @@ fn parts_make_the_whole() {
     }
     assert_eq!(text(&at.join("parts/resolved.toml")), text(&at.join("whole/resolved.toml")));
     assert_eq!(code(&voussoir(&["verify", "parts"], &at)), 0);
-    // The list of a part is what it holds, each case is in one part, and a part stays the same when others are added.
+    // `--list` of a part gives its cases, each case is in one part, and a part stays the same if others are added.
     let mut all = Vec::new();
     for number in 1..=3 {
         let list = voussoir(&["run", "a.toml", "--list", "--shard", &format!("{number}/3")], &at);
@@ -98,11 +98,11 @@ fn parts_make_the_whole() {
     assert_eq!(ids(&said(&voussoir(&["run", "a.toml", "--list"], &at))), all);
 }
 
-/// What is missing, double, foreign, cut short or altered is named, and nothing is written.
+/// Missing, duplicate, foreign, truncated and changed parts are named, and nothing is written.
 #[test]
 fn parts_that_do_not_fit_are_refused() {
     let at = folder("refused");
-    // Cases are dealt out by their hashes, which depend on the program: with 24 cases no part is empty.
+    // Cases are assigned to parts by their hashes, which depend on the program. With 24 cases no part is empty.
     std::fs::write(at.join("a.toml"), study(12)).expect("written");
     solve_parts(&at, "parts", &[]);
     let refused = |arguments: &[&str], words: &[&str]| {
@@ -117,7 +117,7 @@ fn parts_that_do_not_fit_are_refused() {
     refused(&["merge", &part(1), "parts", "--out", "out"], &["stand in two parts"]);
     refused(&["merge", &part(1), &part(2), &part(3)], &["--out DIR"]);
     refused(&["merge", "."], &["holds no part"]);
-    // Another study, other friction, another cut.
+    // Another study, other friction, another number of parts.
     std::fs::write(at.join("b.toml"), study(12).replace("friction = 0.6", "friction = 0.7")).expect("written");
     std::fs::write(at.join("c.toml"), study(12).replace("\"ring\"", "\"other\"")).expect("written");
     for (file, shard, out, words) in [
@@ -139,7 +139,7 @@ fn parts_that_do_not_fit_are_refused() {
     let lines: Vec<&str> = whole.lines().collect();
     change(&format!("{}\n{}\n", lines[0], lines[lines.len() - 1]));
     refused(&["merge", "parts"], &["holds 0 cases and says"]);
-    // A changed case is damage, and with a new checksum its fields still do not prove it.
+    // A changed case counts as damaged; with a new checksum, its fields still do not prove it.
     change(&whole.replacen("\"collapse\"", "\"stalled\"", 1));
     refused(&["merge", "parts"], &["1 lines of", "are damaged"]);
     let mut case = serde_json::from_str::<Value>(lines[1]).expect("a line")["case"].take();
@@ -154,7 +154,7 @@ fn parts_that_do_not_fit_are_refused() {
     change(&whole);
     std::fs::rename(&path, at.join(part(2)).join("unfinished.jsonl")).expect("renamed");
     refused(&["merge", "parts"], &["is not finished: run it again with --resume"]);
-    // A damaged part is finished by --resume; one line of it is solved again.
+    // `--resume` completes a damaged part; it solves one case again.
     change(&whole.replacen("\"collapse\"", "\"stalled\"", 1));
     std::fs::remove_file(at.join(part(2)).join("unfinished.jsonl")).expect("removed");
     let again = voussoir(&["run", "a.toml", "--shard", "2/3", "--out", "parts", "--resume"], &at);
@@ -167,7 +167,7 @@ fn parts_that_do_not_fit_are_refused() {
     }
 }
 
-/// Parts that are killed at places spread over their work and resumed are those of one run.
+/// Parts that are killed at different places and resumed equal the parts of one run.
 #[test]
 fn killed_parts_are_resumed() {
     let at = folder("killed");
@@ -191,7 +191,7 @@ fn killed_parts_are_resumed() {
     assert_eq!(timeless(&at.join("parts/results.json")), timeless(&at.join("whole/results.json")));
 }
 
-/// However many jobs read, solve and write, and wherever a run was killed before: the bytes are the same but for seconds.
+/// The bytes are the same except for seconds, for any number of jobs and after any kill.
 #[test]
 fn results_depend_neither_on_jobs_nor_on_kills() {
     let at = folder("jobs");
@@ -224,8 +224,8 @@ fn results_depend_neither_on_jobs_nor_on_kills() {
     assert!(expected == timeless(&at.join("killed/results.json")));
 }
 
-/// Lines of JSON are the entries of results.json, and the only thing on standard output; so are those of a kind that
-/// makes cases itself.
+/// Lines of JSON are the entries of results.json, and nothing else is on standard output; also for a kind that creates
+/// cases itself.
 #[test]
 fn lines_of_json() {
     let at = folder("lines");
@@ -244,7 +244,7 @@ fn lines_of_json() {
     }
 }
 
-/// Ctrl-C leaves what is finished and says how to go on.
+/// Ctrl-C keeps the finished cases and prints the command that continues.
 #[cfg(unix)]
 #[test]
 fn interrupted_runs_say_how_to_go_on() {
@@ -273,8 +273,8 @@ fn interrupted_runs_say_how_to_go_on() {
     assert!(text(&journal).lines().count() > 1);
 }
 
-/// Studies of so many cases that not all are shown have the files of small ones, whether they are solved in one run, in parts
-/// merged in any order, or one case after another.
+/// Studies with more cases than tables show have the same files as small ones, if they are solved in one run, in parts
+/// merged in any order, or case by case.
 #[test]
 fn very_many_cases_have_the_same_files() {
     let at = folder("many");
@@ -303,7 +303,7 @@ fn very_many_cases_have_the_same_files() {
     assert_eq!(code(&voussoir(&["run", "a.toml", "--out", "two", "--quiet", "--jobs", "2"], &at)), 0);
     assert!(timeless(&at.join("two/results.json")) == whole);
     assert_eq!(code(&voussoir(&["verify", "whole", "--jobs", "2"], &at)), 0);
-    // One case is solved again among all others.
+    // One case is solved again; the others are kept.
     let output = voussoir(&["run", "a.toml", "--out", "whole", "--case", "3"], &at);
     assert!(code(&output) == 0 && said(&output).contains("1001 other(s) are kept"), "{}", said(&output));
     assert!(timeless(&at.join("whole/results.json")) == whole);

@@ -1,4 +1,4 @@
-//! Work without the interpreter's lock that Ctrl-C ends, and that says how far it has come.
+//! Runs work without the interpreter's lock. The work reports progress, and Ctrl-C stops it.
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -8,10 +8,10 @@ use std::time::Duration;
 use voussoir::results::CaseResult;
 use voussoir::solve::{Observer, PathProgress};
 
-/// How long Ctrl-C may go unseen.
+/// Longest delay until Ctrl-C is noticed.
 const PATIENCE: Duration = Duration::from_millis(50);
 
-/// What the work says.
+/// A progress report.
 enum Event {
     Begins(usize),
     Phase(String),
@@ -19,7 +19,7 @@ enum Event {
     Path { case: usize, stage: String, factor: f64, states: u64 },
 }
 
-/// Looks on and passes on what it sees.
+/// Observes the work and sends progress reports.
 pub struct Told {
     events: Option<Sender<Event>>,
     cancelled: AtomicBool,
@@ -27,7 +27,7 @@ pub struct Told {
 
 impl Told {
     fn tell(&self, event: Event) {
-        // Nobody listens when the caller has given up.
+        // The receiver is gone if the caller has stopped.
         if let Some(events) = &self.events {
             drop(events.send(event));
         }
@@ -58,9 +58,9 @@ impl Observer for Told {
     }
 }
 
-/// Does some work on a thread of its own, while this one calls `progress` with what it says and looks for signals. An
-/// exception, of Ctrl-C or of `progress`, cancels the work and is raised when it has ended; `False` from `progress`
-/// cancels it too, and what it has come to is returned.
+/// Runs some work on another thread, while this thread calls `progress` with its reports and checks for signals. An
+/// exception (Ctrl-C, or raised by `progress`) cancels the work and is raised when the work has ended. If `progress`
+/// returns `False`, the work is cancelled too, and its results so far are returned.
 pub fn interruptible<T: Send>(
     py: Python<'_>,
     progress: Option<Py<PyAny>>,
@@ -68,7 +68,7 @@ pub fn interruptible<T: Send>(
 ) -> PyResult<T> {
     let (send, events) = channel();
     let told = Told { events: progress.is_some().then(|| send.clone()), cancelled: AtomicBool::new(false) };
-    // Dropped when the work has ended: then there is nothing more to wait for.
+    // Dropped when the work has ended, so that the other thread stops waiting.
     let alive = send;
     let told = &told;
     std::thread::scope(|scope| {
@@ -87,7 +87,7 @@ pub fn interruptible<T: Send>(
     })
 }
 
-/// Passes events on until the work has ended.
+/// Passes reports on until the work has ended.
 fn watch(
     py: Python<'_>,
     events: Receiver<Event>,
@@ -95,7 +95,8 @@ fn watch(
     told: &Told,
     ended: &dyn Fn() -> bool,
 ) -> PyResult<()> {
-    // A receiver is not shared between threads: it is lent while the lock is released.
+    // A receiver cannot be shared between threads, so a mutex protects it while the lock of the interpreter is
+    // released.
     let events = std::sync::Mutex::new(events);
     loop {
         let event = py.detach(|| match events.lock() {
@@ -117,7 +118,7 @@ fn watch(
     }
 }
 
-/// Calls `progress` with a dictionary; whether to go on.
+/// Calls `progress` with a dictionary. Returns false if the work must stop.
 fn call(py: Python<'_>, progress: &Py<PyAny>, event: Event) -> PyResult<bool> {
     let dict = PyDict::new(py);
     match event {

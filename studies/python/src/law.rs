@@ -1,7 +1,8 @@
 //! Joint laws written in Python: `law = "python_facets"` and `law = "python_response"`.
 //!
-//! The table names a class that `voussoir.law` has registered, and its parameters. Both forms are for trying a law out:
-//! facets are asked for once a case and cost nothing more; a response is called for every group of points.
+//! The table names a class that `voussoir.law` has registered, and its parameters. Both forms are meant for
+//! experiments. The facets are requested once for each case, so they cost nothing more; `respond` is called for every
+//! group of points.
 
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -14,7 +15,7 @@ use voussoir::core::law::{
 };
 use voussoir::core::plugin::{Capability, Card, Need, Parameter, PluginKind, Shape};
 
-/// What both tables hold.
+/// The keys of both tables.
 const PARAMETERS: &[Parameter] = &[
     Parameter {
         name: "class",
@@ -55,13 +56,13 @@ voussoir::core::inventory::submit! {
     }
 }
 
-/// An object of the class with these parameters.
+/// Creates an object of the class with these parameters.
 fn made<'py>(py: Python<'py>, class: &str, parameters: &Map<String, Json>) -> PyResult<Bound<'py, PyAny>> {
     let text = serde_json::to_string(parameters).unwrap_or_default();
     py.import("voussoir._laws")?.call_method1("make", (class, text))
 }
 
-/// What is wrong with a table, as Python says it.
+/// Returns the mistakes in a table, as reported by Python.
 fn checked(table: &Json, form: &str) -> Vec<(String, String)> {
     let class = table["class"].as_str().unwrap_or_default();
     let empty = Map::new();
@@ -80,7 +81,7 @@ fn checked(table: &Json, form: &str) -> Vec<(String, String)> {
     })
 }
 
-/// A text that lives as long as the program; each only once.
+/// Returns a text that lives as long as the program. Each text is stored once.
 fn kept(text: String) -> &'static str {
     static TEXTS: LazyLock<Mutex<Vec<&'static str>>> = LazyLock::new(Mutex::default);
     let Ok(mut texts) = TEXTS.lock() else { return "a law written in Python" };
@@ -94,7 +95,7 @@ fn kept(text: String) -> &'static str {
     }
 }
 
-/// Facets from Python.
+/// A law whose facets are defined in Python.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PythonFacets {
@@ -142,7 +143,7 @@ fn stiffness(class: &str, parameters: &Map<String, Json>) -> Option<[f64; 2]> {
     })
 }
 
-/// Tractions from gaps from Python.
+/// A law of tractions from gaps that is defined in Python.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PythonResponse {
@@ -170,7 +171,7 @@ impl InterfaceLaw for PythonResponse {
     }
 }
 
-/// The object that answers.
+/// The Python object of the law.
 #[derive(Debug)]
 struct Response {
     law: Py<PyAny>,
@@ -178,7 +179,7 @@ struct Response {
     names: &'static [&'static str],
 }
 
-/// The law takes up energy that it does not give back.
+/// The law dissipates energy.
 const DISSIPATING: UpdateBranch = UpdateBranch::new("dissipating", Effect::Softening);
 
 fn bytes_of(numbers: &[f64]) -> Vec<u8> {
@@ -190,7 +191,7 @@ fn numbers_of(bytes: &[u8]) -> Vec<f64> {
 }
 
 impl Response {
-    /// Tractions, tangents, states, stored and dissipated energies of a group, each point after the other.
+    /// Calls the law: tractions, tangents, states, stored and dissipated energies of a group, point by point.
     fn ask(&self, gaps: &[[f64; 2]], old: &[f64]) -> PyResult<[Vec<f64>; 5]> {
         Python::attach(|py| {
             let gap = PyBytes::new(py, &bytes_of(gaps.as_flattened()));

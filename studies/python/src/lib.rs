@@ -1,5 +1,5 @@
-//! The native half of the Python package `voussoir`: studies in, text and columns out. What a user of Python sees is
-//! written in Python, in `python/voussoir/`.
+//! The native part of the Python package `voussoir`. It accepts studies and returns texts and columns. The public
+//! interface is written in Python, in `python/voussoir/`.
 
 mod interrupted;
 mod law;
@@ -17,7 +17,7 @@ use voussoir::kinds::{LoadedStudy, RunOutput, RunRequest, StoredResults, Verific
 /// Version of the program, for results.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// Number of cases, name, notes and the resolved study of a study without mistakes.
+/// Returns number of cases, name, notes and the resolved study. The study must be free of mistakes.
 #[pyfunction]
 fn check<'py>(py: Python<'py>, source: Source) -> PyResult<Bound<'py, PyDict>> {
     let study = py.detach(|| source.load())?;
@@ -29,7 +29,7 @@ fn check<'py>(py: Python<'py>, source: Source) -> PyResult<Bound<'py, PyDict>> {
     Ok(dict)
 }
 
-/// Runs a study; the files that the command line would write, as bytes by name.
+/// Runs a study and returns the files that the command line would write, as bytes by name.
 #[pyfunction]
 #[pyo3(signature = (source, cases=None, jobs=1, progress=None))]
 fn run<'py>(
@@ -67,7 +67,7 @@ fn run<'py>(
     Ok(dict)
 }
 
-/// Runs a study after those that it reports on, whose files stand in folders of their own.
+/// Runs a study after the studies that it reports on. Their files are in separate folders.
 fn run_with_parts(study: &dyn LoadedStudy, wanted: Vec<usize>, jobs: usize, told: &Told) -> RunOutput {
     let (mut files, mut parts, mut certified) = (Vec::new(), Vec::new(), true);
     for part in study.parts() {
@@ -91,7 +91,7 @@ fn toml_text(study: &dyn LoadedStudy) -> PyResult<String> {
     study.resolved_text().map_err(|error| PyValueError::new_err(format!("the study cannot be written back: {error}")))
 }
 
-/// Checks a results folder: what is wrong with it, line by line, and how many cases there are and are stalled.
+/// Checks a result folder. Returns the findings line by line, the number of cases and the number of stalled cases.
 #[pyfunction]
 #[pyo3(signature = (dir, jobs=1))]
 fn verify<'py>(py: Python<'py>, dir: PathBuf, jobs: usize) -> PyResult<Bound<'py, PyDict>> {
@@ -111,7 +111,7 @@ fn verify<'py>(py: Python<'py>, dir: PathBuf, jobs: usize) -> PyResult<Bound<'py
     Ok(dict)
 }
 
-/// Checks one folder; those of the studies that it reports on are left for later.
+/// Checks one folder. The folders of studies that it reports on are added to `later`.
 fn verify_one(py: Python<'_>, dir: &Path, jobs: usize, later: &mut Vec<PathBuf>) -> PyResult<Verification> {
     let unreadable = |name: &'static str| {
         move |error: std::io::Error| PyOSError::new_err(format!("cannot read {}: {error}", dir.join(name).display()))
@@ -129,20 +129,20 @@ fn verify_one(py: Python<'_>, dir: &Path, jobs: usize, later: &mut Vec<PathBuf>)
     found.map_err(|error| PyValueError::new_err(format!("{}: not a results file: {error}", dir.display())))
 }
 
-/// The JSON Schema of study files.
+/// Returns the JSON Schema of study files.
 #[pyfunction]
 fn schema() -> String {
     voussoir::kinds::json_schema::json_schema().to_string()
 }
 
-/// (kind, tag, summary) of every plug-in.
+/// Returns (kind, tag, summary) of every plug-in.
 #[pyfunction]
 fn plugins() -> Vec<(&'static str, &'static str, &'static str)> {
     let cards = voussoir::core::plugin::cards();
     cards.into_iter().map(|card| (card.kind.plural(), card.tag, card.summary)).collect()
 }
 
-/// The command line; its exit code.
+/// Runs the command line and returns its exit code.
 #[pyfunction]
 fn main(py: Python<'_>, arguments: Vec<String>) -> i32 {
     use std::io::Write;
@@ -166,7 +166,7 @@ mod _voussoir {
     use super::{check, main, plugins, run, schema, verify};
     use pyo3::prelude::*;
 
-    /// The version goes with the module.
+    /// Adds the version to the module.
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         module.add("__version__", super::VERSION)

@@ -1,4 +1,4 @@
-//! A study as Python gives it, and what is wrong with it as an exception.
+//! A study that is passed from Python, and its mistakes as an exception.
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -16,7 +16,7 @@ pyo3::create_exception!(
     "Something is wrong with a study; `mistakes` lists everything, each with file, line, column, key, message and help."
 );
 
-/// The text of a study file, or a value with the same keys as JSON; with keys that are set on top.
+/// The text of a study file, or a dictionary with the same keys as JSON; both with overrides of keys.
 #[derive(Clone)]
 pub enum Source {
     /// TOML.
@@ -25,14 +25,14 @@ pub enum Source {
         text: String,
         /// Its name in messages.
         file: String,
-        /// Keys and values as on the command line.
+        /// Overrides of keys, as on the command line.
         sets: Vec<(String, String)>,
     },
     /// A dictionary, as JSON.
     Json {
         /// The text.
         text: String,
-        /// Keys and values, each as JSON.
+        /// Overrides of keys, with values as JSON.
         sets: Vec<(String, String)>,
     },
 }
@@ -48,7 +48,7 @@ impl<'py> FromPyObject<'_, 'py> for Source {
 }
 
 impl Source {
-    /// The keys of the study.
+    /// Reads the keys of the study.
     pub fn read(&self) -> PyResult<StudySource> {
         match self {
             Source::Toml { text, file, sets } => StudySource::parse_with(text, file, sets, &|name| self.beside(name))
@@ -66,12 +66,12 @@ impl Source {
 }
 
 impl Source {
-    /// The study, of any kind.
+    /// Loads the study, of any kind.
     pub fn load(&self) -> PyResult<Box<dyn LoadedStudy>> {
         read_source_beside(self.read()?, &|name| self.beside(name)).map_err(|wrong| study_error(wrong.mistakes()))
     }
 
-    /// The text of a file beside the study's.
+    /// Reads the text of a file beside the study file.
     fn beside(&self, name: &str) -> Result<String, String> {
         match self {
             Source::Toml { file, .. } if Path::new(file).is_file() => beside(Path::new(file))(name),
@@ -80,7 +80,7 @@ impl Source {
     }
 }
 
-/// The exception that says all of it as the command line does.
+/// The exception with all mistakes, formatted as on the command line.
 pub fn study_error(wrong: &[LocatedDiagnostic]) -> PyErr {
     let text = wrong.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
     Python::attach(|py| {

@@ -1,4 +1,4 @@
-//! Many cases as columns, a chunk at a time: what `voussoir.sweep` gives to its workers.
+//! Solves many cases in chunks and returns columns, for the workers of `voussoir.sweep`.
 
 use crate::interrupted::{Told, interruptible};
 use crate::source::{Source, study_error};
@@ -9,7 +9,7 @@ use pyo3::types::PyDict;
 use voussoir::study::{Study, StudyFile};
 use voussoir::writers::columns::{Cell, CellKind, Column, Labels};
 
-/// A study whose cases are made one at a time; nothing of them is kept.
+/// A study whose cases are created one at a time and not kept.
 #[pyclass(frozen)]
 pub struct Sweep {
     study: Study,
@@ -17,8 +17,8 @@ pub struct Sweep {
 
 #[pymethods]
 impl Sweep {
-    /// Reads a study; with `checked` every case is made once, so that every mistake is told at once. Without it only
-    /// the first is: for workers that are given what has been checked.
+    /// Reads a study. With `checked`, every case is created once, so that all mistakes are reported together. Otherwise
+    /// only the first case is created; this is for workers whose study was already checked.
     #[new]
     #[pyo3(signature = (source, checked=true))]
     fn new(py: Python<'_>, source: Source, checked: bool) -> PyResult<Self> {
@@ -53,7 +53,7 @@ impl Sweep {
         self.study.keys()
     }
 
-    /// Solves cases and gives a column for each quantity; NaN where a case has no such number, None where no such word.
+    /// Solves cases and returns a column for each quantity. Missing numbers are NaN, missing words are None.
     #[pyo3(signature = (ids, jobs=1, progress=None))]
     fn solve<'py>(
         &self,
@@ -88,7 +88,7 @@ impl Sweep {
     }
 }
 
-/// The name of a column in Python: a word that is also one of a result's attributes.
+/// The name of a column in Python: an identifier. If a result has the same attribute, the names are equal.
 fn name(column: &Column) -> &str {
     match column.name.as_str() {
         "kind" => "mechanism",
@@ -97,7 +97,7 @@ fn name(column: &Column) -> &str {
     }
 }
 
-/// The cells of a column: NaN where there is no number, None where there is no word or truth.
+/// The cells of a column. Missing numbers are NaN; missing words and booleans are None.
 fn values(py: Python<'_>, kind: CellKind, cells: Vec<Cell>) -> PyResult<Bound<'_, PyAny>> {
     match kind {
         CellKind::Number => {

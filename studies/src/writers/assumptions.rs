@@ -1,17 +1,17 @@
-//! What a calculation takes for granted, and from where: the plug-ins of a case in the words of their cards.
+//! The assumptions of a calculation with their sources: the descriptions of the plug-ins that a case uses.
 
 use crate::config::common_keys::tag_of;
 use crate::study::{Case, SelectedSolver, stage_tables};
 use serde_json::Value as Json;
 use voussoir_core::plugin::{Card, PluginKind, card};
 
-/// The laws of a fill: in words, their keys, their kinds.
+/// The laws of a fill: description, key, kind.
 const OF_FILL: [(&str, &str, PluginKind); 2] = [
     ("spread of live loads", "scene.fill.dispersion", PluginKind::Dispersion),
     ("resistance of the fill", "scene.fill.resistance", PluginKind::FillResistance),
 ];
 
-/// The plug-ins that a case uses, each with what it is used for.
+/// The plug-ins that a case uses, each with its purpose.
 fn used(case: &Case) -> Vec<(String, &'static Card)> {
     let resolved = &case.resolved;
     let tag = |value: &Json, kind: PluginKind| card(kind, tag_of(kind, value));
@@ -42,7 +42,7 @@ fn used(case: &Case) -> Vec<(String, &'static Card)> {
     out
 }
 
-/// What a case takes for granted.
+/// The assumptions of a case.
 pub fn assumptions(case: &Case) -> Vec<(String, String)> {
     let assembly = &case.assembly;
     let row = |words: &str, value: &str| (words.to_string(), value.to_string());
@@ -72,7 +72,7 @@ pub fn assumptions(case: &Case) -> Vec<(String, String)> {
     rows
 }
 
-/// What the plug-ins of a case cite, each once.
+/// The sources that the plug-ins of a case cite, each once.
 pub fn sources(case: &Case) -> Vec<(String, String)> {
     let mut rows: Vec<(String, String)> = Vec::new();
     for (_, card) in used(case) {

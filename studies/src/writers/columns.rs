@@ -1,4 +1,4 @@
-//! The columns of the table of results: one list for CSV, Parquet, the terminal, the report and Python.
+//! The columns of the table of results. CSV, Parquet, the terminal, the report and Python use this list.
 
 use crate::figures::format::{continuation_word, format_value, kind_word, status_word};
 use crate::results::CaseResult;
@@ -8,12 +8,12 @@ use serde_json::Value as Json;
 /// Greatest number of characters of a number without a power of ten.
 const MAX_PLAIN: usize = 20;
 
-/// One value of a row, or none.
+/// One value of a row; the value may be missing.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Cell {
     /// UTF-8.
     Text(Option<String>),
-    /// Every bit of it.
+    /// A double with all its bits.
     Number(Option<f64>),
     /// An integer.
     Whole(Option<i64>),
@@ -35,7 +35,7 @@ pub enum CellKind {
 }
 
 impl Cell {
-    /// The type of the column that it fits into.
+    /// The type of a column for this cell.
     pub fn kind(&self) -> CellKind {
         match self {
             Cell::Text(_) => CellKind::Text,
@@ -45,7 +45,8 @@ impl Cell {
         }
     }
 
-    /// The text in a CSV file; empty without a value. Numbers keep every bit, with a power of ten if they are long without.
+    /// The text in a CSV file; empty without a value. Numbers keep every bit; a long number is written with a power of
+    /// ten.
     pub fn text(&self) -> String {
         match self {
             Cell::Text(text) => text.clone(),
@@ -60,7 +61,7 @@ impl Cell {
     }
 }
 
-/// A swept value in a CSV file: numbers keep every bit.
+/// A swept value in a CSV file; numbers keep every bit.
 pub fn swept_text(value: Option<&Json>) -> String {
     let text = |value: &Json| match value.as_f64() {
         Some(number) => Cell::Number(Some(number)).text(),
@@ -77,23 +78,23 @@ type Value = fn(&CaseResult) -> Cell;
 pub struct Column {
     /// Its name in files.
     pub name: String,
-    /// Its unit in files: `m`, or `-` for a pure number; none for texts, counts and truths.
+    /// Its unit in files: `m`, or `-` for a pure number; `None` for texts, counts and truths.
     pub unit: Option<String>,
-    /// Its name on pages, with the unit.
+    /// Its title on pages, with the unit.
     pub title: String,
     /// The type of its cells.
     pub kind: CellKind,
     value: Source,
 }
 
-/// The place of the values of a column in a case.
+/// The source of the values of a column.
 #[derive(Debug, Clone)]
 enum Source {
     Swept(String),
     Field(Value),
 }
 
-/// Columns after those that tell cases apart: name, unit, value.
+/// The columns after those that identify a case: name, unit, value.
 const FIELDS: [(&str, &str, Value); 19] = [
     ("status", "", |case| word(status_word(case.status))),
     ("load_factor", "-", |case| Cell::Number(case.load_factor)),
@@ -170,7 +171,7 @@ impl Column {
         }
     }
 
-    /// The cell of a case for readers: numbers short.
+    /// The cell of a case for readers: numbers are rounded.
     pub fn words(&self, case: &CaseResult) -> String {
         match &self.value {
             Source::Swept(key) => case.label.parameters.get(key).map(format_value).unwrap_or_default(),
@@ -184,12 +185,12 @@ impl Column {
     }
 }
 
-/// The columns that tell cases apart. Variants and scenes have one only if some case has any, in tables for readers.
+/// The columns that identify cases. In tables for readers, variants and scenes have a column only if some case has one.
 #[derive(Debug, Clone, Copy)]
 pub struct Labels<'a> {
     /// Swept keys, outermost first.
     pub swept: &'a [String],
-    /// Units and words of the swept keys.
+    /// Units and descriptions of the swept keys.
     pub keys: &'a SweptKeys,
     /// True if cases have variants, or the table is a file.
     pub variants: bool,
@@ -198,7 +199,7 @@ pub struct Labels<'a> {
 }
 
 impl Labels<'_> {
-    /// The columns that tell cases apart.
+    /// The columns that identify cases.
     pub fn columns(&self) -> Vec<Column> {
         let own = |name: &str, value: Value| Column::of_field(name, "", value);
         let mut columns = vec![own("id", |case| count(Some(case.label.id)))];
@@ -231,7 +232,7 @@ mod tests {
         assert_eq!(names[..6], ["id", "variant", "scene", "a.b", "status", "load_factor [-]"]);
     }
 
-    /// Every bit comes back, in either notation.
+    /// Every bit is kept in both notations.
     #[test]
     fn numbers_keep_every_bit() {
         for x in [0.1 + 0.2, 1e-300, -2e6, 1.0 / 3.0, 5e-324, 1e22, 0.0] {

@@ -1,4 +1,4 @@
-//! Tables as CSV, of which no cell is a formula to a spreadsheet.
+//! Tables as CSV. No cell can be read as a formula by a spreadsheet.
 
 /// A table with its header. Rows are as long as the header.
 pub fn csv_table(header: Vec<String>, rows: impl Iterator<Item = Vec<String>>) -> String {
@@ -13,7 +13,7 @@ pub fn csv_row(cells: impl Iterator<Item = String>) -> Vec<u8> {
     line.into_inner().expect("memory takes what is written")
 }
 
-/// A cell that is text or a number: what a spreadsheet would read as a formula gets an apostrophe in front, which
+/// A cell that is text or a number. If a spreadsheet would read it as a formula, it begins with an apostrophe, which
 /// spreadsheets do not show.
 fn plain(cell: String) -> String {
     let formula = cell.starts_with(['=', '+', '-', '@', '\t', '\r']) && cell.parse::<f64>().is_err();

@@ -1,4 +1,4 @@
-//! `curve.csv`: the points of load-displacement curves, where a study asks for them.
+//! `curve.csv`: the points of load-displacement curves, if a study requests them.
 
 use super::columns::Column;
 use super::csv_table::csv_row;
@@ -13,7 +13,7 @@ use std::io::{self, Write};
 #[derive(Debug)]
 pub struct CurveCsv;
 
-/// The columns that tell cases apart.
+/// The columns that identify cases.
 struct Rows(Vec<Column>);
 
 impl Writer for CurveCsv {
@@ -22,7 +22,7 @@ impl Writer for CurveCsv {
     }
 }
 
-/// One row per point of each case's curve, in the order of the path.
+/// One row for each point of a case's curve, in the order of the path.
 impl CaseTable for Rows {
     fn name(&self) -> String {
         "curve.csv".into()

@@ -1,26 +1,26 @@
-//! The place where the files of results go: a folder, memory, or a comparison with files that are there.
+//! Destinations of result files: a folder, memory, or a comparison with existing files.
 
 use std::cell::RefCell;
 use std::io::{self, Write};
 
-/// A file that becomes whole when it is done, and otherwise leaves nothing.
+/// A file that appears under its name only when it is complete.
 pub trait OutputFile: Write {
-    /// Gives the file its name.
+    /// Completes the file and gives it its name.
     ///
     /// # Errors
-    /// If it cannot be written to its end.
+    /// If the file cannot be written completely.
     fn done(self: Box<Self>) -> io::Result<()>;
 }
 
-/// The place where files go.
+/// A destination of files.
 pub trait Files {
-    /// Begins a file by its name relative to the folder; `None` if nothing is done with its content.
+    /// Begins a file; the name is relative to the folder. Returns `None` if its content is not needed.
     ///
     /// # Errors
     /// If it cannot be written.
     fn begin(&self, name: &str) -> io::Result<Option<Box<dyn OutputFile + '_>>>;
 
-    /// Writes a file whose content is held.
+    /// Writes a file whose content is in memory.
     ///
     /// # Errors
     /// If it cannot be written.
@@ -31,12 +31,12 @@ pub trait Files {
     }
 }
 
-/// Files in memory.
+/// Stores files in memory.
 #[derive(Debug, Default)]
 pub struct HeldFiles(RefCell<Vec<(String, Vec<u8>)>>);
 
 impl HeldFiles {
-    /// Names and contents in the order in which they were done.
+    /// Names and contents in the order in which the files were completed.
     pub fn into_files(self) -> Vec<(String, Vec<u8>)> {
         self.0.into_inner()
     }

@@ -1,7 +1,7 @@
-//! Result files: each writer turns a study's results into named files. None touches the disk.
+//! Result files: each writer converts a study's results to named files. No writer accesses the disk.
 //!
-//! A writer is one file here: a type with [`Writer`], its card, and a [`WriterEntry`] submitted
-//! to the registry.
+//! A writer is one file here: a type with [`Writer`], its card, and a [`WriterEntry`] that is submitted to the
+//! registry.
 
 mod assumptions;
 pub mod columns;

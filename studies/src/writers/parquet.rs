@@ -1,5 +1,5 @@
-//! The Parquet format, as much of it as a flat table takes: optional columns of texts, doubles, integers and truths, plain
-//! encoding, no compression, one data page a column and group of rows.
+//! The part of the Parquet format that a flat table needs: optional columns of texts, doubles, integers and booleans,
+//! plain encoding, no compression, one data page for each column and group of rows.
 //!
 //! Source: Apache Parquet, `parquet-format` 2 (`parquet.thrift`, Encodings.md); the compact protocol of Apache Thrift.
 
@@ -7,7 +7,7 @@ use super::columns::{Cell, CellKind};
 use std::io::{self, Write};
 
 impl CellKind {
-    /// Its place in `enum Type` of the format.
+    /// Its number in `enum Type` of the format.
     fn stored(self) -> i64 {
         match self {
             CellKind::Truth => 0,
@@ -29,7 +29,7 @@ impl Cell {
     }
 }
 
-/// A struct in the compact protocol of Thrift, field by field in growing order of their numbers.
+/// A struct in the compact protocol of Thrift. Fields are added by increasing number.
 #[derive(Default)]
 struct Struct {
     bytes: Vec<u8>,
@@ -55,7 +55,7 @@ fn zigzag(value: i64) -> u64 {
 }
 
 impl Struct {
-    /// Field numbers grow by less than 16 everywhere in the format.
+    /// Writes the header of a field. In this format, consecutive field numbers differ by less than 16.
     fn field(mut self, number: u8, kind: u8) -> Self {
         self.bytes.push((number - self.last) << 4 | kind);
         self.last = number;
@@ -88,7 +88,7 @@ impl Struct {
         own
     }
 
-    /// A list of elements that are written already.
+    /// A list of elements that are already encoded.
     fn list(self, number: u8, kind: u8, elements: Vec<Vec<u8>>) -> Self {
         let mut own = self.field(number, LIST);
         if elements.len() < 15 {
@@ -114,7 +114,7 @@ fn binary(text: &str) -> Vec<u8> {
     bytes
 }
 
-/// Which values are there, as runs of equal levels (hybrid encoding, one bit wide), with their length in front.
+/// Encodes which values are present: runs of equal levels (hybrid encoding, one bit wide), preceded by their length.
 fn levels(there: &[bool]) -> Vec<u8> {
     let mut runs = Vec::new();
     for run in there.chunk_by(|a, b| a == b) {
@@ -126,7 +126,7 @@ fn levels(there: &[bool]) -> Vec<u8> {
     bytes
 }
 
-/// The values that are there, one after the other.
+/// Encodes the values that are present, one after another.
 fn plain(cells: &[Cell]) -> Vec<u8> {
     let (mut bytes, mut truths) = (Vec::new(), 0_usize);
     for cell in cells {
@@ -151,7 +151,7 @@ fn plain(cells: &[Cell]) -> Vec<u8> {
     bytes
 }
 
-/// A page of one column: its header, and what follows it.
+/// A page of one column: its header and its data.
 fn page(cells: &[Cell]) -> Vec<u8> {
     let there: Vec<bool> = cells.iter().map(Cell::is_there).collect();
     let mut data = levels(&there);
@@ -166,10 +166,10 @@ fn page(cells: &[Cell]) -> Vec<u8> {
 }
 
 const MAGIC: &[u8; 4] = b"PAR1";
-/// Rows that are held before they are written.
+/// Number of rows that are buffered before they are written.
 const GROUP: usize = 4096;
 
-/// A table as Parquet, row by row. No more rows are held than one group has.
+/// Writes a table as Parquet, row by row. It buffers at most one group of rows.
 pub struct Parquet {
     at: i64,
     /// Name and `enum Type` of each column.
@@ -180,18 +180,18 @@ pub struct Parquet {
 }
 
 impl Parquet {
-    /// A table whose columns have these names and types.
+    /// Creates a table whose columns have these names and types.
     pub fn new(columns: impl Iterator<Item = (String, CellKind)>) -> Self {
         let columns = columns.map(|(name, kind)| (name, kind.stored())).collect();
         Parquet { at: MAGIC.len() as i64, columns, waiting: Vec::new(), groups: Vec::new(), rows: 0 }
     }
 
-    /// Writes the beginning.
+    /// Writes the beginning of the file.
     pub fn begin(&mut self, out: &mut dyn Write) -> io::Result<()> {
         out.write_all(MAGIC)
     }
 
-    /// Adds a row: a cell for each column, of its type.
+    /// Adds a row with one cell for each column, of the type of the column.
     pub fn add(&mut self, row: Vec<Cell>, out: &mut dyn Write) -> io::Result<()> {
         let fits = row.len() == self.columns.len()
             && row.iter().zip(&self.columns).all(|(cell, own)| cell.kind().stored() == own.1);
@@ -231,7 +231,7 @@ impl Parquet {
         Ok(())
     }
 
-    /// Writes the rows that are still held, and the list of all groups.
+    /// Writes the buffered rows and the list of all groups.
     pub fn end(&mut self, out: &mut dyn Write) -> io::Result<()> {
         if !self.waiting.is_empty() {
             self.write_group(out)?;
@@ -239,7 +239,7 @@ impl Parquet {
         let root = Struct::default().text(4, "rows").i32(5, self.columns.len() as i64).end();
         let column = |(name, stored): &(String, i64)| {
             let own = Struct::default().i32(1, *stored).i32(3, 1).text(4, name);
-            // Texts are UTF-8.
+            // Texts are marked as UTF-8.
             if *stored == 6 { own.i32(6, 0).end() } else { own.end() }
         };
         let schema = std::iter::once(root).chain(self.columns.iter().map(column)).collect();
@@ -260,7 +260,7 @@ impl Parquet {
 mod tests {
     use super::*;
 
-    /// Examples of the specifications of Thrift and Parquet.
+    /// Examples from the specifications of Thrift and Parquet.
     #[test]
     fn numbers_and_levels_are_written_as_specified() {
         let written = |value| {

@@ -1,4 +1,4 @@
-//! Whole files of the Parquet writer, byte by byte. polars and DuckDB read both files and found every value.
+//! Checks whole files of the Parquet writer byte by byte. polars and DuckDB read both files with all values.
 
 use super::columns::{Cell, CellKind};
 use super::parquet::Parquet;
@@ -11,13 +11,13 @@ fn file(columns: Vec<(String, CellKind)>, rows: Vec<Vec<Cell>>) -> Vec<u8> {
     bytes
 }
 
-/// Hexadecimal digits, without those of the program's version.
+/// Hexadecimal digits, without the version of the program.
 fn hex(bytes: &[u8]) -> String {
     let digits = |bytes: &[u8]| bytes.iter().map(|byte| format!("{byte:02x}")).collect::<String>();
     digits(bytes).replace(&digits(env!("CARGO_PKG_VERSION").as_bytes()), "")
 }
 
-/// A column of each type, with values that are missing.
+/// A column of each type, with missing values.
 #[test]
 fn a_small_table() {
     let columns = [("t", CellKind::Text), ("n", CellKind::Number), ("w", CellKind::Whole), ("b", CellKind::Truth)];
@@ -42,7 +42,8 @@ fn a_small_table() {
     assert_eq!(hex(&bytes), expected);
 }
 
-/// Two groups of rows and as many columns as a short list cannot hold: length of the file, and a sum of its bytes by place.
+/// Two groups of rows, and more columns than a short list can have. The test compares the length of the file and a sum
+/// of its bytes weighted by position.
 #[test]
 fn a_large_table() {
     let columns = (0..15).map(|place| (format!("c{place}"), CellKind::Whole)).collect();

@@ -1,4 +1,4 @@
-//! `path_proofs.jsonl`: for each path whose end is proved a line with its states and witnesses.
+//! `path_proofs.jsonl`: one line for each path with a proved end, with its states and witnesses.
 
 use super::writer::CaseTable;
 use crate::results::CaseResult;
@@ -6,7 +6,7 @@ use crate::results::sealed_line::sealed_text;
 use crate::results::stored_path::{PATH_PROOFS, PathLine};
 use std::io::{self, Write};
 
-/// The file, written whatever writers a study names.
+/// Writes the file, whichever writers a study lists.
 #[derive(Debug)]
 pub struct PathProofs;
 

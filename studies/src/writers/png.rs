@@ -1,5 +1,4 @@
-//! Figures as pixels: what `figures` draws, for programs that read no SVG. Only where the program is compiled with the feature
-//! `png`.
+//! The figures of `figures` as PNG, for programs that cannot read SVG. Compiled only with the feature `png`.
 
 use super::figures::Figures;
 use super::register::register;
@@ -17,9 +16,9 @@ use voussoir_core::plugin::Keys;
 /// The background of a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
 pub enum Background {
-    /// It is white.
+    /// White.
     White,
-    /// It has no colour.
+    /// Transparent.
     Transparent,
 }
 
@@ -40,7 +39,7 @@ pub struct Png;
 
 impl Writer for Png {
     fn files(&self, study: &StudyOutput, options: &Json) -> Vec<(String, Vec<u8>)> {
-        // Only where it is asked for by name: figures as SVG are written anyway.
+        // Only if the study lists this writer, because figures are always available as SVG.
         if !study.output.writers.iter().flatten().any(|tag| tag == "png") {
             return Vec::new();
         }
@@ -55,7 +54,7 @@ impl Writer for Png {
     }
 }
 
-/// One font that is part of the program, so that a figure is the same on every machine.
+/// The only font is part of the program, so that a figure is the same on every machine.
 fn reading() -> Options<'static> {
     let mut fonts = Database::new();
     fonts.load_font_data(dejavu::sans::regular().to_vec());
@@ -64,7 +63,7 @@ fn reading() -> Options<'static> {
     Options { font_family: "DejaVu Sans".into(), fontdb: Arc::new(fonts), ..Options::default() }
 }
 
-/// An SVG drawn `width` pixels wide; `None` where it is none.
+/// Rasterises an SVG to `width` pixels. Returns `None` if the text is not valid SVG.
 fn png(svg: &[u8], width: u32, background: Option<Color>, reading: &Options) -> Option<Vec<u8>> {
     let tree = Tree::from_data(svg, reading).ok()?;
     let scale = width as f32 / tree.size().width();
@@ -96,7 +95,7 @@ mod tests {
         <rect x='0' y='0' width='20' height='20' fill='#f00'/>\
         <text x='22' y='15' font-family='Helvetica, sans-serif' font-size='14'>W</text></svg>";
 
-    /// Pixels where they are, as large as asked, with ink where text stands, on the background asked for.
+    /// Checks the size of the picture, the pixels of a shape and of a text, and the background.
     #[test]
     fn a_figure_becomes_the_pixels_it_says() {
         let draw = |background| {

@@ -1,12 +1,12 @@
-//! One line that registers a writer: its card and its entry in the registry.
+//! A macro that registers a writer: its card and its entry in the registry.
 
 use voussoir_core::plugin::Keys;
 
-/// Keys of a writer that has none.
+/// The keys of a writer without options.
 #[derive(Debug, Keys)]
 pub struct NoOptions {}
 
-/// The card of a writer and its entry in the registry.
+/// Creates the card of a writer and its entry in the registry.
 macro_rules! register {
     ($tag:literal, $writer:expr, $summary:literal, $page:literal) => {
         register!($tag, $writer, $summary, $crate::writers::register::NoOptions, $page);

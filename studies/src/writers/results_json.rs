@@ -1,4 +1,4 @@
-//! `results.json`: everything, to the last bit.
+//! `results.json`: all results, with every bit of each number.
 
 use super::register::register;
 use super::results_text::{ResultsText, case_text};
@@ -7,19 +7,19 @@ use crate::results::CaseResult;
 use crate::side_by_side::in_order;
 use std::io::{self, Write};
 
-/// Cases whose texts are held at once.
+/// Number of cases whose texts are in memory at the same time.
 const AT_ONCE: usize = 64;
 
-/// `results.json`, which every run writes: it names the other files.
+/// Writes `results.json`. Every run writes this file; it names the other files.
 #[derive(Debug)]
 pub struct ResultsJson;
 
 impl Writer for ResultsJson {}
 
-/// Adds cases to results.json, made into text side by side.
+/// Adds cases to results.json; their texts are made in parallel.
 pub fn add_cases<W: Write>(text: &mut ResultsText<W>, cases: &[CaseResult]) -> io::Result<()> {
     if let [case] = cases {
-        // A case of a million blocks has half a gigabyte: its text is not held.
+        // A case of a million blocks has half a gigabyte, so its text is not held in memory.
         return text.write(case);
     }
     cases.chunks(AT_ONCE).try_for_each(|few| in_order(few, case_text).into_iter().try_for_each(|case| text.add(&case?)))

@@ -1,4 +1,4 @@
-//! `results.parquet`: the rows of results.csv with types, for pandas, polars, DuckDB and others.
+//! `results.parquet`: the rows of results.csv with types, for pandas, polars, DuckDB and other programs.
 
 use super::columns::Column;
 use super::parquet::Parquet;

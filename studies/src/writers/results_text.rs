@@ -1,6 +1,7 @@
-//! The text of results.json, case by case: what stands before the cases, each case, what stands after them.
+//! The text of results.json: the head, the cases one by one, and the tail.
 //!
-//! The layout is that of `serde_json::to_string_pretty`. Cases can be made into text side by side and need not be held.
+//! The layout is that of `serde_json::to_string_pretty`. The texts of cases can be made in parallel and need not be
+//! kept in memory.
 
 use crate::results::{CaseResult, Comparison, Origin};
 use serde::Serialize;
@@ -8,7 +9,7 @@ use serde_json::ser::{Formatter, Serializer};
 use serde_json::{Map, Value as Json};
 use std::io::{self, Write};
 
-/// What stands before the cases.
+/// The entries before the cases.
 #[derive(Debug, Clone)]
 pub struct ResultsHead {
     /// Name of the study.
@@ -19,31 +20,31 @@ pub struct ResultsHead {
     pub origin: Origin,
     /// The day of the run.
     pub date: Option<String>,
-    /// Ids of the cases, where the run was asked for some of them only.
+    /// Ids of the cases, if the run was limited to some cases.
     pub only_cases: Option<Vec<usize>>,
     /// Names of the files beside results.json and resolved.toml.
     pub files: Vec<String>,
 }
 
-/// results.json while it is written.
+/// Writes results.json step by step.
 pub struct ResultsText<W: Write> {
     out: W,
     cases: usize,
 }
 
-/// How deep cases stand.
+/// Depth of the indentation of cases.
 const CASE: usize = 2;
 
-/// The text of a case as it stands among others.
+/// Returns the text of a case, with the indentation that it has in the file.
 pub fn case_text(case: &CaseResult) -> io::Result<Vec<u8>> {
-    // An arch of a dozen voussoirs fits.
+    // Large enough for an arch of a dozen voussoirs.
     let mut text = Vec::with_capacity(1 << 14);
     write_at(CASE, &mut text, case)?;
     Ok(text)
 }
 
 impl<W: Write> ResultsText<W> {
-    /// Begins with what stands before the cases.
+    /// Writes the head.
     pub fn begin(mut out: W, head: &ResultsHead) -> io::Result<Self> {
         out.write_all(b"{")?;
         entry(&mut out, b"\n", "study", &head.study)?;
@@ -62,7 +63,7 @@ impl<W: Write> ResultsText<W> {
         Ok(ResultsText { out, cases: 0 })
     }
 
-    /// Adds a case whose text is not held.
+    /// Adds a case without holding its text in memory.
     pub fn write(&mut self, case: &CaseResult) -> io::Result<()> {
         self.begin_case()?;
         write_at(CASE, &mut self.out, case)
@@ -80,7 +81,7 @@ impl<W: Write> ResultsText<W> {
         Ok(())
     }
 
-    /// Ends with what a kind of study adds; where it was written to.
+    /// Writes the entries of the study kind after the cases, and returns the output.
     pub fn finish(mut self, comparison: Option<&Comparison>, own: &Map<String, Json>) -> io::Result<W> {
         self.out.write_all(if self.cases == 0 { b"]" } else { b"\n  ]" })?;
         if let Some(comparison) = comparison {
@@ -92,7 +93,7 @@ impl<W: Write> ResultsText<W> {
     }
 }
 
-/// A key of the whole with its value.
+/// Writes a key of the top level with its value.
 fn entry(out: &mut impl Write, before: &[u8], key: &str, value: &impl Serialize) -> io::Result<()> {
     out.write_all(before)?;
     out.write_all(b"  ")?;
@@ -101,15 +102,16 @@ fn entry(out: &mut impl Write, before: &[u8], key: &str, value: &impl Serialize)
     write_at(1, out, value)
 }
 
-/// Writes a value that stands `depth` steps from the margin.
+/// Writes a value that is indented by `depth` steps.
 fn write_at(depth: usize, out: &mut impl Write, value: &impl Serialize) -> io::Result<()> {
     Ok(value.serialize(&mut Serializer::with_formatter(out, Indented { depth, filled: false }))?)
 }
 
-/// The end of a line and the blanks of the next, as much as one piece holds.
+/// The end of a line and the indentation of the next one. Deeper indentation needs several pieces.
 const LINE: &[u8] = b",\n                                                                ";
 
-/// The layout of `serde_json::ser::PrettyFormatter`, each line begun in one piece, which is half of its work.
+/// The layout of `serde_json::ser::PrettyFormatter`. Line end and indentation are written in one piece, which halves
+/// the time.
 struct Indented {
     depth: usize,
     filled: bool,
@@ -185,7 +187,7 @@ mod tests {
     use crate::writers::results_json::add_cases;
     use serde_json::json;
 
-    /// Byte for byte what serde_json writes, with and without what may be left out, and however deep values stand.
+    /// The text equals that of serde_json byte by byte, with and without optional entries, at any depth.
     #[test]
     fn the_text_is_that_of_serde_json() {
         let deep = (0..40).fold(json!({ "a": [], "b": {} }), |inner, _| json!([inner, { "c": [1.5, "\"\n"] }]));

@@ -1,4 +1,4 @@
-//! The table on the terminal.
+//! The table that is printed on the terminal.
 
 use super::columns::{CellKind, Column};
 use super::joints_csv::carried_lines;
@@ -11,7 +11,7 @@ use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 use std::collections::HashMap;
 use voussoir_core::limit::Status;
 
-/// One row per case, then each distinct note once with the cases it belongs to.
+/// One row for each case, then each distinct note once with the ids of its cases.
 pub fn results_table(study: &StudyOutput) -> String {
     let cases = &study.results.cases;
     let labels = study.page_labels().columns();
@@ -25,7 +25,7 @@ pub fn results_table(study: &StudyOutput) -> String {
         let mark = format!("[{}]", i + 1);
         for id in ids {
             let own = marks.entry(*id).or_default();
-            // A case may say the same twice.
+            // A case may have the same note twice.
             if !own.ends_with(&mark) {
                 *own += &mark;
             }
@@ -64,7 +64,7 @@ pub fn results_table(study: &StudyOutput) -> String {
     text
 }
 
-/// The verdict of the certificate: of an open result only the bounds are proved.
+/// The verdict of the certificate. For an open result only the bounds are proved.
 fn certificate(case: &CaseResult) -> &'static str {
     match (case.certificate.passed, case.status) {
         (true, _) => "ok",
@@ -96,7 +96,7 @@ fn hinges(case: &CaseResult) -> String {
     if joints.len() > 8 { format!("{} joints", joints.len()) } else { joints.join(" ") }
 }
 
-/// Numbers padded at the end so that their points stand under each other when aligned right.
+/// Pads numbers on the right so that their decimal points are aligned in a right-aligned column.
 fn aligned(cells: &[String]) -> Vec<String> {
     let decimals = |cell: &str| cell.find('.').map_or(0, |dot| cell.len() - dot);
     let is_number = |cell: &str| cell.parse::<f64>().is_ok();

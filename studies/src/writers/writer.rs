@@ -1,4 +1,4 @@
-//! What a writer is.
+//! The interface of writers.
 
 use super::study_output::StudyOutput;
 use crate::config::default_table::default_table;
@@ -7,44 +7,44 @@ use serde_json::Value as Json;
 use std::io::{self, Write};
 use voussoir_core::plugin::{PluginKind, card};
 
-/// A file with rows of every case, which come one after another in order of id and are not held.
+/// A file with rows for every case. Cases are passed one after another in order of id and are not kept.
 pub trait CaseTable {
     /// Its name, relative to the result folder.
     fn name(&self) -> String;
 
-    /// Writes its beginning.
+    /// Writes the beginning of the file.
     ///
     /// # Errors
-    /// Those of `out`.
+    /// The errors of `out`.
     fn begin(&mut self, out: &mut dyn Write) -> io::Result<()>;
 
     /// Writes the rows of a case.
     ///
     /// # Errors
-    /// Those of `out`.
+    /// The errors of `out`.
     fn add(&mut self, case: &CaseResult, out: &mut dyn Write) -> io::Result<()>;
 
-    /// Writes its end.
+    /// Writes the end of the file.
     ///
     /// # Errors
-    /// Those of `out`.
+    /// The errors of `out`.
     fn end(&mut self, out: &mut dyn Write) -> io::Result<()> {
         let _ = out;
         Ok(())
     }
 }
 
-/// Turns results into the bytes of files. Its card's parameters are its options, under `[output.options]` in a
-/// table that is called like the writer: `options` has every option, from the study or by default.
+/// Converts results to the bytes of files. The parameters of its card are its options, in a table with the tag of the
+/// writer under `[output.options]`. `options` has a value for every option, from the study or the default.
 pub trait Writer: Send + Sync {
-    /// (file name relative to the result folder, bytes), in a fixed order: files about the cases that are shown to readers,
-    /// which are all of them unless there are very many.
+    /// Returns (file name relative to the result folder, bytes), in a fixed order. These files describe the cases that
+    /// are shown to readers: all cases, unless there are very many.
     fn files(&self, study: &StudyOutput, options: &Json) -> Vec<(String, Vec<u8>)> {
         let _ = (study, options);
         Vec::new()
     }
 
-    /// A table of all cases.
+    /// Returns a table of all cases, if the writer has one.
     fn table<'a>(&self, study: &StudyOutput<'a>, options: &Json) -> Option<Box<dyn CaseTable + 'a>> {
         let _ = (study, options);
         None
@@ -53,7 +53,7 @@ pub trait Writer: Send + Sync {
 
 /// A writer with the tag of its card.
 pub struct WriterEntry {
-    /// Tag of its card.
+    /// The tag of its card.
     pub tag: &'static str,
     /// The writer.
     pub writer: &'static dyn Writer,
@@ -61,14 +61,14 @@ pub struct WriterEntry {
 
 voussoir_core::inventory::collect!(WriterEntry);
 
-/// All writers, sorted by tag.
+/// Returns all writers, sorted by tag.
 pub fn writers() -> Vec<&'static WriterEntry> {
     let mut all: Vec<_> = voussoir_core::inventory::iter::<WriterEntry>.into_iter().collect();
     all.sort_by_key(|entry| entry.tag);
     all
 }
 
-/// The writers of the study's `[output]` with their options: all, or the listed ones.
+/// Returns the writers of the study's `[output]` with their options: all, or the listed ones.
 fn chosen(study: &StudyOutput) -> impl Iterator<Item = (&'static dyn Writer, Json)> {
     let wanted = |tag: &str| study.output.writers.as_ref().is_none_or(|tags| tags.iter().any(|wanted| wanted == tag));
     let options = |tag: &str| match study.output.options.get(tag) {
@@ -78,12 +78,12 @@ fn chosen(study: &StudyOutput) -> impl Iterator<Item = (&'static dyn Writer, Jso
     writers().into_iter().filter(move |entry| wanted(entry.tag)).map(move |entry| (entry.writer, options(entry.tag)))
 }
 
-/// The files about shown cases.
+/// Returns the files about the shown cases.
 pub fn written(study: &StudyOutput) -> Vec<(String, Vec<u8>)> {
     chosen(study).flat_map(|(writer, options)| writer.files(study, &options)).collect()
 }
 
-/// The tables of all cases.
+/// Returns the tables of all cases.
 pub fn tables<'a>(study: &StudyOutput<'a>) -> Vec<Box<dyn CaseTable + 'a>> {
     chosen(study).filter_map(|(writer, options)| writer.table(study, &options)).collect()
 }

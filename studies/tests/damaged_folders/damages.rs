@@ -1,4 +1,4 @@
-//! Damages of a results folder: of each node of its JSON, of each line of its study, of each file.
+//! Damages of a results folder: changes of each node of its JSON, of each line of its study, and of each file.
 
 use serde_json::{Value, json};
 use std::fmt;
@@ -7,35 +7,35 @@ use std::path::Path;
 /// One damage.
 #[derive(Debug, Clone)]
 pub enum Damage {
-    /// A node of results.json, by its pointer.
+    /// Changes a node of results.json, given by its pointer.
     Node(String, Change),
-    /// A line of resolved.toml, and the line in its place.
+    /// Replaces a line of resolved.toml by another one.
     Line(usize, String),
-    /// A file, by its name.
+    /// Damages a file, given by its name.
     File(String, Harm),
 }
 
 /// A change of a JSON node.
 #[derive(Debug, Clone)]
 pub enum Change {
-    /// It is removed.
+    /// Deletes the node.
     Delete,
-    /// An element of a list is there twice.
+    /// Duplicates an element of a list.
     Duplicate,
-    /// Another value is in its place.
+    /// Replaces the value.
     Value(Value),
 }
 
 /// A damage of a whole file.
 #[derive(Debug, Clone)]
 pub enum Harm {
-    /// Thousandths of it that are left.
+    /// Truncates the file to these thousandths of its length.
     Cut(usize),
-    /// A byte that is not UTF-8, at these thousandths of its length.
+    /// Overwrites a byte with one that is not UTF-8, at these thousandths of its length.
     Byte(usize),
     Missing,
     Empty,
-    /// The file of that name of another folder.
+    /// Replaces the file by the file with the same name in another folder.
     Swapped,
     Folder,
     Zero,
@@ -54,7 +54,7 @@ impl fmt::Display for Damage {
     }
 }
 
-/// Values that take the place of a node.
+/// Values that replace a node.
 fn values() -> Vec<Value> {
     vec![
         Value::Null,
@@ -73,7 +73,7 @@ fn values() -> Vec<Value> {
     ]
 }
 
-/// Pointers of all nodes; of lists the first two and the last elements.
+/// Pointers of all nodes; for lists only the first two elements and the last.
 fn pointers(value: &Value, at: &str, out: &mut Vec<String>) {
     match value {
         Value::Object(map) => {
@@ -94,7 +94,7 @@ fn pointers(value: &Value, at: &str, out: &mut Vec<String>) {
     }
 }
 
-/// All damages of a folder, in an order that is the same in each run.
+/// All damages of a folder, in the same order in each run.
 pub fn damages(folder: &Path) -> Vec<Damage> {
     let text = std::fs::read_to_string(folder.join("results.json")).expect("results");
     let whole: Value = serde_json::from_str(&text).expect("JSON");
@@ -125,7 +125,8 @@ pub fn damages(folder: &Path) -> Vec<Damage> {
         let others = values().into_iter().filter(|value| Some(value) != own);
         all.extend(others.map(|value| Damage::Node(place.clone(), Change::Value(value))));
     }
-    // A stride without a common factor: neighbours in the choice are different damages of different places.
+    // The stride has no common factor with the number, so that neighbours in the selection are different damages of
+    // different places.
     let (count, stride) = (all.len(), 7919);
     (0..count).map(|i| all[i * stride % count].clone()).collect()
 }
@@ -141,24 +142,24 @@ fn files(folder: &Path, inner: &str) -> Vec<String> {
 }
 
 impl Damage {
-    /// True if the damage may be in an entry that claims nothing, or may change nothing.
+    /// True if the damage may be in an entry that claims nothing, or may have no effect.
     pub fn may_be_free(&self) -> bool {
         match self {
             Damage::Line(..) => true,
             Damage::File(name, harm) => match harm {
-                // A missing table or figure is no finding.
+                // A missing table or figure is not a finding.
                 Harm::Missing => !["results.json", "resolved.toml"].contains(&name.as_str()),
                 _ => false,
             },
             Damage::Node(pointer, _) => {
-                // The origin in the head only chooses how results are compared.
+                // The origin in the head only selects the kind of comparison.
                 let origin = voussoir::results::HEAD.iter().any(|key| pointer.starts_with(&format!("/{key}")));
                 origin || ["/seconds", "/counters", "/version", "/date"].iter().any(|key| pointer.contains(key))
             }
         }
     }
 
-    /// Damages a folder; files are swapped with those of `other`.
+    /// Damages a folder; files are swapped with the files of `other`.
     pub fn apply(&self, folder: &Path, other: &Path) {
         match self {
             Damage::Node(pointer, change) => damage_node(&folder.join("results.json"), pointer, change),

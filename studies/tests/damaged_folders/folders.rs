@@ -3,7 +3,7 @@
 use crate::program::voussoir;
 use std::path::{Path, PathBuf};
 
-/// An arch with the joint law, the solver and all that follows.
+/// An arch; `joint` contains the joint law, `rest` everything after it.
 fn arch(name: &str, head: &str, material: &str, joint: &str, rest: &str) -> String {
     format!(
         "name = \"{name}\"\n{head}\n[scene]\nscene = \"arch\"\nprofile = {{ shape = \"segmental\", span = 4.0, rise = 1.0 }}\n\
@@ -19,7 +19,7 @@ const ELASTIC: &str = "law = \"elastic\"\nyoung_modulus = 5e9\npoisson_ratio = 0
 const ASSOCIATED: &str = "law = \"coulomb_associated\"\nfriction = 0.6";
 const MESH: &str = "[scene.mesh]\nelements = [1, 2]\n";
 
-/// Name and text of each study; a report comes last.
+/// Name and text of each study; the last one is a report.
 pub fn studies() -> Vec<(&'static str, String)> {
     let path = |name: &str, solver: &str| {
         let rest = format!("{MESH}[solver]\n{solver}\n[output]\ncurve = true\nstates = 4\n");
@@ -55,7 +55,7 @@ pub fn studies() -> Vec<(&'static str, String)> {
     ]
 }
 
-/// Runs all studies into folders of their names.
+/// Runs all studies. The folders have the names of the studies.
 pub fn written_folders(at: &Path) -> Vec<PathBuf> {
     let studies = studies();
     for (name, text) in &studies {
@@ -69,7 +69,7 @@ pub fn written_folders(at: &Path) -> Vec<PathBuf> {
     studies.iter().map(|(name, _)| run(name)).collect()
 }
 
-/// Copies a folder over another.
+/// Copies a folder over another one.
 pub fn copy_folder(from: &Path, to: &Path) {
     drop(std::fs::remove_dir_all(to));
     std::fs::create_dir_all(to).expect("a folder");

@@ -1,5 +1,5 @@
-//! Damaged results folders: `verify` ends within seconds, with findings in words and an exit code from 0 to 3, whatever
-//! is in the folder. The short run takes a few damages of each study; `DAMAGED_FOLDERS=3000` takes as many in all.
+//! Damaged results folders: `verify` ends within seconds, with findings in words and an exit code from 0 to 3, for any
+//! content of the folder. The short run uses a few damages of each study; `DAMAGED_FOLDERS=3000` sets the total number.
 
 mod damages;
 mod folders;
@@ -15,7 +15,7 @@ use std::time::Duration;
 
 /// Longest time of one check.
 const LIMIT: Duration = Duration::from_secs(60);
-/// Damages of the short run.
+/// Number of damages in the short run.
 const SHORT: usize = 120;
 
 fn place(name: &str) -> PathBuf {
@@ -25,7 +25,7 @@ fn place(name: &str) -> PathBuf {
     place
 }
 
-/// The wrong end of a check, in words.
+/// Describes the end of a check if it is wrong.
 fn wrong_end(damage: &Damage, end: &Ended) -> Option<String> {
     let code = match end.code {
         None => return Some(format!("no end within {LIMIT:?}")),
@@ -41,7 +41,7 @@ fn wrong_end(damage: &Damage, end: &Ended) -> Option<String> {
     }
 }
 
-/// As many damages of all folders as are asked for, evenly spread.
+/// Selects `count` damages of all folders, evenly spread.
 fn chosen(folders: &[PathBuf], count: usize) -> Vec<(PathBuf, Damage)> {
     let each = count.div_ceil(folders.len());
     let mut chosen = Vec::new();
@@ -99,13 +99,13 @@ fn damaged_folders_end_with_findings() {
     assert!(wrong.is_empty(), "{} of {} ended wrongly:\n{}", wrong.len(), damaged.len(), wrong.join("\n"));
 }
 
-/// Another folder, from which files are swapped.
+/// Another folder, the source of swapped files.
 fn folders_beside(folder: &Path) -> PathBuf {
     let name = if folder.ends_with("limit") { "compare" } else { "limit" };
     folder.with_file_name(name)
 }
 
-/// A damaged journal costs its damaged cases only: `--resume` gives the results of an undisturbed run.
+/// A damaged journal loses only its damaged cases: `--resume` gives the results of an undisturbed run.
 #[test]
 fn damaged_journals_are_resumed() {
     let at = place("journals");

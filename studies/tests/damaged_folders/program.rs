@@ -1,4 +1,4 @@
-//! The program under test with a limit of time.
+//! Runs the program under test with a time limit.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -6,20 +6,20 @@ use std::time::{Duration, Instant};
 
 /// The end of a program.
 pub struct Ended {
-    /// Its exit code; `None` if it had to be stopped or a signal ended it.
+    /// Exit code; `None` if it was stopped, or ended by a signal.
     pub code: Option<i32>,
-    /// All that it printed.
+    /// Its whole output.
     pub text: String,
     /// Its running time.
     pub time: Duration,
 }
 
-/// Runs the program without a limit of time.
+/// Runs the program without a time limit.
 pub fn voussoir(arguments: &[&str], at: &Path) -> Ended {
     ended(arguments, at, Duration::from_secs(600))
 }
 
-/// Runs the program and stops it after the limit.
+/// Runs the program and stops it at the time limit.
 pub fn ended(arguments: &[&str], at: &Path, limit: Duration) -> Ended {
     let printed =
         std::env::temp_dir().join(format!("voussoir-said-{}-{:?}", std::process::id(), std::thread::current().id()));

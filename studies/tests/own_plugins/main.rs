@@ -1,4 +1,5 @@
-//! The plug-ins of docs/adding_plug_ins.md: the page shows the file that is compiled here, and they work together.
+//! The plug-ins of docs/adding_plug_ins.md: the page shows the file that is compiled here, and the plug-ins work
+//! together.
 
 mod tower;
 
@@ -19,8 +20,8 @@ fn study(blocks: usize, joint: &str, solver: &str) -> String {
     )
 }
 
-/// The tower tips about the right edge of its lowest block: λ n h/2 = b/2 − s (n − 1)/2. With `auto`, which takes the solver
-/// of the lowest cost, and along a path by steps of the strategy.
+/// The tower tips about the right edge of its lowest block: λ n h/2 = b/2 − s (n − 1)/2. Solved with `auto`, which
+/// chooses the solver with the lowest cost, and along a path with the steps of the strategy.
 #[test]
 fn a_tower_tips_where_statics_says() {
     for blocks in [4, 6] {
@@ -36,14 +37,14 @@ fn a_tower_tips_where_statics_says() {
         let steps = "solver = \"newton_path\"\ncontinuation = { strategy = \"taxicab\", first_step = 0.2 }\n";
         case = load(&study(blocks, compliant, steps), "a.toml", &[]).expect("a study").cases.remove(0);
         let result = solve_case(&case);
-        // States and witnesses prove the end of a path by a strategy from outside the project.
+        // States and witnesses prove the end of a path whose strategy is not part of the project.
         assert_eq!((result.status, result.path.end_is_checked), (Status::Collapse, Some(true)), "{:?}", result.notes);
         let factor = result.load_factor.expect("a factor");
         assert!((factor - by_hand).abs() < 1e-9 && result.certificate.passed, "{factor} {by_hand}");
     }
 }
 
-/// Their keys are checked by their cards, stand in the schema, and what they refuse is said at its key.
+/// Their keys are checked by their cards and are in the schema, and refusals are reported at the key.
 #[test]
 fn their_keys_are_keys_of_study_files() {
     let text = study(2, "", "solver = \"auto\"\n");

@@ -57,7 +57,7 @@ inventory::submit! {
     }
 }
 
-/// `kind = "quake"`: this share of their weight pushes all blocks to the right.
+/// `kind = "quake"`: a share of their weight pushes all blocks to the right.
 #[derive(Debug, Keys)]
 pub struct Quake {
     /// share of the weight, to the right
@@ -84,8 +84,8 @@ inventory::submit! {
     }
 }
 
-/// `solver = "counted_conic"`: the conic program, which counts how often it is asked. `auto` takes the cheapest that does not
-/// refuse, which this is.
+/// `solver = "counted_conic"`: the conic program, which also counts its calls. `auto` chooses the cheapest solver that
+/// does not refuse; here it is this one.
 #[derive(Debug, Keys)]
 pub struct CountedConic {}
 
@@ -116,7 +116,7 @@ inventory::submit! {
     }
 }
 
-/// `strategy = "taxicab"`: movement and load factor of a step add up to its length.
+/// `strategy = "taxicab"`: the sum of the displacement and of the load factor of a step equals its length.
 #[derive(Debug, Clone, Keys)]
 pub struct Taxicab {
     /// first step of a load step

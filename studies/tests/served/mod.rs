@@ -1,6 +1,6 @@
-//! A running `voussoir serve`, for tests.
+//! A running `voussoir serve` for tests.
 
-// Each test uses a part of it.
+// Each test uses only some of these functions.
 #![allow(dead_code)]
 
 use std::io::{BufRead, BufReader, Read, Write};
@@ -10,7 +10,7 @@ use std::process::{Child, Command, Stdio};
 /// The study that is served.
 pub const STUDY: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/cases/strathmashie_rise.toml");
 
-/// A server that ends with its test.
+/// A server that is stopped at the end of its test.
 pub struct Served {
     pub program: Child,
     pub port: u16,
@@ -29,7 +29,7 @@ impl Served {
         Served::of(Command::new(env!("CARGO_BIN_EXE_voussoir")).args(["serve", study]))
     }
 
-    /// Starts a command that serves.
+    /// Starts the server with a command.
     pub fn of(command: &mut Command) -> Served {
         let mut program = command.stdout(Stdio::piped()).spawn().expect("the program starts");
         let mut line = String::new();
@@ -40,7 +40,7 @@ impl Served {
         Served { port: port.parse().expect("a port"), token: token.into(), program }
     }
 
-    /// Status and body of the answer to a request as it is written here.
+    /// Sends a request unchanged. Returns status and body of the response.
     pub fn raw(&self, request: &str) -> (u16, String) {
         let mut stream = TcpStream::connect(("127.0.0.1", self.port)).expect("a connection");
         stream.write_all(request.as_bytes()).expect("sent");

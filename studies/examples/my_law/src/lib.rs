@@ -1,3 +1,3 @@
-//! Laws of this crate; file = tag.
+//! The laws of this crate. The name of a file is the tag of its law.
 
 pub mod keyed;

@@ -1,4 +1,4 @@
-//! A block of 10 kN on a keyed joint of 0.1 m²: pushed with λ kN it slides at c A + μ W = 5 + 5 kN, whoever answers.
+//! A block of 10 kN on a keyed joint of 0.1 m² is pushed by λ kN. It slides at c A + μ W = 5 + 5 kN with every solver.
 
 use my_law as _;
 use voussoir::prelude::*;

@@ -1,13 +1,13 @@
-//! SHA-256 (NIST FIPS 180-4) in Base64 (RFC 4648), as a Content-Security-Policy names a script.
+//! SHA-256 (NIST FIPS 180-4) in Base64 (RFC 4648). A Content-Security-Policy identifies scripts by it.
 
-/// The first 64 primes; the constants are bits of their roots.
+/// The first 64 primes. The constants of SHA-256 are bits of their roots.
 const PRIMES: [u64; 64] = [
     2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71, 73, 79, 83, 89, 97, 101, 103, 107, 109,
     113, 127, 131, 137, 139, 149, 151, 157, 163, 167, 173, 179, 181, 191, 193, 197, 199, 211, 223, 227, 229, 233, 239,
     241, 251, 257, 263, 269, 271, 277, 281, 283, 293, 307, 311,
 ];
 
-/// The greatest r with r³ ≤ n.
+/// Returns the greatest r with r³ ≤ n.
 fn cube_root(n: u128) -> u128 {
     (0..43)
         .rev()
@@ -53,7 +53,7 @@ fn compress(state: &mut [u32; 8], block: &[u8], constants: &[u32; 64]) {
 fn sha256(message: &[u8]) -> [u8; 32] {
     let mut padded = message.to_vec();
     padded.push(0x80);
-    // The length takes the last eight bytes of a block.
+    // The last eight bytes of the last block hold the length.
     padded.resize((padded.len() + 8).next_multiple_of(64) - 8, 0);
     padded.extend((message.len() as u64 * 8).to_be_bytes());
     let (mut state, constants) = (start(), round_constants());
@@ -74,7 +74,7 @@ fn base64(bytes: &[u8]) -> String {
     bytes.chunks(3).map(group).collect()
 }
 
-/// The source by which a policy allows this text of a script or a style sheet.
+/// The entry of a policy that allows this text of a script or a style sheet.
 pub(crate) fn source(text: &str) -> String {
     format!("'sha256-{}'", base64(&sha256(text.as_bytes())))
 }
@@ -83,7 +83,7 @@ pub(crate) fn source(text: &str) -> String {
 mod tests {
     use super::*;
 
-    /// The examples of NIST and of RFC 4648; lengths around the end of a block as Python's hashlib gives them.
+    /// Examples of NIST and RFC 4648, and lengths near the end of a block with the results of Python's hashlib.
     #[test]
     fn hashes_are_those_of_the_standard() {
         let hex = |text: &[u8]| sha256(text).iter().map(|byte| format!("{byte:02x}")).collect::<String>();

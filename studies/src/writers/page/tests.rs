@@ -47,7 +47,7 @@ fn source_of(text: &str) -> StudySource {
     StudySource::parse(text, "study.toml", &[]).unwrap_or_else(|wrong| panic!("{wrong}"))
 }
 
-/// The pages that `run` writes for a study.
+/// Returns the pages that `run` writes for a study.
 fn written(text: &str) -> Vec<String> {
     let read = |_: &str| Ok(ARCH.to_string());
     let study = read_source_beside(source_of(text), &read).unwrap_or_else(|wrong| panic!("{wrong}"));
@@ -63,7 +63,7 @@ fn written(text: &str) -> Vec<String> {
     pages.map(|(_, bytes)| String::from_utf8(bytes).expect("text")).collect()
 }
 
-/// The texts of all elements of a name whose start tag is just that name.
+/// Returns the texts of all elements with this name and no attributes.
 fn elements<'a>(page: &'a str, name: &str) -> Vec<&'a str> {
     let end = format!("</{name}>");
     page.split(&format!("<{name}>")).skip(1).map(|rest| rest.split(&end).next().unwrap_or_default()).collect()
@@ -87,12 +87,12 @@ fn assert_safe(page: &str) -> String {
     };
     assert!(directive(&policy, "script-src").split(' ').any(|own| own == source(script)), "{policy}");
     assert_eq!(directive(&policy, "style-src"), source(style));
-    // The other script element holds data, which no browser runs.
+    // The other script element contains data, which browsers do not run.
     assert_eq!(page.matches("<script").count(), 2);
     assert_eq!(page.matches("<script type=\"application/json\" id=\"cases\">").count(), 1);
     let body = page.replace(script, "").replace(style, "");
     for tag in body.split('<').skip(1).map(|rest| rest.split('>').next().unwrap_or_default()) {
-        // Attributes without their quoted values.
+        // The tag without the quoted values of its attributes.
         let bare: String = tag.split('"').step_by(2).collect();
         assert!(!bare.contains(" on") && !bare.contains(" style="), "{tag}");
         let address = tag.split_once(" href=\"").map_or("", |(_, rest)| rest.split('"').next().unwrap_or_default());
@@ -109,7 +109,7 @@ fn scripts_of_every_page_match_its_policy() {
     let pages = [written(ARCH), written(REPORT), vec![opened.clone(), served.clone()]].concat();
     assert_eq!(pages.len(), 4);
     pages.iter().for_each(|page| drop(assert_safe(page)));
-    // A report opened from a served page is under both policies.
+    // Both policies apply to a report that is opened from a served page.
     let policy = assert_safe(&served);
     assert_eq!(policy, super::served_policy());
     for script in elements(&opened, "script") {
