@@ -1,9 +1,9 @@
 //! Output of a bench: a table, a CSV file and two charts.
 
 use super::measured::{Bench, Measurement};
-use crate::figures::chart::chart;
 use crate::figures::format::{format_number, format_short, status_word};
-use crate::figures::series::{ChartStyle, Series};
+use crate::figures::plot::chart::chart;
+use crate::figures::plot::series::{ChartStyle, Series};
 use crate::writers::csv_table::csv_table;
 use comfy_table::{ContentArrangement, Table, presets};
 

@@ -8,6 +8,7 @@ use super::print::{complain, say};
 use crate::bench::{Bench, BenchOptions, Measurement, Reference, bench, csv, error_chart, names, profile_chart, table};
 use crate::config::diagnostic::suggest;
 use crate::figures::format::{format_short, status_word};
+use crate::figures::plot::svg::as_file;
 use crate::study::{HELD, Study};
 use std::path::{Path, PathBuf};
 
@@ -53,7 +54,7 @@ pub fn measure(path: &Path, arguments: &BenchArguments) -> Outcome {
     ];
     for (name, chart) in charts {
         match chart {
-            Some(chart) => folder.write(name, chart.as_bytes())?,
+            Some(chart) => folder.write(name, as_file(&chart).as_bytes())?,
             None => folder.remove(name),
         }
     }

@@ -1,8 +1,11 @@
 //! The figure of a comparison: for each scene the ratios of all variants to the reference.
 
-use super::axes::{Axis, COLOURS, Canvas};
 use super::format::{format_number, snap_words, status_word};
-use super::text_layout::{text_width, wrapped};
+use super::plot::axis::Axis;
+use super::plot::colours::{FAINT, GRID, INK, QUIET, STRIPE, line};
+use super::plot::number::tick_label;
+use super::plot::svg::{Canvas, SMALL, TITLE, WIDTH};
+use super::plot::text::{text_width, wrapped};
 use crate::results::{Comparison, ComparisonCell, ComparisonRow};
 use crate::study::SweptKeys;
 use voussoir_core::limit::Status;
@@ -64,24 +67,24 @@ impl Rows<'_> {
         let middle = self.top + self.row_height * i as f64 + self.row_height / 2.0;
         for (line, words) in name.iter().enumerate() {
             let shift = 16.0 * (line as f64 - (name.len() as f64 - 1.0) / 2.0);
-            canvas.text([self.left - 14.0, middle + shift + 4.5], words, 13.0, "end");
+            canvas.text([self.left - 14.0, middle + shift + 4.5], words, SMALL, "end");
         }
         for (variant, (cell, bracket)) in row.cells.iter().zip(brackets).enumerate() {
             let at = middle + 12.0 * (variant as f64 - (row.cells.len() as f64 - 1.0) / 2.0);
-            let colour = COLOURS[variant % COLOURS.len()];
+            let colour = line(variant);
             if let Some([a, b]) = bracket.filter(|ends| ends.iter().all(|x| x.is_finite())) {
                 let (a, b) = (self.axis.at(a), self.axis.at(b));
-                canvas.line([a, at], [b, at], colour, 3.0);
-                canvas.line([a, at - 4.0], [a, at + 4.0], colour, 2.0);
+                canvas.line(&[[a, at], [b, at]], colour, 3.0, "");
+                canvas.line(&[[a, at - 4.0], [a, at + 4.0]], colour, 2.0, "");
             }
             if let Some(ratio) = cell.ratio {
                 canvas.mark(variant, [self.axis.at(ratio), at]);
             }
         }
-        let lines = wrapped(remarks, 12.0, self.remark_width);
+        let lines = wrapped(remarks, SMALL, self.remark_width);
         for (line, words) in lines.iter().enumerate() {
-            let shift = 14.0 * (line as f64 - (lines.len() as f64 - 1.0) / 2.0);
-            canvas.text([self.right_of + 12.0, middle + shift + 4.0], words, 12.0, "start");
+            let shift = 16.0 * (line as f64 - (lines.len() as f64 - 1.0) / 2.0);
+            canvas.text([self.right_of + 12.0, middle + shift + 4.0], words, SMALL, "start");
         }
     }
 }
@@ -106,57 +109,65 @@ pub fn comparison_svg(study: &str, comparison: &Comparison, keys: &SweptKeys) ->
     let margin = (0.04 * (high - low)).max(0.01);
     let low = if low - margin < 0.1 * high { 0.0 } else { low - margin };
     let names: Vec<Vec<String>> =
-        comparison.rows.iter().map(|row| wrapped(&row_name(row, keys), 13.0, 230.0)).collect();
-    let widest = names.iter().flatten().map(|line| text_width(line, 13.0)).fold(80.0, f64::max);
-    let (left, plot) = (widest + 34.0, 520.0);
+        comparison.rows.iter().map(|row| wrapped(&row_name(row, keys), SMALL, 170.0)).collect();
+    let widest = names.iter().flatten().map(|line| text_width(line, SMALL)).fold(60.0, f64::max);
     let remarks: Vec<String> = comparison.rows.iter().map(|row| row_remarks(comparison, row)).collect();
-    let right = remarks.iter().map(|words| text_width(words, 12.0)).fold(30.0, f64::max).min(430.0) + 24.0;
-    let width = left + plot + right;
+    let longest = remarks.iter().map(|words| text_width(words, SMALL)).fold(30.0, f64::max);
+    let (left, right) = (widest + 30.0, longest.min(190.0) + 20.0);
+    let (width, plot) = (WIDTH, WIDTH - left - right);
     let axis = Axis { values: [low, high + margin], places: [left, left + plot] };
-    let row_height = (12.0 * comparison.variants.len() as f64 + 12.0).max(34.0);
-    let titles =
-        wrapped(&format!("{study}: load factor over that of \"{}\"", comparison.reference), 17.0, width - 40.0);
-    let top = 22.0 + 24.0 * titles.len() as f64;
-    let bottom = top + row_height * comparison.rows.len() as f64;
+    let lines = |words: &String| wrapped(words, SMALL, right - 16.0).len();
+    let most = names.iter().map(Vec::len).chain(remarks.iter().map(lines)).max().unwrap_or(1) as f64;
+    let row_height = (12.0 * comparison.variants.len() as f64 + 12.0).max(16.0 * most + 8.0).max(34.0);
+    let title = format!("{study}: load factor over that of \"{}\"", comparison.reference);
     let mut canvas = Canvas::default();
-    for (i, line) in titles.iter().enumerate() {
-        canvas.text([width / 2.0, 28.0 + 24.0 * i as f64], line, 17.0, "middle");
-    }
+    let top = 6.0 + canvas.title(&wrapped(&title, TITLE, width - 40.0), width);
+    let bottom = top + row_height * comparison.rows.len() as f64;
     for (i, _) in comparison.rows.iter().enumerate().filter(|(i, _)| i % 2 == 0) {
         let y = top + row_height * i as f64;
-        canvas.rectangle([10.0, y], [width - 10.0, y + row_height], "#f4f4f4");
+        canvas.rectangle([8.0, y], [width - 8.0, y + row_height], STRIPE);
     }
     for tick in axis.ticks(7) {
         let x = axis.at(tick);
-        canvas.line([x, top], [x, bottom], if tick == 1.0 { "#888888" } else { "#dddddd" }, 1.0);
-        canvas.text([x, bottom + 18.0], &Canvas::number(tick), 13.0, "middle");
+        canvas.line(&[[x, top], [x, bottom]], if tick == 1.0 { FAINT } else { GRID }, 1.0, "");
+        canvas.text([x, bottom + 18.0], &tick_label(tick), SMALL, "middle");
     }
-    canvas.line([left, bottom], [left + plot, bottom], "#222222", 1.0);
+    canvas.line(&[[left, bottom], [left + plot, bottom]], INK, 1.0, "");
     let axis_name = format!("load factor / load factor of \"{}\" [-]", comparison.reference);
-    canvas.text([left + plot / 2.0, bottom + 40.0], &axis_name, 14.0, "middle");
-    let layout = Rows { axis: &axis, top, row_height, left, right_of: left + plot, remark_width: right - 20.0 };
+    canvas.text([left + plot / 2.0, bottom + 40.0], &axis_name, SMALL, "middle");
+    let layout = Rows { axis: &axis, top, row_height, left, right_of: left + plot, remark_width: right - 16.0 };
     for (i, row) in comparison.rows.iter().enumerate() {
         let brackets: Vec<_> = row.cells.iter().map(|cell| bracket(row, cell)).collect();
         layout.draw(&mut canvas, i, (row, &brackets), &names[i], &remarks[i]);
     }
     let mut legend = bottom + 66.0;
-    let mut x = 30.0;
+    let mut x = 24.0;
     for (variant, name) in comparison.variants.iter().enumerate() {
-        let wide = 26.0 + text_width(name, 13.0) + 18.0;
-        if x > 30.0 && x + wide > width - 20.0 {
-            (x, legend) = (30.0, legend + 22.0);
+        let wide = 26.0 + text_width(name, SMALL) + 18.0;
+        if x > 24.0 && x + wide > width - 20.0 {
+            (x, legend) = (24.0, legend + 22.0);
         }
         canvas.mark(variant, [x + 8.0, legend - 4.5]);
-        canvas.text([x + 22.0, legend], name, 13.0, "start");
+        canvas.text([x + 22.0, legend], name, SMALL, "start");
         x += wide;
     }
     if cells().any(|(_, cell)| cell.ratio.is_some() && telling_bracket(cell).is_some()) {
         legend += 22.0;
-        canvas.line([30.0, legend - 4.5], [58.0, legend - 4.5], "#666666", 3.0);
-        canvas.line([30.0, legend - 8.5], [30.0, legend - 0.5], "#666666", 2.0);
-        canvas.text([68.0, legend], "from the proved lower bound to the load found, where they differ", 13.0, "start");
+        canvas.line(&[[24.0, legend - 4.5], [58.0, legend - 4.5]], QUIET, 3.0, "");
+        canvas.line(&[[24.0, legend - 8.5], [24.0, legend - 0.5]], QUIET, 2.0, "");
+        canvas.text([68.0, legend], "from the proved lower bound to the load found, where they differ", SMALL, "start");
     }
-    Some(canvas.finish(width, legend + 20.0))
+    let rows: Vec<String> = comparison.rows.iter().map(|row| described(comparison, row, keys)).collect();
+    let alternative = format!("For each scene the ratio of every variant. {}.", rows.join("; "));
+    Some(canvas.finish([width, legend + 18.0], &title, &alternative))
+}
+
+/// The ratios of a row in words.
+fn described(comparison: &Comparison, row: &ComparisonRow, keys: &SweptKeys) -> String {
+    let ratio =
+        |(variant, cell): (&String, &ComparisonCell)| Some(format!("{variant} {}", format_number(cell.ratio?, 4)));
+    let ratios: Vec<String> = comparison.variants.iter().zip(&row.cells).filter_map(ratio).collect();
+    format!("{}: {}", row_name(row, keys), ratios.join(", "))
 }
 
 /// The load factor of the reference, and what variants without a collapse say.

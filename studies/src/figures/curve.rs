@@ -1,8 +1,8 @@
 //! Load-displacement curves of paths, with the joints that became hinges on the way.
 
-use super::chart::chart_svg;
 use super::format::{format_force, unit_load};
-use super::series::{Marker, Series, Spot};
+use super::plot::chart::chart_svg;
+use super::plot::series::{Marker, Series, Spot};
 use crate::postprocess::joint_events::{JointEvent, JointState, joint_events};
 use crate::results::CaseResult;
 use crate::writers::StudyOutput;

@@ -4,7 +4,8 @@
 use super::fill;
 use super::format::{format_force, headline};
 use super::loads::Loads;
-use super::svg_canvas::SvgCanvas;
+use super::scene_canvas::SceneCanvas;
+use super::scene_canvas::hatching;
 use super::symbols::{OUTLINE, STONE, STRUT, Symbol, THRUST, ZONE, mark};
 use super::thrust::{resultants, strut_lines, thrust_pieces, zone_parts};
 use crate::results::CaseResult;
@@ -27,7 +28,7 @@ pub fn scene_svg(title: &str, assembly: &Assembly, stages: &[Stage], result: &Ca
     });
     let loads = Loads::new(assembly, stages, reached);
     let titles = [title.to_string(), headline(result, stages)];
-    let mut canvas = SvgCanvas::new(low, high, loads.margins(low, high), &titles);
+    let mut canvas = SceneCanvas::new(low, high, loads.margins(low, high), &titles);
     let mut legend = Legend::new();
     let filled = fill::draw(&mut canvas, assembly);
     let spread = filled && fill::draw_spreads(&mut canvas, stages);
@@ -86,7 +87,7 @@ pub(super) fn extent(assembly: &Assembly, further: &[Vec2]) -> (Vec2, Vec2) {
 }
 
 /// Width of a block's outline [px]: thin where blocks are small.
-pub(super) fn outline_width(canvas: &SvgCanvas, assembly: &Assembly) -> f64 {
+pub(super) fn outline_width(canvas: &SceneCanvas, assembly: &Assembly) -> f64 {
     let free = assembly.bodies.iter().filter(|body| !body.fixed && !body.vertices.is_empty());
     let mut sizes: Vec<f64> = free
         .map(|body| {
@@ -99,18 +100,18 @@ pub(super) fn outline_width(canvas: &SvgCanvas, assembly: &Assembly) -> f64 {
     sizes.get(sizes.len() / 2).map_or(1.0, |size| (0.03 * size).min(crowd).clamp(0.05, 1.2))
 }
 
-fn blocks(canvas: &mut SvgCanvas, assembly: &Assembly) {
+fn blocks(canvas: &mut SceneCanvas, assembly: &Assembly) {
     let width = outline_width(canvas, assembly);
     let shapes = |fixed: bool| assembly.bodies.iter().filter(move |b| b.fixed == fixed).map(|b| b.vertices.as_slice());
-    canvas.outlines(shapes(true), "url(#ground)", OUTLINE, 1.0, "");
-    canvas.outlines(shapes(false), STONE, OUTLINE, width, "");
+    canvas.shapes(shapes(true), &hatching(), OUTLINE, 1.0, "");
+    canvas.shapes(shapes(false), STONE, OUTLINE, width, "");
     faces(canvas, assembly, OUTLINE, |_, point| point);
     supports(canvas, assembly);
 }
 
 /// Intrados and extrados of rings whose voussoirs are too small to have outlines of their own;
 /// `place` says where a point of a body lies.
-pub(super) fn faces(canvas: &mut SvgCanvas, assembly: &Assembly, colour: &str, place: impl Fn(usize, Vec2) -> Vec2) {
+pub(super) fn faces(canvas: &mut SceneCanvas, assembly: &Assembly, colour: &str, place: impl Fn(usize, Vec2) -> Vec2) {
     let Some(arch) = assembly.arch.as_ref().filter(|arch| arch.voussoirs > MANY) else { return };
     let stride = arch.voussoirs.div_ceil(MANY);
     for left in (0..arch.voussoirs).step_by(stride) {
@@ -129,7 +130,7 @@ pub(super) fn faces(canvas: &mut SvgCanvas, assembly: &Assembly, colour: &str, p
 }
 
 /// Hatching along the joints of supports that have no shape.
-pub(super) fn supports(canvas: &mut SvgCanvas, assembly: &Assembly) {
+pub(super) fn supports(canvas: &mut SceneCanvas, assembly: &Assembly) {
     for joint in &assembly.joints {
         let shapeless = |body: usize| assembly.bodies[body].fixed && assembly.bodies[body].vertices.is_empty();
         let towards_ground = match (shapeless(joint.minus), shapeless(joint.plus)) {
@@ -153,7 +154,7 @@ pub(super) fn supports(canvas: &mut SvgCanvas, assembly: &Assembly) {
     }
 }
 
-fn forces(canvas: &mut SvgCanvas, assembly: &Assembly, result: &CaseResult, legend: &mut Legend) {
+fn forces(canvas: &mut SceneCanvas, assembly: &Assembly, result: &CaseResult, legend: &mut Legend) {
     let joint_forces = result.proof.field.as_ref().map(|field| resultants(assembly, field));
     if assembly.arch.is_some() {
         zone(canvas, assembly, &result.carried.joints, legend);
@@ -191,15 +192,15 @@ fn forces(canvas: &mut SvgCanvas, assembly: &Assembly, result: &CaseResult, lege
 }
 
 /// The zone of thrust as a band, with the joints across it.
-fn zone(canvas: &mut SvgCanvas, assembly: &Assembly, joints: &[JointEntry], legend: &mut Legend) {
+fn zone(canvas: &mut SceneCanvas, assembly: &Assembly, joints: &[JointEntry], legend: &mut Legend) {
     let parts = zone_parts(assembly, joints);
     if !parts.is_empty() {
-        canvas.outlines(parts.iter().map(<[Vec2; 4]>::as_slice), ZONE, OUTLINE, outline_width(canvas, assembly), "");
+        canvas.shapes(parts.iter().map(<[Vec2; 4]>::as_slice), ZONE, OUTLINE, outline_width(canvas, assembly), "");
         legend.push((Symbol::Zone, "zone of thrust: all admissible thrust lines cross joints within it".into()));
     }
 }
 
-fn strut(canvas: &mut SvgCanvas, assembly: &Assembly, stages: &[Stage], result: &CaseResult, legend: &mut Legend) {
+fn strut(canvas: &mut SceneCanvas, assembly: &Assembly, stages: &[Stage], result: &CaseResult, legend: &mut Legend) {
     let ray = resultants(assembly, result.proof.ray.as_deref().unwrap_or(&[]));
     let lines: Vec<Vec<Vec2>> = if assembly.arch.is_some() {
         let points: Vec<_> = ray.iter().map(|r| r.map(|r| r.point)).collect();

@@ -1,8 +1,8 @@
 //! The chart of an envelope: the load factor over the place of the load, a line for each vehicle and way it stands.
 
-use super::chart::chart_svg;
 use super::format::format_number;
-use super::series::{Marker, Series, Spot};
+use super::plot::chart::chart_svg;
+use super::plot::series::{Marker, Series, Spot};
 use crate::results::other_limit_point;
 use crate::study::SweptKeys;
 use crate::writers::StudyOutput;

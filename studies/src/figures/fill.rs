@@ -1,6 +1,7 @@
 //! The fill of a bridge, and what it presses with.
 
-use super::svg_canvas::SvgCanvas;
+use super::plot::svg::SMALL;
+use super::scene_canvas::SceneCanvas;
 use super::symbols::{FILL, LOAD, LOST, OUTLINE, PRESSURE, SPREAD};
 use crate::results::FillEntry;
 use voussoir_core::model::geometry::Vec2;
@@ -22,17 +23,17 @@ pub fn outline(bridge: &Bridge) -> Vec<Vec2> {
 }
 
 /// Draws the fill, under the blocks.
-pub fn draw(canvas: &mut SvgCanvas, assembly: &Assembly) -> bool {
+pub fn draw(canvas: &mut SceneCanvas, assembly: &Assembly) -> bool {
     let outline = assembly.bridge.as_ref().map(outline).unwrap_or_default();
     if outline.is_empty() {
         return false;
     }
-    canvas.outlines([outline.as_slice()].into_iter(), FILL, "#b9ad93", 0.8, "");
+    canvas.shapes([outline.as_slice()].into_iter(), FILL, "#b9ad93", 0.8, "");
     true
 }
 
 /// Draws where layers end, as dashed lines; whether there are any.
-pub fn draw_layers(canvas: &mut SvgCanvas, assembly: &Assembly) -> bool {
+pub fn draw_layers(canvas: &mut SceneCanvas, assembly: &Assembly) -> bool {
     let Some(bridge) = &assembly.bridge else { return false };
     let (Some(first), Some(last)) = (bridge.extrados.first(), bridge.extrados.last()) else { return false };
     let place = |i: usize| first.left() + (last.right() - first.left()) * i as f64 / SAMPLES as f64;
@@ -61,19 +62,19 @@ pub fn draw_layers(canvas: &mut SvgCanvas, assembly: &Assembly) -> bool {
 }
 
 /// Draws how the loads of the last stage spread between road and extrados; whether there are any.
-pub fn draw_spreads(canvas: &mut SvgCanvas, stages: &[Stage]) -> bool {
+pub fn draw_spreads(canvas: &mut SceneCanvas, stages: &[Stage]) -> bool {
     let spreads = stages.last().map_or(&[][..], |stage| &stage.spreads);
     for spread in spreads {
         let [a, b] = spread.on_road.map(|point| canvas.at(point));
         let [c, d] = spread.below.map(|point| canvas.at(point));
-        canvas.pixels(&[a, b, d, c], SPREAD, LOAD, "");
+        canvas.polygon(&[a, b, d, c], SPREAD, LOAD, "");
         canvas.line(&[a, b], LOAD, 4.0, "");
     }
     !spreads.is_empty()
 }
 
 /// Writes the names of spans and piers, as results have them.
-pub fn name_parts(canvas: &mut SvgCanvas, assembly: &Assembly) {
+pub fn name_parts(canvas: &mut SceneCanvas, assembly: &Assembly) {
     if assembly.bridge.is_none() {
         return;
     }
@@ -87,7 +88,7 @@ pub fn name_parts(canvas: &mut SvgCanvas, assembly: &Assembly) {
         let middle = (reach(f64::min, f64::INFINITY) + reach(f64::max, f64::NEG_INFINITY)) / 2.0;
         let low = points.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
         let [x, y] = canvas.at(Vec2::new(middle, low));
-        canvas.text([x, y], "middle", 12.0, &part, OUTLINE, false);
+        canvas.text([x, y], "middle", SMALL, &part, OUTLINE, false);
     }
     for (index, part) in (0..).map(|i| (i, format!("pier {i}"))) {
         let courses: Vec<_> = assembly
@@ -98,13 +99,13 @@ pub fn name_parts(canvas: &mut SvgCanvas, assembly: &Assembly) {
         let Some(course) = courses.get(courses.len() / 2) else { break };
         let count = course.vertices.len() as f64;
         let [x, y] = canvas.at(course.vertices.iter().sum::<Vec2>() / count);
-        canvas.text([x, y + 4.0], "middle", 12.0, &part, OUTLINE, false);
+        canvas.text([x, y + 4.0], "middle", SMALL, &part, OUTLINE, false);
     }
 }
 
 /// Marks the parts of joints that have lost their mortar: where a joint ends before the edges of its blocks do; whether
 /// there are any.
-pub fn mark_lost_mortar(canvas: &mut SvgCanvas, assembly: &Assembly) -> bool {
+pub fn mark_lost_mortar(canvas: &mut SceneCanvas, assembly: &Assembly) -> bool {
     let Some(bridge) = &assembly.bridge else { return false };
     let size = assembly.size();
     let mut found = false;
@@ -140,7 +141,7 @@ pub fn mark_lost_mortar(canvas: &mut SvgCanvas, assembly: &Assembly) -> bool {
 }
 
 /// Draws the forces of the fill as arrows, the longest 46 px; the greatest force \[N\] where there is one.
-pub fn draw_forces(canvas: &mut SvgCanvas, entries: &[FillEntry]) -> Option<f64> {
+pub fn draw_forces(canvas: &mut SceneCanvas, entries: &[FillEntry]) -> Option<f64> {
     let greatest = entries.iter().map(|entry| entry.force).fold(0.0, f64::max);
     let shown = entries.iter().filter(|entry| entry.force > 1e-3 * greatest);
     for entry in shown {

@@ -1,35 +1,13 @@
 //! How numbers, units and results are written in words, for figures, tables and reports alike.
 
 use super::hinges::{DrawnHinge, drawn_hinges};
+pub use super::plot::number::{format_number, format_short};
 use crate::results::{CaseResult, other_limit_point};
 use voussoir_core::certificate::{Mechanism, MechanismKind};
 use voussoir_core::limit::Status;
 use voussoir_core::model::Stage;
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::path::LimitPointEnd;
-
-/// `x` with so many significant digits; powers of ten only below 1e-4 and from 1e7.
-pub fn format_number(x: f64, digits: usize) -> String {
-    if x == 0.0 || !x.is_finite() {
-        return format!("{x}");
-    }
-    let scientific = format!("{:.*e}", digits.saturating_sub(1), x);
-    let exponent: i32 = scientific.split_once('e').and_then(|(_, e)| e.parse().ok()).unwrap_or(0);
-    if !(-4..7).contains(&exponent) {
-        return scientific;
-    }
-    format!("{:.*}", (digits as i32 - 1 - exponent).max(0) as usize, x)
-}
-
-/// `x` in the shortest form that has at most so many significant digits.
-pub fn format_short(x: f64, digits: usize) -> String {
-    let text = format_number(x, digits);
-    let (decimals, power) = text.find('e').map_or((text.as_str(), ""), |at| text.split_at(at));
-    if !decimals.contains('.') {
-        return text;
-    }
-    format!("{}{power}", decimals.trim_end_matches('0').trim_end_matches('.'))
-}
 
 fn scaled(x: f64, steps: &[(f64, &str)]) -> String {
     let (unit, name) = steps.iter().find(|(unit, _)| x.abs() >= 0.999_95 * unit).unwrap_or(&steps[steps.len() - 1]);
@@ -80,11 +58,6 @@ pub fn format_value(value: &serde_json::Value) -> String {
         serde_json::Value::String(text) => text.clone(),
         other => other.as_f64().map_or_else(|| other.to_string(), |x| format_short(x, 7)),
     }
-}
-
-/// For XML and HTML: `&`, `<`, `>` and quotes as entities.
-pub fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;").replace('\'', "&#39;")
 }
 
 /// A status as it stands in results.json.

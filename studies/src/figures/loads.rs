@@ -1,9 +1,9 @@
 //! Loads and settlements of all stages as arrows: those of the last at its factor, those before it as they stay.
 
 use super::format::{format_force, format_length, format_number, format_short};
-use super::svg_canvas::SvgCanvas;
+use super::plot::text::{Area, Spot};
+use super::scene_canvas::SceneCanvas;
 use super::symbols::{EARLIER, LOAD, SETTLEMENT};
-use super::text_layout::{Area, Spot};
 use voussoir_core::model::geometry::{Vec2, contains};
 use voussoir_core::model::{Assembly, PointForce, Settlement, Stage, Target};
 
@@ -164,7 +164,7 @@ impl Loads {
     }
 
     /// Draws the arrows and keeps labels off them; labels come later.
-    pub fn draw(&self, canvas: &mut SvgCanvas) {
+    pub fn draw(&self, canvas: &mut SceneCanvas) {
         for (about, direction) in &self.settlements {
             let [x, y] = canvas.at(*about);
             let to = [x + direction.x * SETTLED, y - direction.y * SETTLED];
@@ -184,7 +184,7 @@ impl Loads {
     }
 
     /// Writes the values at the tails.
-    pub fn label(&self, canvas: &mut SvgCanvas) {
+    pub fn label(&self, canvas: &mut SceneCanvas) {
         let chosen: Vec<&Arrow> = if self.arrows.len() <= SINGLE {
             self.arrows.iter().collect()
         } else {
@@ -198,7 +198,7 @@ impl Loads {
         }
     }
 
-    fn ends(&self, canvas: &SvgCanvas, arrow: &Arrow) -> (Spot, Spot) {
+    fn ends(&self, canvas: &SceneCanvas, arrow: &Arrow) -> (Spot, Spot) {
         let [x, y] = canvas.at(arrow.point);
         let reach = self.length_of(arrow) * if arrow.pulls { -1.0 } else { 1.0 };
         let tail = [x - arrow.direction.x * reach, y + arrow.direction.y * reach];

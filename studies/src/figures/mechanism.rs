@@ -5,7 +5,8 @@ use super::drawing::{extent, faces, outline_width, supports};
 use super::format::{format_short, kind_words};
 use super::hinge_closure::close_hinges;
 use super::hinges::named_hinges;
-use super::svg_canvas::SvgCanvas;
+use super::plot::colours::FAINT;
+use super::scene_canvas::{SceneCanvas, hatching};
 use super::symbols::{OUTLINE, STONE, Symbol, YIELDED, mark};
 use crate::results::inelastic_state::CRUSHED;
 use crate::results::{CaseResult, DisplacementEntry, MotionEntry};
@@ -40,18 +41,18 @@ pub fn mechanism_svg(title: &str, assembly: &Assembly, result: &CaseResult) -> O
             false => format!("mechanism: {}", kind_words(mechanism.kind).trim_end_matches(" mechanism")),
         },
     ];
-    let mut canvas = SvgCanvas::new(low, high, [46.0, 34.0, 46.0, 30.0], &titles);
+    let mut canvas = SceneCanvas::new(low, high, [46.0, 34.0, 46.0, 30.0], &titles);
     let width = outline_width(&canvas, assembly);
     let free = |body: usize| !assembly.bodies[body].fixed;
     let ground = assembly.bodies.iter().filter(|body| body.fixed).map(|body| body.vertices.as_slice());
-    canvas.outlines(ground, "url(#ground)", OUTLINE, 1.0, "");
+    canvas.shapes(ground, &hatching(), OUTLINE, 1.0, "");
     let before = assembly.bodies.iter().filter(|body| !body.fixed).map(|body| body.vertices.as_slice());
-    canvas.outlines(before, "none", "#999999", width.min(0.9), "4 3");
-    faces(&mut canvas, assembly, "#999999", |_, point| point);
+    canvas.shapes(before, "none", FAINT, width.min(0.9), "4 3");
+    faces(&mut canvas, assembly, FAINT, |_, point| point);
     let after = moved.iter().enumerate().filter(|(body, _)| free(*body)).map(|(_, shape)| shape.as_slice());
-    canvas.outlines(after, STONE, OUTLINE, width, "");
+    canvas.shapes(after, STONE, OUTLINE, width, "");
     let grey = yielded_elements(assembly, result, |body, point| placements[body].of(point));
-    canvas.outlines(grey.iter().map(|element| element.as_slice()), YIELDED, "none", 0.0, "");
+    canvas.shapes(grey.iter().map(|element| element.as_slice()), YIELDED, "none", 0.0, "");
     faces(&mut canvas, assembly, OUTLINE, |body, point| placements[body].of(point));
     supports(&mut canvas, assembly);
     let mut legend =

@@ -2,8 +2,6 @@
 //!
 //! Everything here is a pure function from results to text (SVG). No file is touched.
 
-pub mod axes;
-pub mod chart;
 pub mod comparison;
 pub mod curve;
 pub mod displaced;
@@ -17,12 +15,10 @@ pub mod loads;
 pub mod map;
 pub mod mechanism;
 pub mod moving_load;
-mod scale;
-pub mod series;
-pub mod svg_canvas;
+pub mod plot;
+pub mod scene_canvas;
 pub mod sweep;
 pub mod symbols;
-pub mod text_layout;
 pub mod thrust;
 
 #[cfg(test)]
@@ -30,10 +26,10 @@ pub(crate) mod sample;
 #[cfg(test)]
 mod tests;
 
-pub use chart::chart_svg;
 pub use curve::{curve_charts, curve_svg};
 pub use drawing::scene_svg;
 pub use mechanism::mechanism_svg;
 pub(crate) use mechanism::moving_blocks;
-pub use series::{ChartStyle, Marker, Series, Spot};
+pub use plot::chart::chart_svg;
+pub use plot::series::{ChartStyle, Marker, Series, Spot};
 pub use sweep::{sweep_axis, sweep_chart};

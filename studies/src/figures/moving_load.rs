@@ -5,11 +5,11 @@ use super::drawing::{extent, outline_width, supports};
 use super::envelope::line_name;
 use super::format::{format_number, snap_words};
 use super::hinge_closure::close_hinges;
-use super::svg_canvas::SvgCanvas;
+use super::plot::colours::QUIET;
+use super::scene_canvas::{SceneCanvas, hatching};
 use super::symbols::{LOAD, OUTLINE, STONE, Symbol};
 use crate::results::CaseResult;
 use crate::writers::StudyOutput;
-use svg::node::element::{Animate, Group};
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::model::{Assembly, Stage};
 
@@ -44,24 +44,15 @@ pub fn moving_load_svg(study: &StudyOutput) -> Option<String> {
     let worst = (0..places.len()).min_by(|a, b| rank(&places[*a]).total_cmp(&rank(&places[*b])))?;
     // The second line is each place's own.
     let titles = [format!("{}: the load on its way", study.name), " ".into()];
-    let mut canvas = SvgCanvas::new(low, high, [46.0, 60.0, 46.0, 30.0], &titles);
+    let mut canvas = SceneCanvas::new(low, high, [46.0, 60.0, 46.0, 30.0], &titles);
     surroundings(&mut canvas, first.assembly);
     let count = places.len() as f64;
     for (index, place) in places.iter().enumerate() {
         let (from, to) = (index as f64 / count, (index + 1) as f64 / count);
-        let (values, times) = match index {
-            0 => ("visible;hidden", format!("0;{to:.4}")),
-            _ => ("hidden;visible;hidden", format!("0;{from:.4};{to:.4}")),
-        };
-        let playing = Animate::new()
-            .set("attributeName", "visibility")
-            .set("calcMode", "discrete")
-            .set("dur", format!("{:.1}s", EACH * count))
-            .set("repeatCount", "indefinite")
-            .set("values", values)
-            .set("keyTimes", times);
-        let shown = Group::new().set("visibility", if index == worst { "visible" } else { "hidden" }).add(playing);
-        canvas.group(shown, |canvas| frame(canvas, place));
+        canvas.open(&[("visibility", &if index == worst { "visible" } else { "hidden" })]);
+        canvas.visible_during([from, to], EACH * count);
+        frame(&mut canvas, place);
+        canvas.close();
     }
     let caption = ["Displacements are exaggerated; at each place the mechanism has a scale of its own.".to_string()];
     Some(canvas.finish::<Symbol>(&[], &caption))
@@ -106,24 +97,24 @@ fn places<'a>(study: &StudyOutput<'a>) -> Option<Vec<Place<'a>>> {
 }
 
 /// What does not move: ground, supports, road.
-fn surroundings(canvas: &mut SvgCanvas, assembly: &Assembly) {
+fn surroundings(canvas: &mut SceneCanvas, assembly: &Assembly) {
     let ground = assembly.bodies.iter().filter(|body| body.fixed).map(|body| body.vertices.as_slice());
-    canvas.outlines(ground, "url(#ground)", OUTLINE, 1.0, "");
+    canvas.shapes(ground, &hatching(), OUTLINE, 1.0, "");
     supports(canvas, assembly);
     if let Some(bridge) = &assembly.bridge {
         let road: Vec<_> = bridge.road.iter().map(|point| canvas.at(*point)).collect();
-        canvas.line(&road, "#555555", 1.2, "");
+        canvas.line(&road, QUIET, 1.2, "");
     }
 }
 
 /// The load at one place, and how the blocks move there.
-fn frame(canvas: &mut SvgCanvas, place: &Place) {
+fn frame(canvas: &mut SceneCanvas, place: &Place) {
     let digits = |factor: f64| format_number(factor, 4);
     let snaps = snap_words(place.case.load_factor, place.case.path.first_limit_point, digits);
     let factor = snaps.or(place.case.load_factor.map(digits)).unwrap_or_else(|| "none".into());
     canvas.last_title(&format!("x = {:.3} m, load factor at collapse: {factor}", place.value));
     let width = outline_width(canvas, place.assembly);
-    canvas.outlines(place.moved.iter().map(Vec::as_slice), STONE, OUTLINE, width, "");
+    canvas.shapes(place.moved.iter().map(Vec::as_slice), STONE, OUTLINE, width, "");
     for spread in &place.stage.spreads {
         for (from, to) in spread.on_road.iter().zip(&spread.below) {
             let ends = [canvas.at(*from), canvas.at(*to)];

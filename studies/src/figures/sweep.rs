@@ -1,8 +1,8 @@
 //! The chart of a study with one swept number: the load against it.
 
-use super::chart::chart;
 use super::format::{format_short, kind_words, unit_load};
-use super::series::{ChartStyle, Marker, Series, Spot};
+use super::plot::chart::chart;
+use super::plot::series::{ChartStyle, Marker, Series, Spot};
 use crate::results::CaseResult;
 use crate::writers::StudyOutput;
 use voussoir_core::limit::Status;

@@ -1,8 +1,9 @@
 //! Marks for joints: hinges, sliding, crushing; and the symbols of a legend.
 
 use super::hinges::{drawn_hinges, labels};
-use super::svg_canvas::{LegendSymbol, SvgCanvas};
-use super::text_layout::{Area, Spot};
+use super::plot::colours::{FAINT, PAPER};
+use super::plot::text::{Area, Spot};
+use super::scene_canvas::{LegendSymbol, SceneCanvas, hatching};
 use crate::results::CaseResult;
 use voussoir_core::certificate::{CRUSHES, Mechanism};
 use voussoir_core::model::geometry::Vec2;
@@ -85,17 +86,17 @@ pub enum Symbol {
 }
 
 impl LegendSymbol for Symbol {
-    fn draw(self, canvas: &mut SvgCanvas, [x, y]: Spot) {
+    fn draw(self, canvas: &mut SceneCanvas, [x, y]: Spot) {
         let ends = [[x, y], [x + 34.0, y]];
         let middle = [x + 17.0, y];
         match self {
             Symbol::Block => boxed(canvas, [x, y], STONE, OUTLINE, ""),
-            Symbol::Ground => boxed(canvas, [x, y], "url(#ground)", OUTLINE, ""),
-            Symbol::Before => boxed(canvas, [x, y], "none", "#999999", "4 3"),
+            Symbol::Ground => boxed(canvas, [x, y], &hatching(), OUTLINE, ""),
+            Symbol::Before => boxed(canvas, [x, y], "none", FAINT, "4 3"),
             Symbol::Fill => boxed(canvas, [x, y], FILL, "#b9ad93", ""),
             Symbol::Spread => {
                 let sides = [[x + 12.0, y - 7.0], [x + 22.0, y - 7.0], [x + 32.0, y + 7.0], [x + 2.0, y + 7.0]];
-                canvas.pixels(&sides, SPREAD, LOAD, "");
+                canvas.polygon(&sides, SPREAD, LOAD, "");
             }
             Symbol::LostMortar => canvas.line(&[[x + 6.0, y], [x + 28.0, y]], LOST, 3.5, ""),
             Symbol::Pressure => canvas.arrow(ends[0], ends[1], PRESSURE, 1.6, 7.0),
@@ -118,8 +119,8 @@ impl LegendSymbol for Symbol {
     }
 }
 
-fn boxed(canvas: &mut SvgCanvas, [x, y]: Spot, fill: &str, stroke: &str, dash: &str) {
-    canvas.pixels(
+fn boxed(canvas: &mut SceneCanvas, [x, y]: Spot, fill: &str, stroke: &str, dash: &str) {
+    canvas.polygon(
         &[[x + 4.0, y - 7.0], [x + 30.0, y - 7.0], [x + 30.0, y + 7.0], [x + 4.0, y + 7.0]],
         fill,
         stroke,
@@ -127,12 +128,12 @@ fn boxed(canvas: &mut SvgCanvas, [x, y]: Spot, fill: &str, stroke: &str, dash: &
     );
 }
 
-fn hinge(canvas: &mut SvgCanvas, spot: Spot) {
-    canvas.circle(spot, 5.0, "white", MOTION, 2.2);
+fn hinge(canvas: &mut SceneCanvas, spot: Spot) {
+    canvas.circle(spot, 5.0, PAPER, MOTION, 2.2);
 }
 
 /// An arc with a head around a hinge; `sense` > 0 anticlockwise.
-fn turning(canvas: &mut SvgCanvas, [x, y]: Spot, sense: f64) {
+fn turning(canvas: &mut SceneCanvas, [x, y]: Spot, sense: f64) {
     let radius = 11.0;
     let sign = if sense >= 0.0 { -1.0 } else { 1.0 };
     let on = |angle: f64| [x + radius * angle.cos(), y + radius * angle.sin()];
@@ -147,7 +148,7 @@ fn turning(canvas: &mut SvgCanvas, [x, y]: Spot, sense: f64) {
 
 /// Two lines along the unit vector `t` and half arrows: the left side of `t` moves along
 /// −`sense`·t relative to the right side (on the canvas, y down).
-fn sliding(canvas: &mut SvgCanvas, [x, y]: Spot, t: Spot, length: f64, sense: f64) {
+fn sliding(canvas: &mut SceneCanvas, [x, y]: Spot, t: Spot, length: f64, sense: f64) {
     let across = [-t[1], t[0]];
     let at = |s: f64, d: f64| [x + s * t[0] + d * across[0], y + s * t[1] + d * across[1]];
     let half = length / 2.0;
@@ -159,7 +160,7 @@ fn sliding(canvas: &mut SvgCanvas, [x, y]: Spot, t: Spot, length: f64, sense: f6
     }
 }
 
-fn on_canvas(canvas: &SvgCanvas, direction: Vec2) -> Spot {
+fn on_canvas(canvas: &SceneCanvas, direction: Vec2) -> Spot {
     let (from, to) = (canvas.at(Vec2::zeros()), canvas.at(direction));
     let (x, y) = (to[0] - from[0], to[1] - from[1]);
     let length = x.hypot(y).max(1e-12);
@@ -169,7 +170,7 @@ fn on_canvas(canvas: &SvgCanvas, direction: Vec2) -> Spot {
 /// Marks hinges, sliding and crushing joints where `place` puts a joint's points, and returns what
 /// the legend must say.
 pub fn mark(
-    canvas: &mut SvgCanvas,
+    canvas: &mut SceneCanvas,
     assembly: &Assembly,
     (result, mechanism): (&CaseResult, &Mechanism),
     senses: bool,
@@ -206,7 +207,8 @@ pub fn mark(
     // The other joints of a hinge open a little.
     for hinge in drawn.iter().flat_map(|hinge| hinge.joints.iter().filter(|own| **own != hinge.main())) {
         if let Some(joint) = joint_of(hinge.joint) {
-            canvas.circle(canvas.at(place(joint, Vec2::from(hinge.point))), 2.5, MOTION, MOTION, 1.0);
+            let at = canvas.at(place(joint, Vec2::from(hinge.point)));
+            canvas.circle(at, 2.5, MOTION, MOTION, 1.0);
         }
     }
     let reach = if senses { 14.0 } else { 7.0 };

@@ -2,9 +2,10 @@
 
 use super::displaced::Placement;
 use super::mechanism::MovingBlock;
+use super::plot::svg::text_boxes;
+use super::plot::text::Area;
 use super::sample::*;
 use super::sweep::{study_chart, sweep_chart};
-use super::text_layout::Area;
 use super::*;
 use crate::results::{CaseResult, StudyResults, Totals};
 use crate::study::{Drawn, Output, Resolved, SweptKeys};
@@ -76,22 +77,6 @@ fn attribute<'a>(tag: &'a str, name: &str) -> &'a str {
     tag.split_once(&format!(" {name}=\"")).and_then(|(_, rest)| rest.split_once('"')).map_or("", |(value, _)| value)
 }
 
-/// Boxes of all texts of a drawing, and its size.
-fn texts(svg: &str) -> Vec<(String, Area)> {
-    svg.split("<text ")
-        .skip(1)
-        .map(|piece| {
-            let (tag, rest) = piece.split_once('>').expect("a tag ends");
-            let tag = format!(" {tag}");
-            let number = |name: &str| attribute(&tag, name).parse::<f64>().expect("a number");
-            let words = rest.split('<').next().unwrap_or("").trim().to_string();
-            let area =
-                Area::of_text([number("x"), number("y")], attribute(&tag, "text-anchor"), number("font-size"), &words);
-            (words, area)
-        })
-        .collect()
-}
-
 fn drawings() -> Vec<(String, String)> {
     let mut all = Vec::new();
     for scene in scenes() {
@@ -113,11 +98,47 @@ fn drawings_are_well_formed_and_finite() {
     }
 }
 
+/// Every figure is named and described, keeps to the width of a page with text of 9 pt or more, and its colours have
+/// counterparts on a dark page.
+fn assert_readable(svg: &str, name: &str) {
+    let start = svg.split('>').next().expect("a tag");
+    assert!(start.contains("role=\"img\""), "{name}: {start}");
+    for element in ["title", "desc"] {
+        let words = svg.split(&format!("<{element}>")).nth(1).and_then(|rest| rest.split("</").next());
+        assert!(words.is_some_and(|words| words.len() > 2), "{name}: no {element}");
+    }
+    // 18 cm are 510 pt.
+    let points = 510.0 / attribute(start, "width").parse::<f64>().expect("a width");
+    let mut smallest = f64::INFINITY;
+    for tag in svg.split('<').skip(1).map(|rest| rest.split('>').next().expect("a tag ends")) {
+        if tag.starts_with("text ") {
+            smallest = smallest.min(attribute(tag, "font-size").parse().expect("a size"));
+        }
+        for property in ["fill", "stroke"] {
+            let colour = attribute(tag, property);
+            let known = ["", "none"].contains(&colour) || colour.starts_with("url(#");
+            assert!(known || super::plot::colours::DARK.iter().any(|(light, _)| *light == colour), "{name}: {colour}");
+        }
+    }
+    assert!(smallest * points >= 9.0, "{name}: {} pt", smallest * points);
+}
+
+#[test]
+fn figures_are_readable_in_the_dark_in_print_and_aloud() {
+    for (name, svg) in drawings() {
+        assert_readable(&svg, &name);
+    }
+    with_output(true, |study| assert_readable(&study_chart(study).expect("a chart"), "chart"));
+    let svg = super::plot::svg::as_file(&drawings()[0].1);
+    assert!(svg.contains("prefers-color-scheme:dark") && svg.contains("[fill='#e9dfcb']{fill:#5b5443}"));
+    assert_balanced(&svg, "file");
+}
+
 #[test]
 fn labels_do_not_overlap_and_stay_on_the_canvas() {
     for (name, svg) in drawings() {
         let size: Vec<f64> = attribute(&svg, "viewBox").split(' ').map(|x| x.parse().expect("a number")).collect();
-        let texts = texts(&svg);
+        let texts = text_boxes(&svg);
         assert!(texts.len() > 3, "{name}");
         for (i, (words, area)) in texts.iter().enumerate() {
             assert!(
@@ -375,32 +396,23 @@ fn pictures() {
 /// Peaks of several lines at one abscissa: no label covers another, and each stands near its peak.
 #[test]
 fn labels_of_near_peaks_stand_apart() {
-    let peak = |y: f64| super::series::Spot {
+    let peak = |y: f64| super::plot::series::Spot {
         at: (16.0, y),
         kind: "greatest",
-        marker: super::series::Marker::Ring,
+        marker: super::plot::series::Marker::Ring,
         label: format!("{y}"),
     };
-    let line = |y: f64| super::series::Series {
+    let line = |y: f64| super::plot::series::Series {
         name: format!("line {y}"),
         points: vec![(10.0, 0.5 * y), (16.0, y), (30.0, 0.8 * y)],
         spots: Some(vec![peak(y)]),
         ..Default::default()
     };
     let lines = [7165.0, 7100.0, 7050.0, 5888.0].map(line);
-    let svg = super::chart::chart_svg("loads", "x", "y", &lines, &[]);
-    let number = |text: &str, key: &str| {
-        let rest = text.split(&format!("{key}=\"")).nth(1).expect("a place");
-        rest.split('"').next().expect("an end").parse::<f64>().expect("a number")
-    };
-    let labels: Vec<Area> = svg
-        .lines()
-        .filter(|line| line.contains("paint-order"))
-        .map(|line| {
-            let words = line.split('>').nth(1).and_then(|rest| rest.split('<').next()).expect("words");
-            Area::of_text([number(line, "x"), number(line, "y")], "start", 13.0, words)
-        })
-        .collect();
+    let svg = chart_svg("loads", "x", "y", &lines, &[]);
+    let of_peak = |words: &str| [7165.0, 7100.0, 7050.0, 5888.0].iter().any(|peak| words == peak.to_string());
+    let labels: Vec<Area> =
+        text_boxes(&svg).into_iter().filter(|(words, _)| of_peak(words)).map(|(_, area)| area).collect();
     assert_eq!(labels.len(), 4);
     for (i, one) in labels.iter().enumerate() {
         assert!(labels[..i].iter().all(|other| one.shared(other) == 0.0), "{labels:?}");

@@ -1,7 +1,9 @@
 //! Sliders for the numbers of a case: ranges from the schema, steps from the values.
 
 use crate::config::key_meaning::key_meaning;
-use crate::figures::format::{escape, format_short};
+use crate::figures::format::format_short;
+use crate::figures::plot::number::step_below;
+use crate::figures::plot::svg::escape;
 use crate::study::{NumberKind, NumericKey, numeric_keys, study_keys};
 use serde_json::Value as Json;
 use std::fmt::Write;
@@ -28,14 +30,6 @@ pub(super) struct Track {
     pub from: f64,
     pub to: f64,
     pub step: f64,
-}
-
-/// Returns 1, 2 or 5 times a power of ten, at most `x > 0`.
-fn tidy_below(x: f64) -> f64 {
-    let power = 10f64.powf(x.log10().floor());
-    let digit = [5.0, 2.0, 1.0].into_iter().find(|digit| digit * power <= x * (1.0 + 1e-12)).unwrap_or(1.0);
-    // Format and parse the number, so that 1e-3 is the exact decimal.
-    format!("{:e}", digit * power).parse().unwrap_or(power)
 }
 
 /// Returns the usual greatest value of a quantity, in its unit, if neither value nor range gives one.
@@ -82,7 +76,7 @@ fn real_track(quantity: Quantity, range: Range, value: f64) -> Track {
     } else {
         far.max(from + f64::MIN_POSITIVE)
     };
-    let step = tidy_below((to - from) / PARTS);
+    let step = step_below((to - from) / PARTS);
     let open = |end: f64, is_open: bool, inwards: f64| if is_open && end.is_finite() { end + inwards } else { end };
     let from = if from == range.min { open(from, range.min_open, step) } else { from };
     let to = if to == range.max { open(to, range.max_open, -step) } else { to };

@@ -1,7 +1,7 @@
 //! The page in the browser: drawings, result, sliders.
 
 use super::controls::controls;
-use crate::figures::format::escape;
+use crate::figures::plot::svg::escape;
 use crate::writers::page;
 use serde_json::Value as Json;
 

@@ -8,6 +8,7 @@ use super::writer::Writer;
 use crate::figures::comparison::{comparison_svg, open_bracket, remark, row_name};
 use crate::figures::format::{format_number, format_short, kind_word, snap_words, status_word};
 use crate::figures::map::map_svg;
+use crate::figures::plot::svg::as_file;
 use crate::results::{Comparison, ComparisonCell};
 use crate::study::SweptKeys;
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
@@ -22,8 +23,10 @@ impl Writer for ComparisonFiles {
         let Some(comparison) = &study.results.comparison else { return Vec::new() };
         let mut files = vec![("comparison.csv".to_string(), comparison_csv(comparison, &study.keys).into_bytes())];
         if study.output.figures.anything() {
-            files
-                .extend(figure(study, comparison).map(|(name, svg)| (format!("figures/{name}.svg"), svg.into_bytes())));
+            files.extend(
+                figure(study, comparison)
+                    .map(|(name, svg)| (format!("figures/{name}.svg"), as_file(&svg).into_bytes())),
+            );
         }
         files
     }

@@ -5,6 +5,7 @@ use super::study_output::StudyOutput;
 use super::writer::Writer;
 use crate::figures::envelope::envelope_chart;
 use crate::figures::moving_load::moving_load_svg;
+use crate::figures::plot::svg::as_file;
 use crate::figures::sweep::study_chart;
 use crate::figures::{curve_charts, curve_svg, mechanism_svg, scene_svg};
 use crate::results::CaseResult;
@@ -37,7 +38,7 @@ impl Writer for Figures {
             own
         };
         files.extend(drawn.par_iter().flat_map_iter(of_case).collect::<Vec<_>>());
-        files.into_iter().map(|(name, svg)| (name, svg.into_bytes())).collect()
+        files.into_iter().map(|(name, svg)| (name, as_file(&svg).into_bytes())).collect()
     }
 }
 

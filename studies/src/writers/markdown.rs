@@ -1,7 +1,7 @@
 //! Markdown as HTML for pages: no raw HTML passes, few kinds of links do, and the page draws every image itself.
 
 use super::links::is_allowed;
-use crate::figures::format::escape;
+use crate::figures::plot::svg::escape;
 use pulldown_cmark::{Alignment, CowStr, Event, LinkType, Options, Parser, Tag, TagEnd, html};
 
 /// Places of images in a text, in order.

@@ -4,7 +4,7 @@ mod sha256;
 #[cfg(test)]
 mod tests;
 
-use crate::figures::format::escape;
+use crate::figures::plot::svg::escape;
 use serde_json::Value as Json;
 use voussoir_core::limit::Status;
 
@@ -106,9 +106,4 @@ pub(crate) fn table(header: &[String], rows: impl Iterator<Item = Vec<String>>) 
         })
         .collect();
     format!("<div class=\"wide\"><table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{body}</tbody></table></div>\n")
-}
-
-/// The drawing with ids of its own, since ids are shared by all drawings of a page.
-pub(crate) fn own_ids(svg: &str, prefix: &str) -> String {
-    svg.replace("id=\"ground\"", &format!("id=\"{prefix}\"")).replace("url(#ground)", &format!("url(#{prefix})"))
 }

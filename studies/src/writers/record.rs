@@ -3,7 +3,8 @@
 use super::assumptions::{assumptions, sources};
 use crate::config::dotted_key::join;
 use crate::config::key_meaning::KeyMeaning;
-use crate::figures::format::{escape, format_quantity, format_value};
+use crate::figures::format::{format_quantity, format_value};
+use crate::figures::plot::svg::escape;
 use crate::study::{Case, Study, meaning_in};
 use serde_json::Value as Json;
 use std::collections::HashSet;

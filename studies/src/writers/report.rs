@@ -13,10 +13,11 @@ use super::{joints_csv, sensitivities_csv};
 use crate::config::common_keys::own_keys;
 use crate::figures::envelope::envelope_chart;
 use crate::figures::format::{
-    escape, format_force, format_number, format_seconds, format_short, format_value, headline, hinge_list, kind_words,
+    format_force, format_number, format_seconds, format_short, format_value, headline, hinge_list, kind_words,
     open_bounds, proved_interval, snap_words, status_meaning, status_word, unit_load,
 };
 use crate::figures::moving_load::moving_load_svg;
+use crate::figures::plot::svg::{escape, own_ids};
 use crate::figures::sweep::study_chart;
 use crate::figures::{curve_charts, curve_svg, mechanism_svg, scene_svg};
 use crate::postprocess::joint_events::{JointEvent, JointState, joint_events};
@@ -71,7 +72,7 @@ pub fn report_html(study: &StudyOutput, drawn: usize) -> String {
         body += &format!(
             "<h2>The load on its way</h2>\n<figure>{}<figcaption>Place by place, with the mechanism there; printed, the worst \
              place.</figcaption></figure>\n",
-            page::own_ids(&svg, "moving-load")
+            own_ids(&svg, "moving-load")
         );
     }
     body += &comparison(study);
@@ -319,7 +320,7 @@ fn figures(study: &StudyOutput, drawn: usize) -> String {
         let own = study.case_title(case);
         let title = format!("{own}: {}", headline(case, stages));
         text += &format!("<details{open}><summary>{}</summary>\n", escape(&title));
-        let scene = page::own_ids(&scene_svg(&own, assembly, stages, case), &format!("scene-{}", case.label.id));
+        let scene = own_ids(&scene_svg(&own, assembly, stages, case), &format!("scene-{}", case.label.id));
         text += &format!(
             "<figure>{scene}<figcaption>The scene with its loads, forces and joints that move.</figcaption></figure>\n"
         );
@@ -327,7 +328,7 @@ fn figures(study: &StudyOutput, drawn: usize) -> String {
             text += &format!("<div class=\"moving\" data-case=\"{}\"></div>\n", case.label.id);
         }
         if let Some(svg) = mechanism_svg(&own, assembly, case) {
-            let svg = page::own_ids(&svg, &format!("mechanism-{}", case.label.id));
+            let svg = own_ids(&svg, &format!("mechanism-{}", case.label.id));
             text += &format!(
                 "<figure>{svg}<figcaption>How it collapses; displacements are exaggerated.</figcaption></figure>\n"
             );

@@ -3,7 +3,7 @@
 use super::register::register;
 use super::study_output::StudyOutput;
 use super::writer::Writer;
-use crate::figures::format::escape;
+use crate::figures::plot::svg::escape;
 use crate::postprocess::displaced_mesh::{DisplacedBlock, displaced_blocks};
 use serde_json::Value as Json;
 use std::fmt::Write;

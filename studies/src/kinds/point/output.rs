@@ -4,9 +4,10 @@ use super::drive::drive_point;
 use super::result::{PathStatus, PointResult};
 use super::study::PointStudy;
 use super::surface::yield_surface;
-use crate::figures::chart::chart_svg;
 use crate::figures::format::{format_number, format_value};
-use crate::figures::series::Series;
+use crate::figures::plot::chart::chart_svg;
+use crate::figures::plot::series::Series;
+use crate::figures::plot::svg::as_file;
 use crate::kinds::case_study::one_case;
 use crate::kinds::kind::{LoadedStudy, Piece, RunOutput, RunRequest, Verification};
 use crate::kinds::stored_results::StoredResults;
@@ -145,7 +146,7 @@ pub fn files(study: &PointStudy, results: &[PointResult], version: &str) -> Vec<
     let mut out =
         vec![("results.json".to_string(), format!("{whole:#}\n")), ("results.csv".to_string(), csv(study, results))];
     if study.figures {
-        out.push((FIGURE.into(), figure(study, results)));
+        out.push((FIGURE.into(), as_file(&figure(study, results))));
     }
     out
 }

@@ -4,7 +4,8 @@ use super::claims::{Answer, Verdict};
 use super::contents::Contents;
 use super::figures::Image;
 use super::parts::Parts;
-use crate::figures::format::{escape, format_seconds};
+use crate::figures::format::format_seconds;
+use crate::figures::plot::svg::{escape, own_ids};
 use crate::kinds::kind::{Part, Piece};
 use crate::writers::markdown::markdown;
 use crate::writers::page;
@@ -22,7 +23,7 @@ pub fn results_page(
     let text = |words: &str| {
         markdown(words, &|place| {
             drawn.set(drawn.get() + 1);
-            image(contents, parts, place).map(|svg| page::own_ids(&svg, &format!("drawn-{}", drawn.get())))
+            image(contents, parts, place).map(|svg| own_ids(&svg, &format!("drawn-{}", drawn.get())))
         })
     };
     let mut body = format!("<h1>{}</h1>\n{}", escape(title), text(&contents.introduction));

@@ -11,6 +11,7 @@ use crate::config::check::Checker;
 use crate::config::diagnostic::{LocatedDiagnostic, sort};
 use crate::config::document::Node;
 use crate::config::origin::Origin;
+use crate::figures::plot::svg::as_file;
 use crate::kinds::kind::{LoadedStudy, Part, RunOutput, RunRequest, Verification};
 use crate::kinds::read::read_source;
 use crate::kinds::stored_results::StoredResults;
@@ -78,8 +79,9 @@ impl ReportStudy {
         let answers: Vec<Answer> = self.contents.claims.iter().map(|claim| claim.answer(&named)).collect();
         let mut files = Vec::new();
         if self.figures {
-            let chart =
-                |chart: &Chart| (format!("figures/chart-{}.svg", chart.name), chart.svg(&self.contents.series, &parts));
+            let chart = |chart: &Chart| {
+                (format!("figures/chart-{}.svg", chart.name), as_file(&chart.svg(&self.contents.series, &parts)))
+            };
             files.extend(self.contents.charts.iter().map(chart));
         }
         files.push(("report.html".into(), results_page(&self.name, &self.contents, &parts, &answers, (version, date))));

@@ -1,8 +1,31 @@
-//! The axis of a chart, straight or logarithmic: its range, its ticks, and places of values.
+//! Axes: values to pixels, ranges and ticks, straight or logarithmic.
 
-use super::axes::{Axis, Canvas, round_values};
+use super::number::{round_values, tick_label};
 
-/// An axis of a chart.
+/// A straight axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Axis {
+    /// Values at its two ends.
+    pub values: [f64; 2],
+    /// Places of the two ends \[px\].
+    pub places: [f64; 2],
+}
+
+impl Axis {
+    /// Place of a value \[px\].
+    pub fn at(&self, value: f64) -> f64 {
+        let share = (value - self.values[0]) / (self.values[1] - self.values[0]);
+        self.places[0] + share * (self.places[1] - self.places[0])
+    }
+
+    /// Round values on the axis, about `count` of them.
+    pub fn ticks(&self, count: usize) -> Vec<f64> {
+        let (low, high) = (self.values[0].min(self.values[1]), self.values[0].max(self.values[1]));
+        round_values(low, high, count)
+    }
+}
+
+/// An axis of a chart, straight or logarithmic.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scale {
     /// Values, or their decimal logarithms, to pixels.
@@ -42,12 +65,22 @@ impl Scale {
 
     /// A tick in figures; powers of ten far from 1 are written as such.
     pub fn label(&self, tick: f64) -> String {
-        if self.log && !(1e-4..1e7).contains(&tick) { format!("{tick:e}") } else { Canvas::number(tick) }
+        if self.log && !(1e-4..1e7).contains(&tick) { format!("{tick:e}") } else { tick_label(tick) }
+    }
+
+    /// Its two ends in words.
+    pub fn ends(&self) -> String {
+        let [low, high] = self.values();
+        format!("from {} to {}", self.label(low), self.label(high))
+    }
+
+    fn values(&self) -> [f64; 2] {
+        if self.log { self.axis.values.map(|x| 10f64.powf(x)) } else { self.axis.values }
     }
 
     /// `low high from to log` for scripts that read values off the drawing.
     pub fn describe(&self) -> String {
-        let [low, high] = if self.log { self.axis.values.map(|x| 10f64.powf(x)) } else { self.axis.values };
+        let [low, high] = self.values();
         let [from, to] = self.axis.places;
         format!("{low:e} {high:e} {from:.2} {to:.2} {}", u8::from(self.log))
     }

@@ -1,17 +1,19 @@
 //! Line charts, as SVG: markers and lines, legend below the axes so that it never covers data.
 
-use super::axes::{COLOURS, Canvas};
-use super::scale::{Scale, range};
+use super::axis::{Scale, range};
+use super::colours::{GRID, INK, line};
+use super::number::format_short;
 use super::series::{ChartStyle, Marker, Series};
-use super::text_layout::{Area, Spot as Place, text_width, wrapped};
+use super::svg::{Canvas, SMALL, TITLE, WIDTH};
+use super::text::{Area, Spot as Place, text_width, wrapped};
 
-const WIDTH: f64 = 900.0;
-const PLOT: f64 = 480.0;
-const ROW: f64 = 24.0;
-/// Size of the labels of spots.
-const LABEL: f64 = 13.0;
-const GRID: &str = "#e1e1e1";
-const INK: &str = "#222222";
+/// Height of the box of the axes with its labels \[px\].
+const PLOT: f64 = 440.0;
+const ROW: f64 = 22.0;
+const LEFT: f64 = 84.0;
+const RIGHT: f64 = WIDTH - 22.0;
+/// Where the legend begins \[px\].
+const MARGIN: f64 = 24.0;
 /// Dashes of lines, so that they are told apart in grey.
 const DASHES: [&str; 5] = ["", "9 4", "2.5 3", "12 4 2.5 4", "6 3"];
 
@@ -34,29 +36,24 @@ pub fn chart(
         .flat_map(|s| s.points.iter().chain(&s.open_points).map(|p| p.0).chain(s.ends.iter().map(|end| end.0)));
     let Some(horizontal) = range(abscissas, style.log[0]) else {
         let mut canvas = Canvas::default();
-        canvas.text([10.0, 35.0], "no chart: no finite point", 14.0, "start");
-        return canvas.finish(WIDTH, 60.0);
+        canvas.text([10.0, 35.0], "no chart: no finite point", SMALL, "start");
+        return canvas.finish([WIDTH, 60.0], title, "This chart has no finite point.");
     };
     let (vertical, broken) = vertical_range(series, style.log[1]);
     let mut lines: Vec<String> = notes.to_vec();
     lines.extend(broken.then(|| "The vertical axis does not begin at zero.".to_string()));
-    let lines: Vec<String> = lines.iter().flat_map(|note| wrapped(note, 13.0, WIDTH - 100.0)).collect();
-    let titles = wrapped(title, 18.0, WIDTH - 40.0);
-    let head = 16.0 + ROW * titles.len() as f64;
+    let described = lines.join(" ");
+    let lines: Vec<String> = lines.iter().flat_map(|note| wrapped(note, SMALL, WIDTH - 2.0 * MARGIN)).collect();
+    let mut canvas = Canvas::default();
+    let head = canvas.title(&wrapped(title, TITLE, WIDTH - 2.0 * MARGIN), WIDTH);
     let frame = Frame {
-        x: Scale::new(horizontal, [92.0, WIDTH - 28.0], style.log[0]),
+        x: Scale::new(horizontal, [LEFT, RIGHT], style.log[0]),
         y: Scale::new(vertical, [head + PLOT - 54.0, head + 8.0], style.log[1]),
-        left: 92.0,
-        right: WIDTH - 28.0,
         top: head + 8.0,
         bottom: head + PLOT - 54.0,
     };
     let legend = Legend::new(series);
-    let mut canvas = Canvas::default();
-    for (i, line) in titles.iter().enumerate() {
-        canvas.text([WIDTH / 2.0, 26.0 + ROW * i as f64], line, 18.0, "middle");
-    }
-    canvas.open(&format!("class=\"plot\" data-x=\"{}\" data-y=\"{}\"", frame.x.describe(), frame.y.describe()));
+    canvas.open(&[("class", &"plot"), ("data-x", &frame.x.describe()), ("data-y", &frame.y.describe())]);
     frame.draw(&mut canvas, x_label, y_label);
     frame.curves(&mut canvas, series);
     frame.marks(&mut canvas, series);
@@ -64,9 +61,28 @@ pub fn chart(
     let base = head + PLOT + 14.0;
     legend.draw(&mut canvas, series, base);
     for (i, line) in lines.iter().enumerate() {
-        canvas.text([70.0, base + 5.0 + ROW * (legend.row + 1.0) + 20.0 * i as f64], line, 13.0, "start");
+        canvas.text([MARGIN, base + 5.0 + ROW * (legend.row + 1.0) + 20.0 * i as f64], line, SMALL, "start");
     }
-    canvas.finish(WIDTH, head + PLOT + ROW * (legend.row + 1.0) + 20.0 * lines.len() as f64 + 22.0)
+    let height = head + PLOT + ROW * (legend.row + 1.0) + 20.0 * lines.len() as f64 + 18.0;
+    let axes = format!("{x_label} {}; {y_label} {}", frame.x.ends(), frame.y.ends());
+    let alternative = format!("A line chart. Axes: {axes}. Lines: {}. {described}", described_lines(series));
+    canvas.finish([WIDTH, height], title, alternative.trim_end())
+}
+
+/// Each line with its first, greatest and last value: what a reader who does not see the chart needs.
+fn described_lines(series: &[Series]) -> String {
+    let line = |own: &Series| {
+        let at = |point: &(f64, f64)| format!("{} at {}", format_short(point.1, 4), format_short(point.0, 4));
+        let finite = || own.points.iter().filter(|(x, y)| x.is_finite() && y.is_finite());
+        let greatest = finite().max_by(|a, b| a.1.total_cmp(&b.1));
+        match (finite().next(), greatest, finite().next_back()) {
+            (Some(first), Some(greatest), Some(last)) => {
+                format!("{}: from {}, greatest {}, to {}", own.name, at(first), at(greatest), at(last))
+            }
+            _ => format!("{}: no finite value", own.name),
+        }
+    };
+    series.iter().map(line).collect::<Vec<_>>().join("; ")
 }
 
 /// The parts of a line between open points.
@@ -107,8 +123,6 @@ fn vertical_range(series: &[Series], log: bool) -> ([f64; 2], bool) {
 struct Frame {
     x: Scale,
     y: Scale,
-    left: f64,
-    right: f64,
     top: f64,
     bottom: f64,
 }
@@ -123,23 +137,23 @@ impl Frame {
         let mut last = f64::NEG_INFINITY;
         for tick in self.x.ticks(10) {
             let x = self.x.at(tick);
-            canvas.line([x, self.top], [x, self.bottom], GRID, 1.0);
+            canvas.line(&[[x, self.top], [x, self.bottom]], GRID, 1.0, "");
             let words = self.x.label(tick);
-            let half = text_width(&words, 14.0) / 2.0;
+            let half = text_width(&words, SMALL) / 2.0;
             if x - half > last + 4.0 {
-                canvas.text([x, self.bottom + 19.0], &words, 14.0, "middle");
+                canvas.text([x, self.bottom + 19.0], &words, SMALL, "middle");
                 last = x + half;
             }
         }
         for tick in self.y.ticks(8) {
             let y = self.y.at(tick);
-            canvas.line([self.left, y], [self.right, y], GRID, 1.0);
-            canvas.text([self.left - 8.0, y + 5.0], &self.y.label(tick), 14.0, "end");
+            canvas.line(&[[LEFT, y], [RIGHT, y]], GRID, 1.0, "");
+            canvas.text([LEFT - 8.0, y + 5.0], &self.y.label(tick), SMALL, "end");
         }
-        canvas.line([self.left, self.top], [self.left, self.bottom], INK, 1.2);
-        canvas.line([self.left, self.bottom], [self.right, self.bottom], INK, 1.2);
-        canvas.text([(self.left + self.right) / 2.0, self.bottom + 44.0], x_label, 15.0, "middle");
-        canvas.upright([22.0, (self.top + self.bottom) / 2.0], y_label, 15.0);
+        canvas.line(&[[LEFT, self.top], [LEFT, self.bottom]], INK, 1.2, "");
+        canvas.line(&[[LEFT, self.bottom], [RIGHT, self.bottom]], INK, 1.2, "");
+        canvas.text([(LEFT + RIGHT) / 2.0, self.bottom + 42.0], x_label, SMALL, "middle");
+        canvas.upright([20.0, (self.top + self.bottom) / 2.0], y_label, SMALL);
     }
 
     fn curves(&self, canvas: &mut Canvas, series: &[Series]) {
@@ -149,7 +163,7 @@ impl Frame {
             for part in unbroken(own).into_iter().filter(|_| !own.unjoined) {
                 let spots: Vec<Place> = part.into_iter().filter_map(|point| self.place(point)).collect();
                 if spots.len() > 1 {
-                    canvas.dashed(&spots, COLOURS[i % COLOURS.len()], 2.0, DASHES[i % DASHES.len()]);
+                    canvas.line(&spots, line(i), 2.0, DASHES[i % DASHES.len()]);
                 }
             }
             if own.spots.is_none() || own.dots || own.unjoined {
@@ -180,7 +194,7 @@ impl Frame {
             }
             for spot in own.spots.iter().flatten() {
                 let Some([x, y]) = self.place(spot.at) else { continue };
-                symbol(canvas, [x, y], spot.marker, COLOURS[i % COLOURS.len()]);
+                symbol(canvas, [x, y], spot.marker, line(i));
             }
         }
         self.labels(canvas, series);
@@ -192,19 +206,19 @@ impl Frame {
         let mut taken: Vec<Area> = Vec::new();
         for spot in series.iter().flat_map(|own| own.spots.iter().flatten()).filter(|spot| !spot.label.is_empty()) {
             let Some([x, y]) = self.place(spot.at) else { continue };
-            let left = x - 4.0 - text_width(&spot.label, LABEL);
+            let left = x - 4.0 - text_width(&spot.label, SMALL);
             let around =
                 [13.0, -7.0, 28.0, -22.0].iter().flat_map(|down| [[x + 10.0, y + down], [left, y + down + 7.0]]);
-            let area = |at: Place| Area::of_text(at, "start", LABEL, &spot.label);
+            let area = |at: Place| Area::of_text(at, "start", SMALL, &spot.label);
             let inside = |at: &Place| {
                 let Area { low, high } = area(*at);
-                low[0] >= self.left && high[0] < WIDTH - 6.0 && low[1] >= self.top && high[1] <= self.bottom
+                low[0] >= LEFT && high[0] < WIDTH - 6.0 && low[1] >= self.top && high[1] <= self.bottom
             };
             let covered = |at: &Place| taken.iter().map(|other| area(*at).shared(other)).sum::<f64>();
             let best = around.filter(inside).min_by(|a, b| covered(a).total_cmp(&covered(b)));
             let at = best.unwrap_or([x + 10.0, y + 13.0]);
             taken.push(area(at));
-            canvas.edged(at, &spot.label, LABEL, "start");
+            canvas.edged(at, &spot.label, (SMALL, "start", INK), false);
         }
     }
 }
@@ -213,21 +227,26 @@ impl Frame {
 fn arrow(canvas: &mut Canvas, index: usize, [x, y]: Place, sense: f64) {
     let corners = [[0.0, 0.0], [7.0, 9.0], [3.0, 9.0], [3.0, ARROW], [-3.0, ARROW], [-3.0, 9.0], [-7.0, 9.0]];
     let spots: Vec<Place> = corners.iter().map(|c| [x + c[0], y + sense * c[1]]).collect();
-    canvas.filled(&spots, COLOURS[index % COLOURS.len()]);
+    canvas.polygon(&spots, line(index), "", "");
 }
 
 fn symbol(canvas: &mut Canvas, [x, y]: Place, marker: Marker, colour: &str) {
     match marker {
-        Marker::Ring => canvas.ring([x, y], 9.0, colour),
+        Marker::Ring => canvas.circle([x, y], 9.0, "none", colour, 2.0),
         Marker::Dot => {
             let on = |i: u32| {
                 let angle = f64::from(i) * std::f64::consts::FRAC_PI_4 + std::f64::consts::FRAC_PI_8;
                 [x + 5.4 * angle.cos(), y + 5.4 * angle.sin()]
             };
-            canvas.filled(&(0..8).map(on).collect::<Vec<_>>(), colour);
+            canvas.polygon(&(0..8).map(on).collect::<Vec<_>>(), colour, "", "");
         }
         Marker::Square => {
-            canvas.filled(&[[x - 4.5, y - 4.5], [x + 4.5, y - 4.5], [x + 4.5, y + 4.5], [x - 4.5, y + 4.5]], colour);
+            canvas.polygon(
+                &[[x - 4.5, y - 4.5], [x + 4.5, y - 4.5], [x + 4.5, y + 4.5], [x - 4.5, y + 4.5]],
+                colour,
+                "",
+                "",
+            );
         }
     }
 }
@@ -268,12 +287,12 @@ impl Legend {
             (Entry::End(i), if series.len() > 1 { format!("{}: {words}", s.name) } else { words.into() })
         });
         let spots = kinds.into_iter().map(|(words, marker)| (Entry::Kind(marker), words.to_string()));
-        let (mut x, mut row) = (70.0, 0.0);
+        let (mut x, mut row) = (MARGIN, 0.0);
         let mut entries = Vec::new();
         for (entry, words) in lines.chain(open).chain(ends).chain(spots) {
-            let width = 46.0 + text_width(&words, 14.0) + 24.0;
-            if x > 70.0 && x + width > WIDTH - 20.0 {
-                (x, row) = (70.0, row + 1.0);
+            let width = 46.0 + text_width(&words, SMALL) + 24.0;
+            if x > MARGIN && x + width > WIDTH - 20.0 {
+                (x, row) = (MARGIN, row + 1.0);
             }
             entries.push((entry, words, [x, row]));
             x += width;
@@ -291,14 +310,14 @@ impl Legend {
                     let own = &series[*i];
                     if !own.unjoined {
                         let ends = [[*x, y], [x + 34.0, y]];
-                        canvas.dashed(&ends, COLOURS[i % COLOURS.len()], 2.0, DASHES[i % DASHES.len()]);
+                        canvas.line(&ends, line(*i), 2.0, DASHES[i % DASHES.len()]);
                     }
                     if own.spots.is_none() || own.dots || own.unjoined {
                         canvas.mark(*i, [x + 17.0, y]);
                     }
                 }
             }
-            canvas.text([x + 42.0, y + 5.0], words, 14.0, "start");
+            canvas.text([x + 42.0, y + 5.0], words, SMALL, "start");
         }
     }
 }
