@@ -1,6 +1,11 @@
 //! Compiles the origin of results into the program: target, commit, and a hash of its sources. Results store it, see
 //! `results::Origin`.
 
+#[path = "src/fnv.rs"]
+#[allow(dead_code, reason = "checksums of results have 128 bits too")]
+mod fnv;
+
+use fnv::Fnv64;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs};
@@ -55,15 +60,12 @@ fn sources(workspace: &Path) -> Option<String> {
         collect(&path, &mut files)?;
     }
     files.sort();
-    // FNV-1a of 64 bits. It detects differences, but does not protect against forgery.
-    let mut hash: u64 = 0xcbf2_9ce4_8422_2325;
-    let mut add =
-        |bytes: &[u8]| bytes.iter().for_each(|byte| hash = (hash ^ u64::from(*byte)).wrapping_mul(0x100_0000_01b3));
+    let mut hash = Fnv64::new();
     for file in files {
-        add(file.strip_prefix(workspace).ok()?.to_str()?.as_bytes());
-        add(&fs::read(&file).ok()?);
+        hash.add(file.strip_prefix(workspace).ok()?.to_str()?.as_bytes());
+        hash.add(&fs::read(&file).ok()?);
     }
-    Some(format!("{hash:016x}"))
+    Some(hash.text())
 }
 
 /// The file, or all files below the folder. Licences are links, which some systems do not check out as links.

@@ -329,8 +329,8 @@ pub fn outcome_of(arguments: impl IntoIterator<Item = std::ffi::OsString>) -> Re
     let arguments: Vec<std::ffi::OsString> = arguments.into_iter().collect();
     let wrong = voussoir_core::plugin::audit();
     if !wrong.is_empty() {
-        let diagnostics = wrong.iter().map(|why| format!("voussoir: registry: {why}")).collect();
-        return Ok(Err(CliError { kind: ErrorKind::NoAccess, diagnostics }));
+        let lines = wrong.iter().map(|why| format!("voussoir: registry: {why}"));
+        return Ok(Err(CliError::of_lines(ErrorKind::NoAccess, lines)));
     }
     let words: Vec<String> = arguments.iter().map(|word| word.to_string_lossy().into_owned()).collect();
     let cli = Cli::try_parse_from(std::iter::once("voussoir".into()).chain(arguments))?;

@@ -44,6 +44,7 @@ mod commands;
 pub mod config;
 pub mod conformance;
 pub mod figures;
+mod fnv;
 pub mod kinds;
 pub mod loads;
 pub mod postprocess;

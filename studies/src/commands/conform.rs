@@ -26,7 +26,7 @@ pub fn conform_tags(tags: &[String], out: Option<&Path>) -> Outcome {
     });
     let diagnostics: Vec<String> = unknown.collect();
     if !diagnostics.is_empty() {
-        return Err(CliError { kind: ErrorKind::WrongInput, diagnostics });
+        return Err(CliError::of_lines(ErrorKind::WrongInput, diagnostics));
     }
     // Panics of a plug-in are findings; dishonest solvers panic too.
     let said = std::panic::take_hook();

@@ -1,9 +1,12 @@
 //! The errors of the command line: values that a command returns and that `main` prints.
 
+use crate::config::characters::escape;
 use crate::config::diagnostic::LocatedDiagnostic;
 use crate::config::limits::MAX_MISTAKES_PRINTED;
-use crate::study::StudyError;
+use crate::config::source_line::with_source;
+use crate::study::{StudyError, beside};
 use std::fmt::{self, Display};
+use std::io::IsTerminal;
 use std::path::Path;
 
 /// The kind of an error, which decides the exit code of the program.
@@ -20,19 +23,24 @@ pub enum ErrorKind {
 pub struct CliError {
     /// Decides the exit code.
     pub kind: ErrorKind,
-    /// Lines for the reader, in order.
+    /// Lines for the reader, in order. Their invisible characters are escaped; only colours for a terminal are in them.
     pub diagnostics: Vec<String>,
 }
 
 impl CliError {
     /// An error about the input.
     pub fn wrong_input(line: impl Display) -> Self {
-        CliError { kind: ErrorKind::WrongInput, diagnostics: vec![line.to_string()] }
+        Self::of_lines(ErrorKind::WrongInput, [line.to_string()])
     }
 
     /// An error about access to files.
     pub fn no_access(line: impl Display) -> Self {
-        CliError { kind: ErrorKind::NoAccess, diagnostics: vec![line.to_string()] }
+        Self::of_lines(ErrorKind::NoAccess, [line.to_string()])
+    }
+
+    /// An error with several lines.
+    pub fn of_lines(kind: ErrorKind, lines: impl IntoIterator<Item = String>) -> Self {
+        CliError { kind, diagnostics: lines.into_iter().map(|line| escape(&line).into_owned()).collect() }
     }
 
     /// A file that cannot be used.
@@ -50,22 +58,23 @@ impl CliError {
         Self::no_access(format_args!("voussoir: cannot write {}: {why}", path.display()))
     }
 
-    /// The mistakes in a study file, and their number.
-    pub fn of_study(path: &Path, mistakes: &StudyError) -> Self {
+    /// The mistakes in the study file with this text, each with its line, and their number.
+    pub fn of_study(path: &Path, text: &str, mistakes: &StudyError) -> Self {
         let mistakes: &[LocatedDiagnostic] = mistakes.mistakes();
-        let count = mistakes.len();
-        let mut diagnostics: Vec<String> =
-            mistakes.iter().take(MAX_MISTAKES_PRINTED).map(ToString::to_string).collect();
-        if count > MAX_MISTAKES_PRINTED {
-            diagnostics.push(format!(
-                "{}: {} more mistakes are not printed",
-                path.display(),
-                count - MAX_MISTAKES_PRINTED
-            ));
-        }
+        let (count, own, colour) = (mistakes.len(), path.display().to_string(), has_colours());
+        let text_of = |file: &str| match file {
+            file if file == own => Some(text.to_string()),
+            file => beside(Path::new(""))(file).ok(),
+        };
+        let shown = mistakes.iter().take(MAX_MISTAKES_PRINTED);
+        let diagnostics = shown.map(|mistake| with_source(mistake, &text_of, colour)).collect();
+        let more = count.saturating_sub(MAX_MISTAKES_PRINTED);
+        let more = (more > 0).then(|| format!("{own}: {more} more mistakes are not printed"));
         let ending = if count == 1 { "" } else { "s" };
-        diagnostics.push(format!("{}: {count} mistake{ending}; nothing was computed", path.display()));
-        CliError { kind: ErrorKind::WrongInput, diagnostics }
+        let last = format!("{own}: {count} mistake{ending}; nothing was computed");
+        let mut error = CliError { kind: ErrorKind::WrongInput, diagnostics };
+        error.diagnostics.extend(Self::of_lines(error.kind, more.into_iter().chain([last])).diagnostics);
+        error
     }
 
     /// The exit code of the program.
@@ -84,6 +93,12 @@ impl Display for CliError {
 }
 
 impl std::error::Error for CliError {}
+
+/// Returns true if standard error is a terminal and the variable NO_COLOR is empty (no-color.org).
+fn has_colours() -> bool {
+    let refused = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+    std::io::stderr().is_terminal() && !refused && std::env::var_os("TERM").is_none_or(|term| term != "dumb")
+}
 
 /// The verdict of a command that did its work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

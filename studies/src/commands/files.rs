@@ -49,7 +49,7 @@ pub fn study(path: &Path, sets: &[(String, String)]) -> Result<Box<dyn LoadedStu
     let text = read(path)?;
     let source = StudySource::parse_with(&text, &path.display().to_string(), sets, &beside(path));
     let study = source.and_then(|source| read_source_beside(source, &beside(path)));
-    study.map_err(|mistakes| CliError::of_study(path, &mistakes))
+    study.map_err(|mistakes| CliError::of_study(path, &text, &mistakes))
 }
 
 /// Reads a study to be looked at.
@@ -59,5 +59,5 @@ pub fn study(path: &Path, sets: &[(String, String)]) -> Result<Box<dyn LoadedStu
 pub fn session(path: &Path, sets: &[(String, String)]) -> Result<Session, CliError> {
     let text = read(path)?;
     let source = StudySource::parse_with(&text, &path.display().to_string(), sets, &beside(path));
-    source.and_then(Session::read).map_err(|mistakes| CliError::of_study(path, &mistakes))
+    source.and_then(Session::read).map_err(|mistakes| CliError::of_study(path, &text, &mistakes))
 }

@@ -43,7 +43,7 @@ pub fn keep(written: std::io::Result<()>) {
 /// The exit code of a command with this outcome, whose error is printed here. An error of standard output is an error of
 /// the command.
 pub fn ended(outcome: Outcome) -> u8 {
-    let lines = |error: &CliError| error.diagnostics.iter().for_each(complain);
+    let lines = |error: &CliError| error.diagnostics.iter().for_each(|line| _ = writeln!(std::io::stderr(), "{line}"));
     let code = outcome.map_or_else(
         |error| {
             lines(&error);

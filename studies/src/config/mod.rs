@@ -24,3 +24,4 @@ pub mod nesting;
 pub mod origin;
 pub mod overlay;
 pub mod shape_words;
+pub mod source_line;

@@ -5,7 +5,7 @@ use super::fill;
 use super::format::{format_force, headline};
 use super::loads::Loads;
 use super::scene_canvas::SceneCanvas;
-use super::scene_canvas::hatching;
+use super::scene_canvas::{REST, hatching};
 use super::symbols::{OUTLINE, STONE, STRUT, Symbol, THRUST, ZONE, mark};
 use super::thrust::{resultants, strut_lines, thrust_pieces, zone_parts};
 use crate::results::CaseResult;
@@ -47,11 +47,14 @@ pub fn scene_svg(title: &str, assembly: &Assembly, stages: &[Stage], result: &Ca
     if assembly.bodies.iter().any(|body| body.fixed) {
         legend.push((Symbol::Ground, "support".into()));
     }
+    canvas.open(&[("class", &REST)]);
     if result.status == Status::Unbounded && result.proof.ray.is_some() {
         strut(&mut canvas, assembly, stages, result, &mut legend);
     } else {
         forces(&mut canvas, assembly, result, &mut legend);
     }
+    canvas.close();
+    canvas.open_metres();
     if let Some(greatest) = fill::draw_forces(&mut canvas, &result.proof.fill) {
         legend.push((Symbol::Pressure, format!("force of the fill (greatest {})", format_force(greatest))));
     }
@@ -67,7 +70,9 @@ pub fn scene_svg(title: &str, assembly: &Assembly, stages: &[Stage], result: &Ca
         legend.push((Symbol::Settlement, "support that moves".into()));
     }
     if let Some(mechanism) = &result.mechanism {
+        canvas.open(&[("class", &REST)]);
         legend.extend(mark(&mut canvas, assembly, (result, mechanism), false, |_, point| point));
+        canvas.close();
     }
     loads.label(&mut canvas);
     let mut caption = loads.sentences().to_vec();
@@ -104,8 +109,10 @@ fn blocks(canvas: &mut SceneCanvas, assembly: &Assembly) {
     let width = outline_width(canvas, assembly);
     let shapes = |fixed: bool| assembly.bodies.iter().filter(move |b| b.fixed == fixed).map(|b| b.vertices.as_slice());
     canvas.shapes(shapes(true), &hatching(), OUTLINE, 1.0, "");
+    canvas.open(&[("class", &REST)]);
     canvas.shapes(shapes(false), STONE, OUTLINE, width, "");
     faces(canvas, assembly, OUTLINE, |_, point| point);
+    canvas.close();
     supports(canvas, assembly);
 }
 

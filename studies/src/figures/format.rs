@@ -99,6 +99,15 @@ pub fn status_meaning(status: Status) -> &'static str {
     }
 }
 
+/// The verdict of a certificate: only the bounds of an open result are proved.
+pub fn certificate_verdict(case: &CaseResult) -> &'static str {
+    match (case.certificate.passed, case.status) {
+        (true, _) => "passed",
+        (false, Status::Open) => "bounds",
+        (false, _) => "failed",
+    }
+}
+
 /// A mechanism's kind as it stands in results.json.
 pub fn kind_word(kind: MechanismKind) -> &'static str {
     match kind {

@@ -16,6 +16,9 @@ const HEIGHT: f64 = 460.0;
 /// The id of the hatching of the ground.
 const GROUND: &str = "ground";
 
+/// The class of what makes room for a drawing that moves.
+pub const REST: &str = "rest";
+
 /// The fill of the ground.
 pub fn hatching() -> String {
     hatched(GROUND)
@@ -92,10 +95,19 @@ impl SceneCanvas {
         self.text([SIDE, self.drawing.low[1] - 12.0], "start", TITLE, text, INK, false);
     }
 
-    /// Where a point \[m\] lies on the canvas.
+    /// The place of a point \[m\] on the canvas.
     pub fn at(&self, point: Vec2) -> Spot {
         let from = (point - self.corner) * self.scale;
         [self.top_left[0] + from.x, self.top_left[1] - from.y]
+    }
+
+    /// An empty group whose coordinates are metres, x to the right and y down: a script draws blocks that move in it.
+    pub fn open_metres(&mut self) {
+        let [x, y] = self.at(Vec2::zeros());
+        let (scale, place) =
+            (format!("{:.6}", self.scale), format!("translate({x:.4} {y:.4}) scale({:.6})", self.scale));
+        self.open(&[("class", &"metres"), ("data-scale", &scale), ("transform", &place)]);
+        self.close();
     }
 
     /// Pixels per metre.
@@ -121,7 +133,7 @@ impl SceneCanvas {
         self.outlines(&shapes, fill, stroke, width, dash);
     }
 
-    /// Text at a place, with an edge in the colour of the paper; the place is taken from then on.
+    /// Text at a place, with an edge in the colour of the paper. Later labels avoid it.
     pub fn text(&mut self, spot: Spot, anchor: &str, size: f64, text: &str, colour: &str, bold: bool) {
         self.taken.push(Area::of_text(spot, anchor, size, text));
         self.edged(spot, text, (size, anchor, colour), bold);

@@ -1,34 +1,21 @@
 //! The chart of a study with one swept number: the load against it.
 
 use super::format::{format_short, kind_words, unit_load};
+use super::map::load_factor_maps;
+use super::plot::axis::WIDE;
 use super::plot::chart::chart;
 use super::plot::series::{ChartStyle, Marker, Series, Spot};
 use crate::results::CaseResult;
 use crate::writers::StudyOutput;
 use voussoir_core::limit::Status;
 
-/// The axis of a study's sweep chart: its label, and the value of each case.
-///
-/// `None` unless exactly one key is swept and all its values are numbers. On arches whose rise or
-/// span is swept it is span/rise.
+/// The axis of a study's sweep chart: its label, and the value of each case. `None` unless exactly one key is swept and all its
+/// values are numbers.
 pub fn sweep_axis(study: &StudyOutput) -> Option<(String, Vec<f64>)> {
     let [key] = study.sweep_keys.as_slice() else { return None };
     let cases = &study.results.cases;
     let values: Vec<f64> = cases.iter().map(|case| case.label.parameters.get(key)?.as_f64()).collect::<Option<_>>()?;
-    if cases.len() < 2 {
-        return None;
-    }
-    let ratios = || {
-        let layouts = study.scenes.iter().map(|scene| scene.assembly.arch.as_ref());
-        let ratios: Vec<f64> = layouts.map(|arch| arch.map(|a| a.span / a.rise)).collect::<Option<_>>()?;
-        (ratios.len() == cases.len() && ratios.iter().all(|r| r.is_finite())).then_some(ratios)
-    };
-    if ["scene.profile.rise", "scene.profile.span"].contains(&key.as_str())
-        && let Some(ratios) = ratios()
-    {
-        return Some(("span / rise [-]".into(), ratios));
-    }
-    Some((study.keys.title(key), values))
+    (cases.len() > 1).then(|| (study.keys.title(key), values))
 }
 
 /// More lines than this are not drawn in one chart.
@@ -60,9 +47,13 @@ fn two_axes(study: &StudyOutput) -> Option<(String, Vec<f64>, Vec<String>)> {
     (count <= LINES && different(&values) > 1).then(|| (study.keys.title(key), values, lines))
 }
 
-/// The chart of a study, if it has one: the load where all cases have the same at factor 1, else
-/// the load factor.
+/// The chart of a study: lines over a swept number or over one of two, or maps over two swept numbers that have too many
+/// values for lines. It shows the load if all cases have the same load at factor 1, else the load factor.
 pub fn study_chart(study: &StudyOutput) -> Option<String> {
+    lines(study).or_else(|| load_factor_maps(study).filter(|_| study.results.comparison.is_none()))
+}
+
+fn lines(study: &StudyOutput) -> Option<String> {
     let named: Vec<CaseResult>;
     let (cases, (label, values)) = match two_axes(study) {
         // Lines are told apart as variants are.
@@ -171,9 +162,6 @@ fn first_limit_points<'a>(
         ..Series::default()
     })
 }
-
-/// From this ratio of the greatest to the least value on an axis is logarithmic.
-const WIDE: f64 = 50.0;
 
 /// Marks of a line: its greatest value where that lies inside, and each first case of another kind of mechanism.
 fn marks(found: &[(f64, f64, &CaseResult)], bounded: bool) -> Vec<Spot> {

@@ -226,7 +226,7 @@ pub fn mark(
     }
     if !spots.is_empty() {
         let numbered = match spots.len() {
-            count if count > NUMBERED => "too many to number",
+            count if count > NUMBERED => "(too many to number)",
             _ if spots.iter().any(|(_, _, label, _)| label.contains(',')) => "with its joints, in order of formation",
             _ if drawn.iter().any(|hinge| hinge.joints.len() > 1) => "with its joints; small: opens a little",
             _ => "with its joint's number",

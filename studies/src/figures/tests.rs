@@ -311,11 +311,11 @@ fn with_output<T>(figures: bool, then: impl FnOnce(&StudyOutput) -> T) -> T {
 }
 
 #[test]
-fn a_sweep_of_the_rise_is_drawn_over_span_by_rise() {
+fn a_sweep_is_drawn_over_its_key() {
     with_output(true, |study| {
         let chart = study_chart(study).expect("one axis of numbers");
         assert_balanced(&chart, "chart");
-        assert!(chart.contains("span / rise") && chart.contains("unbounded") && chart.contains("[kN]"));
+        assert!(chart.contains("scene.profile.rise") && chart.contains("unbounded") && chart.contains("[kN]"));
         let two = vec!["a".to_string(), "b".to_string()];
         assert!(study_chart(&StudyOutput { sweep_keys: two, ..study.clone() }).is_none());
     });
@@ -364,7 +364,7 @@ fn every_writer_gives_its_files_and_they_need_nothing_else() {
         assert_eq!(csv.lines().count(), 25);
         assert!(csv.starts_with("id,variant,scene.profile.rise"));
         let report = crate::writers::report::report_html(study, 40);
-        assert!(report.contains("rise &amp; &lt;fall&gt;") && report.matches("<details").count() == 24);
+        assert!(report.contains("rise &amp; &lt;fall&gt;") && report.matches("<details").count() == 23);
         let table = crate::writers::table::results_table(study);
         assert!(table.contains("[1] flow read as associated (cases 3, 15)") && table.contains("unbounded"));
     });

@@ -44,7 +44,7 @@ impl LoadedStudy for Study {
 
     fn piece(&self, results: &str, piece: Piece) -> Option<String> {
         if piece == Piece::Record {
-            return Some(record(self));
+            return Some(record(self).into_string());
         }
         let results: StudyResults = serde_json::from_str(results).ok()?;
         let cases: Vec<_> = results.cases.iter().filter_map(|case| self.case_of(&case.label)).collect();

@@ -1,5 +1,6 @@
 //! The program, the processor and the plug-ins that results come from.
 
+use crate::fnv::Fnv64;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
 use std::collections::{BTreeMap, BTreeSet};
@@ -168,8 +169,9 @@ fn mathematics() -> String {
         [f64::sin, f64::cos, f64::tan, f64::atan, f64::exp, f64::ln, f64::cbrt, |x| x.powf(1.3)];
     let arguments = (1..=64).map(|i| std::hint::black_box(f64::from(i) * 0.137));
     let bits = arguments.flat_map(|x| functions.map(|function| function(x).to_bits()));
-    let step = |hash: u64, bits: u64| (hash ^ bits).wrapping_mul(0x100_0000_01b3).rotate_left(29);
-    format!("{:016x}", bits.fold(0xcbf2_9ce4_8422_2325, step))
+    let mut hash = Fnv64::new();
+    bits.for_each(|bits| hash.add(&bits.to_le_bytes()));
+    hash.text()
 }
 
 #[cfg(test)]

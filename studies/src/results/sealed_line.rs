@@ -1,6 +1,7 @@
 //! Finished cases as lines of a journal or a part: `{"checksum":"0123456789abcdef","case":{…}}`. The checksum is FNV-1a with
 //! 64 bits (Fowler, Noll and Vo) of the case's text. It finds damage; forgery is found by the proof of the case.
 
+use crate::fnv::Fnv64;
 use serde::Serialize;
 use std::ops::Range;
 
@@ -13,8 +14,9 @@ const CASE: usize = BEFORE.len() + DIGITS + BETWEEN.len();
 
 /// 64 bits of FNV-1a in hexadecimal.
 pub fn checksum(bytes: &[u8]) -> String {
-    let step = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x100_0000_01b3);
-    format!("{:016x}", bytes.iter().fold(0xcbf2_9ce4_8422_2325, step))
+    let mut hash = Fnv64::new();
+    hash.add(bytes);
+    hash.text()
 }
 
 /// The line of a case, with a line end before and after it: it is whole even after a line that was cut short.

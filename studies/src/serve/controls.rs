@@ -3,10 +3,9 @@
 use crate::config::key_meaning::key_meaning;
 use crate::figures::format::format_short;
 use crate::figures::plot::number::step_below;
-use crate::figures::plot::svg::escape;
 use crate::study::{NumberKind, NumericKey, numeric_keys, study_keys};
+use maud::{Markup, html};
 use serde_json::Value as Json;
-use std::fmt::Write;
 use voussoir_core::plugin::{Quantity, Range};
 
 /// Greatest length of a list of numbers with sliders.
@@ -89,47 +88,45 @@ fn label(key: &NumericKey, resolved: &Json) -> String {
     meaning.map_or(key.key.clone(), |meaning| meaning.title())
 }
 
-fn control(key: &NumericKey, resolved: &Json) -> String {
-    let (label, name) = (escape(&label(key, resolved)), escape(&key.key));
-    let field = |value: &str| {
-        format!(
-            "<input type=\"text\" inputmode=\"decimal\" data-key=\"{name}\" value=\"{value}\" placeholder=\"not given\" \
-             aria-label=\"{label}, exactly\" title=\"{name}: {}\">",
-            escape(key.doc)
-        )
-    };
-    let Some(value) = key.value else {
-        return format!("<div class=\"control\"><span>{label}</span>{}</div>\n", field(""));
-    };
-    let Track { from, to, step } = track(key.kind, value);
-    format!(
-        "<div class=\"control\"><span>{label}</span><input type=\"range\" data-key=\"{name}\" min=\"{from}\" \
-         max=\"{to}\" step=\"any\" data-step=\"{step}\" value=\"{value}\" aria-label=\"{label}\">{}</div>\n",
-        field(&format_short(value, 12))
-    )
+fn control(key: &NumericKey, resolved: &Json) -> Markup {
+    let (label, name) = (label(key, resolved), key.key.as_str());
+    let title = format!("{name}: {}", key.doc);
+    let exactly = format!("{label}, exactly");
+    let given = key.value.map(|value| (value, track(key.kind, value)));
+    let field = given.map_or(String::new(), |(value, _)| format_short(value, 12));
+    html! {
+        div class="control" {
+            span { (label) }
+            @if let Some((value, Track { from, to, step })) = given {
+                input type="range" data-key=(name) min=(from) max=(to) step="any" data-step=(step) value=(value) aria-label=(label);
+            }
+            input type="text" inputmode="decimal" data-key=(name) value=(field) placeholder="not given" aria-label=(exactly)
+                title=(title);
+        }
+    }
 }
 
-/// Returns the controls of a case as HTML: sliders for its numbers, fields for optional numbers that are not given.
-pub(super) fn controls(resolved: &Json) -> String {
+/// Returns the controls of a case: sliders for its numbers, fields for optional numbers that are not given.
+pub(super) fn controls(resolved: &Json) -> Markup {
     let keys = numeric_keys(study_keys(), resolved, LONGEST);
-    let mut text = String::new();
-    for (heading, table) in GROUPS {
-        let own = |key: &&NumericKey| key.key.split('.').next() == Some(table);
-        let (given, absent): (Vec<&NumericKey>, Vec<&NumericKey>) =
-            keys.iter().filter(own).partition(|key| key.value.is_some());
-        if given.is_empty() && absent.is_empty() {
-            continue;
+    let group = |table: &str| -> (Vec<&NumericKey>, Vec<&NumericKey>) {
+        let own = keys.iter().filter(|key| key.key.split('.').next() == Some(table));
+        own.partition(|key| key.value.is_some())
+    };
+    html! {
+        @for (heading, table) in GROUPS {
+            @let (given, absent) = group(table);
+            @if !given.is_empty() || !absent.is_empty() {
+                fieldset {
+                    legend { (heading) }
+                    @for key in given { (control(key, resolved)) }
+                    @if !absent.is_empty() {
+                        details { summary { "not given" } @for key in absent { (control(key, resolved)) } }
+                    }
+                }
+            }
         }
-        let _ = writeln!(text, "<fieldset><legend>{heading}</legend>");
-        given.iter().for_each(|key| text += &control(key, resolved));
-        if !absent.is_empty() {
-            text += "<details><summary>not given</summary>\n";
-            absent.iter().for_each(|key| text += &control(key, resolved));
-            text += "</details>\n";
-        }
-        text += "</fieldset>\n";
     }
-    text
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! The page in the browser: drawings, result, sliders.
 
 use super::controls::controls;
-use crate::figures::plot::svg::escape;
 use crate::writers::page;
+use maud::{Markup, html};
 use serde_json::Value as Json;
 
 /// The data of a page.
@@ -24,45 +24,67 @@ pub(super) struct Shown<'a> {
 
 /// Returns the page of a case as HTML.
 pub(super) fn page(shown: &Shown) -> String {
-    let mut body = format!("<h1>{}</h1>\n", escape(shown.name));
-    if shown.kind != "run" {
-        body += &format!(
-            "<p class=\"quiet\">Its kind is {}: here its cases are answered one at a time.</p>\n",
-            escape(shown.kind)
-        );
-    }
-    body += &choice(shown);
-    body += &format!(
-        "<div id=\"live\" data-case=\"{}\">\n{SEEN}<form>\n{}</form>\n</div>\n",
-        shown.case,
-        controls(shown.resolved)
-    );
-    body += "<noscript>This page needs its script.</noscript>\n";
+    let body = html! {
+        h1 { (shown.name) }
+        @if shown.kind != "run" {
+            p class="quiet" { "The kind of this study is " (shown.kind) ". This page computes its cases one at a time." }
+        }
+        (choice(shown))
+        div id="live" data-case=(shown.case) {
+            (seen())
+            form { (controls(shown.resolved)) }
+        }
+        noscript { "This page needs its script." }
+    };
     page::served(shown.name, &body)
 }
 
-/// Returns a list of the study's cases.
-fn choice(shown: &Shown) -> String {
-    let labels = match &shown.labels {
-        Some(labels) if labels.len() > 1 => labels,
-        Some(_) => return String::new(),
-        None => return format!("<p class=\"quiet\">Case {} of {}.</p>\n", shown.case, shown.count),
-    };
-    let options = labels.iter().enumerate().map(|(id, label)| {
-        let selected = if id == shown.case { " selected" } else { "" };
-        format!("<option value=\"{id}\"{selected}>{}</option>", escape(label))
-    });
-    format!("<p><label>Case <select id=\"case\">{}</select></label></p>\n", options.collect::<String>())
+/// A list of the study's cases.
+fn choice(shown: &Shown) -> Markup {
+    html! {
+        @match &shown.labels {
+            Some(labels) if labels.len() > 1 => p {
+                label {
+                    "Case "
+                    select id="case" {
+                        @for (id, label) in labels.iter().enumerate() {
+                            option value=(id) selected[id == shown.case] { (label) }
+                        }
+                    }
+                }
+            },
+            Some(_) => {},
+            None => p class="quiet" { "Case " (shown.case) " of " (shown.count) "." },
+        }
+    }
 }
 
-/// Section for the result; the script of the page fills it.
-const SEEN: &str = "<section class=\"seen\">\n<p class=\"summary\" role=\"status\"><strong id=\"headline\">…</strong></p>\n\
-<pre id=\"mistakes\" class=\"bad\" role=\"alert\" hidden></pre>\n\
-<figure class=\"moving\"><svg id=\"statics\" role=\"img\" aria-label=\"the scene with its thrust line and loads\"></svg>\
-<figcaption>Forces at the answer. Drag a load by its arrow, or move it with the arrow keys.</figcaption></figure>\n\
-<figure class=\"moving\"><svg id=\"mechanism\" role=\"img\" aria-label=\"the mechanism\"></svg>\
-<figcaption><span id=\"kind\"></span> <label>motion <input id=\"motion\" type=\"range\" min=\"0\" max=\"100\" value=\"60\"></label>\
-</figcaption></figure>\n<p class=\"quiet\"><span id=\"proof\"></span> <span id=\"time\"></span></p>\n<ul id=\"notes\" class=\"quiet\"></ul>\n\
-<p class=\"buttons\"><button type=\"button\" id=\"copy\">Copy the study file</button> \
-<button type=\"button\" id=\"reset\">Reset</button> <button type=\"button\" id=\"report\">Its report</button> \
-<span id=\"said\" role=\"status\"></span></p>\n<details><summary>Study file</summary><pre id=\"toml\"></pre></details>\n</section>\n";
+/// The places of an answer; the script fills them.
+fn seen() -> Markup {
+    html! {
+        section class="seen" {
+            p class="summary" role="status" { strong id="headline" { "…" } }
+            pre id="mistakes" class="bad" role="alert" hidden {}
+            figure class="moving" {
+                svg id="statics" role="img" aria-label="the scene with its thrust line and loads" {}
+                figcaption { "Forces at the answer. Drag a load by its arrow, or move it with the arrow keys." }
+            }
+            figure class="moving" {
+                svg id="mechanism" role="img" aria-label="the mechanism" {}
+                figcaption {
+                    span id="kind" {} " "
+                    label { "motion " input id="motion" type="range" min="0" max="100" value="60"; }
+                }
+            }
+            p class="quiet" { span id="proof" {} " " span id="time" {} }
+            ul id="notes" class="quiet" {}
+            p class="buttons" {
+                button type="button" id="copy" { "Copy the study file" } " "
+                button type="button" id="reset" { "Reset" } " "
+                button type="button" id="report" { "Its report" } " "
+                span id="said" role="status" {}
+            }
+            details { summary { "Study file" } pre id="toml" {} }
+        }
+    }
+}

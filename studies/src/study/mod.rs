@@ -12,7 +12,6 @@ mod dxf;
 mod error;
 mod export;
 mod file;
-mod fnv;
 mod keys;
 mod load;
 mod model;

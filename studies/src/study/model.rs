@@ -1,9 +1,9 @@
 //! A study after reading: its cases, each with all data that are needed to solve it. [`super::load`] reads it.
 
-use super::fnv::Fnv;
 use super::numeric_keys::NumericKey;
 use super::outline::Outline;
 use super::resolved::Resolved;
+use super::resolved::hash_of;
 use super::tables::{DrawnWord, Figures};
 use crate::config::checked_keys::CheckedKeys;
 use crate::config::expand::Expansion;
@@ -89,7 +89,7 @@ impl Case {
     /// cases, not forged ones.
     pub fn hash_in(&self, origin: &Origin) -> String {
         let label = (self.id, &self.variant, &self.scene, &self.parameters);
-        let mut hash = Fnv::of(&(origin.program(), label));
+        let mut hash = hash_of(&(origin.program(), label));
         self.resolved.add_hashes(&mut hash);
         hash.text()
     }

@@ -1,17 +1,25 @@
 //! The tables of a checked case by name. Tables that cases share are stored and hashed once.
 
-use super::fnv::Fnv;
+use crate::fnv::Fnv128;
 use serde::de::DeserializeOwned;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use serde_json::{Map, Value as Json};
 use std::ops::Index;
 use std::sync::{Arc, OnceLock};
 
+/// The hash of a value's JSON.
+pub(super) fn hash_of(value: &impl Serialize) -> Fnv128 {
+    let mut hash = Fnv128::new();
+    // A hash accepts every byte.
+    let _ = serde_json::to_writer(&mut hash, value);
+    hash
+}
+
 /// The checked value of a top-level key.
 #[derive(Debug, Clone, Default)]
 pub struct CheckedValue {
     value: Json,
-    hash: OnceLock<Fnv>,
+    hash: OnceLock<Fnv128>,
 }
 
 impl From<Json> for CheckedValue {
@@ -44,10 +52,10 @@ impl Resolved {
     }
 
     /// Adds all names and the hashes of their values.
-    pub(super) fn add_hashes(&self, hash: &mut Fnv) {
+    pub(super) fn add_hashes(&self, hash: &mut Fnv128) {
         for (name, checked) in &self.0 {
             hash.add(name.as_bytes());
-            hash.add_hash(*checked.hash.get_or_init(|| Fnv::of(&checked.value)));
+            hash.add_hash(*checked.hash.get_or_init(|| hash_of(&checked.value)));
         }
     }
 

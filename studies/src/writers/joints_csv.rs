@@ -5,9 +5,10 @@ use super::page;
 use super::register::register;
 use super::study_output::StudyOutput;
 use super::writer::{CaseTable, Writer};
-use crate::figures::format::{escape, format_force, format_number, status_word};
+use crate::figures::format::{format_force, format_number, status_word};
 use crate::results::CaseResult;
 use crate::results::carried::{JointEntry, PermissibleEntry, ReserveEntry, ReserveFlow};
+use maud::{Markup, html};
 use serde_json::Value as Json;
 use std::io::{self, Write};
 
@@ -141,32 +142,29 @@ fn format_stress(pascals: f64) -> String {
 }
 
 /// The report's section; empty if no case has a load that is carried.
-pub(super) fn section(study: &StudyOutput) -> String {
+pub(super) fn section(study: &StudyOutput) -> Markup {
     let carried: Vec<&CaseResult> = study.results.cases.iter().filter(|case| !case.carried.is_empty()).collect();
-    if carried.is_empty() {
-        return String::new();
-    }
-    let mut text = String::from(
-        "<h2>Loads that are carried</h2>\n<p>N presses if it is positive. V acts on the second block, from end 0 to end 1 of the joint. \
-         The eccentricity e = M/N is positive towards end 1, on arches the extrados. Contact length and stress belong to a linear \
-         pressure without tension. The zone of thrust is the interval of e over all admissible fields.</p>\n",
-    );
-    for case in carried.iter().take(CASES) {
-        text += &format!("<h3>Case {}</h3>\n", case.label.id);
-        for line in carried_lines(case) {
-            text += &format!("<p>{}</p>\n", escape(&line));
+    html! {
+        @if !carried.is_empty() {
+            h2 { "Loads that are carried" }
+            p {
+                "N presses if it is positive. V acts on the second block, from end 0 to end 1 of the joint. The eccentricity e = M/N \
+                 is positive towards end 1, on arches the extrados. Contact length and stress belong to a linear pressure without \
+                 tension. The zone of thrust is the interval of e over all admissible fields."
+            }
+            @for case in carried.iter().take(CASES) {
+                h3 { "Case " (case.label.id) }
+                @for line in carried_lines(case) { p { (line) } }
+                (joints(&case.carried.joints))
+            }
+            @if carried.len() > CASES { p { "The first " (CASES) " of " (carried.len()) " cases; all are in joints.csv." } }
         }
-        text += &joints(&case.carried.joints);
     }
-    if carried.len() > CASES {
-        text += &format!("<p>The first {CASES} of {} cases; all are in joints.csv.</p>\n", carried.len());
-    }
-    text
 }
 
-fn joints(entries: &[JointEntry]) -> String {
+fn joints(entries: &[JointEntry]) -> Markup {
     if entries.is_empty() {
-        return String::new();
+        return html! {};
     }
     let crushes = entries.iter().any(|entry| entry.block.is_some());
     let zones = entries.iter().any(|entry| entry.zone.is_some());
@@ -204,11 +202,10 @@ fn joints(entries: &[JointEntry]) -> String {
         cells
     });
     let header: Vec<String> = header.into_iter().map(String::from).collect();
-    let more = match entries.len() {
-        count if count > ROWS => format!("<p>The first {ROWS} of {count} joints; all are in joints.csv.</p>\n"),
-        _ => String::new(),
-    };
-    page::table(&header, rows) + &more
+    html! {
+        (page::table(&header, rows))
+        @if entries.len() > ROWS { p { "The first " (ROWS) " of " (entries.len()) " joints; all are in joints.csv." } }
+    }
 }
 
 register!(

@@ -3,17 +3,22 @@
 use super::page;
 use crate::figures::format::{format_energy, format_length, format_number, format_short};
 use crate::results::{CaseResult, LimitPointEntry, NextState};
+use maud::{Markup, html};
 
 /// The table of a case; empty if its path has no limit point.
-pub(super) fn limit_points(case: &CaseResult) -> String {
+pub(super) fn limit_points(case: &CaseResult) -> Markup {
     let points = &case.path.limit_points;
     if points.is_empty() {
-        return String::new();
+        return html! {};
     }
     let header = ["stage", "limit point at factor", "displacement", "factor falls by", "released energy", "next state"];
-    let words = "<p>Under dead load the structure snaps at a limit point. The released energy is counted along the path to the \
-                 next state that carries the same load, or to the end of the path.</p>\n";
-    words.to_string() + &page::table(&header.map(String::from), points.iter().map(row))
+    html! {
+        p {
+            "Under dead load the structure snaps at a limit point. The released energy is counted along the path to the next state \
+             that carries the same load, or to the end of the path."
+        }
+        (page::table(&header.map(String::from), points.iter().map(row)))
+    }
 }
 
 fn row(point: &LimitPointEntry) -> Vec<String> {

@@ -1,6 +1,7 @@
 //! What the page's script draws of a case: its blocks, how they move, and the states of its path.
 
 use crate::figures::displaced::Placement;
+use crate::figures::hinges::{DrawnHinge, drawn_hinges};
 use crate::figures::moving_blocks;
 use crate::results::{CaseResult, StateEntry};
 use serde_json::{Value as Json, json};
@@ -41,6 +42,13 @@ pub(crate) fn case_data(assembly: &Assembly, result: &CaseResult, finite: bool) 
     if let Some(blocks) = moving_blocks(assembly, result) {
         data["motion"] = blocks.iter().map(|own| json!(own.velocity.map(fine))).collect();
         data["closing"] = blocks.iter().map(|own| json!(own.closing.map(|term| term.map(fine)))).collect();
+    }
+    if let Some(mechanism) = &result.mechanism {
+        let hinge = |hinge: DrawnHinge| {
+            let main = hinge.main();
+            json!([main.joint, tidy(main.point[0]), tidy(main.point[1])])
+        };
+        data["hinges"] = drawn_hinges(&mechanism.hinges).into_iter().map(hinge).collect();
     }
     if !result.path.states.is_empty() {
         add_states(&mut data, assembly, result, finite);

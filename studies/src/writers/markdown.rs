@@ -1,8 +1,9 @@
 //! Markdown as HTML for pages: no raw HTML passes, few kinds of links do, and the page draws every image itself.
 
 use super::links::is_allowed;
-use crate::figures::plot::svg::escape;
-use pulldown_cmark::{Alignment, CowStr, Event, LinkType, Options, Parser, Tag, TagEnd, html};
+use super::page::figure;
+use maud::{Markup, PreEscaped, html};
+use pulldown_cmark::{Alignment, CowStr, Event, LinkType, Options, Parser, Tag, TagEnd, html as events};
 
 /// Places of images in a text, in order.
 pub fn images(text: &str) -> Vec<String> {
@@ -19,13 +20,13 @@ fn options() -> Options {
 
 /// A text as HTML. `draw` returns the drawing for the place of an image; without one the place is named. A link that is
 /// not allowed becomes its text with the address behind it.
-pub fn markdown(text: &str, draw: &dyn Fn(&str) -> Option<String>) -> String {
+pub fn markdown(text: &str, draw: &dyn Fn(&str) -> Option<String>) -> Markup {
     let mut page = Page { draw, events: Vec::new(), image: None, links: Vec::new(), table: Table::default() };
     Parser::new_ext(text, options()).for_each(|event| page.add(event));
     let mut out = String::new();
-    html::push_html(&mut out, page.events.into_iter());
+    events::push_html(&mut out, page.events.into_iter());
     // A figure stands by itself, not in a paragraph.
-    out.replace("<p><figure>", "<figure>").replace("</figure></p>", "</figure>")
+    PreEscaped(out.replace("<p><figure>", "<figure>").replace("</figure></p>", "</figure>"))
 }
 
 /// The events of a text as they are written.
@@ -52,9 +53,11 @@ impl<'a> Page<'a> {
         match (event, &mut self.image) {
             (Event::Start(Tag::Image { dest_url, .. }), _) => self.image = Some((dest_url.to_string(), String::new())),
             (Event::End(TagEnd::Image), Some((place, words))) => {
-                let drawn = (self.draw)(place).unwrap_or_else(|| format!("<p class=\"bad\">no {}</p>", escape(place)));
-                let html = format!("<figure>{drawn}<figcaption>{}</figcaption></figure>", escape(words));
-                self.raw(html);
+                let figure = match (self.draw)(place) {
+                    Some(drawn) => figure(&drawn, words),
+                    None => html! { figure { p class="bad" { "no " (place) } figcaption { (words) } } },
+                };
+                self.raw(figure);
                 self.image = None;
             }
             (Event::Text(more) | Event::Code(more), Some((_, words))) => *words += &more,
@@ -69,8 +72,8 @@ impl<'a> Page<'a> {
         }
     }
 
-    fn raw(&mut self, html: String) {
-        self.events.push(Event::InlineHtml(html.into()));
+    fn raw(&mut self, markup: Markup) {
+        self.events.push(Event::InlineHtml(markup.into_string().into()));
     }
 
     fn start(&mut self, tag: Tag<'a>) {
@@ -97,7 +100,7 @@ impl<'a> Page<'a> {
                     Some(Alignment::Right) => " class=\"right\"",
                     _ => "",
                 };
-                self.raw(format!("<t{}{class}>", if self.table.head { 'h' } else { 'd' }));
+                self.raw(PreEscaped(format!("<t{}{class}>", if self.table.head { 'h' } else { 'd' })));
                 self.table.column += 1;
             }
             tag => self.events.push(Event::Start(tag)),
@@ -108,7 +111,7 @@ impl<'a> Page<'a> {
         if tag == TagEnd::Link
             && let Some(Some(address)) = self.links.pop()
         {
-            self.raw(format!(" <span class=\"bad\">(this link is not allowed: {})</span>", escape(&address)));
+            self.raw(html! { " " span class="bad" { "(this link is not allowed: " (address) ")" } });
             return;
         }
         self.events.push(Event::End(tag));
@@ -123,7 +126,8 @@ mod tests {
     fn images_are_drawn_and_raw_html_is_text() {
         let draw = |place: &str| (place == "chart:a").then(|| "<svg/>".to_string());
         let html =
-            markdown("Text *now*\n\n![words **here**](chart:a)\n\n<script>alert(1)</script>\n\n![x](chart:b)", &draw);
+            markdown("Text *now*\n\n![words **here**](chart:a)\n\n<script>alert(1)</script>\n\n![x](chart:b)", &draw)
+                .into_string();
         assert!(html.contains("<em>now</em>"), "{html}");
         assert!(html.contains("<figure><svg/><figcaption>words here</figcaption></figure>"), "{html}");
         assert!(!html.contains("<script") && html.contains("&lt;script"), "{html}");
@@ -173,7 +177,7 @@ mod tests {
             "```\\\"onclick=alert(1)\na\n```",
         ];
         for text in hostile {
-            let html = markdown(text, &|_| None);
+            let html = markdown(text, &|_| None).into_string();
             for tag in html.split('<').skip(1).map(|rest| &rest[..rest.find('>').expect("an end")]) {
                 let (name, attributes) = tag.split_once(' ').unwrap_or((tag, ""));
                 assert!(!["script", "style", "base", "img", "svg", "b", "iframe"].contains(&name), "{text}: {html}");
@@ -194,7 +198,8 @@ mod tests {
     #[test]
     fn allowed_links_stay_and_others_are_named() {
         let html =
-            markdown("[a](https://example.org) <mail@example.org> [b](#c) [*d*](javascript:x) <http://e>", &|_| None);
+            markdown("[a](https://example.org) <mail@example.org> [b](#c) [*d*](javascript:x) <http://e>", &|_| None)
+                .into_string();
         for link in ["https://example.org\">a", "mailto:mail@example.org\">mail", "#c\">b", "http://e\">http"] {
             assert!(html.contains(&format!("<a href=\"{link}")), "{html}");
         }
@@ -207,7 +212,7 @@ mod tests {
 
     #[test]
     fn cells_are_aligned_by_classes() {
-        let html = markdown("| a | b | c |\n|:--|--:|:-:|\n| d | e | f |", &|_| None);
+        let html = markdown("| a | b | c |\n|:--|--:|:-:|\n| d | e | f |", &|_| None).into_string();
         let head = "<th>a</th><th class=\"right\">b</th><th class=\"center\">c</th>";
         assert!(
             html.contains(head)

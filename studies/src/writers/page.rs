@@ -1,26 +1,17 @@
-//! Pieces of the report's page: style, tables, standing texts.
+//! Pieces of every page: head, style, scripts and tables.
 
 mod sha256;
 #[cfg(test)]
 mod tests;
 
-use crate::figures::plot::svg::escape;
+use crate::figures::plot::colours::dark_rules;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde_json::Value as Json;
-use voussoir_core::limit::Status;
+use std::sync::LazyLock;
 
-/// Order of statuses in the summary.
-pub(crate) const STATUSES: [Status; 7] = [
-    Status::Collapse,
-    Status::Stands,
-    Status::Unbounded,
-    Status::NoEquilibrium,
-    Status::LimitPoint,
-    Status::Open,
-    Status::Stalled,
-];
-
-/// The page's style sheet.
-const STYLE: &str = include_str!("page/style.css");
+/// The page's style sheet: its own rules, then the colours of figures on dark screens.
+static STYLE: LazyLock<String> =
+    LazyLock::new(|| unix(include_str!("page/style.css")) + &dark_rules("figure svg", |_| true) + "\n");
 /// How the script draws a case.
 const DRAW: &str = include_str!("page/draw.js");
 /// What makes the page answer: sorting, filtering, values under the pointer, drawings that move.
@@ -28,15 +19,15 @@ const SCRIPT: &str = include_str!("page/script.js");
 /// What makes a page that is served follow its sliders.
 const LIVE: &str = include_str!("page/live.js");
 
-/// A whole page: its title for the browser, its body as HTML, and the cases that the script draws.
-pub(crate) fn whole(title: &str, body: &str, cases: &[Json]) -> String {
-    page((title, ""), body, cases, SCRIPT, &policy(&[SCRIPT], &[]))
+/// A whole page: its title for the browser, its body, and the cases that the script draws.
+pub(crate) fn whole(title: &str, body: &Markup, cases: &[Json]) -> String {
+    page((title, None), body, cases, SCRIPT, &policy(&[SCRIPT], &[]))
 }
 
 /// A page that asks its server for what it draws.
-pub(crate) fn served(title: &str, body: &str) -> String {
+pub(crate) fn served(title: &str, body: &Markup) -> String {
     // So that no browser asks the server for one.
-    page((title, "<link rel=\"icon\" href=\"data:,\">\n"), body, &[], LIVE, &served_policy())
+    page((title, Some("data:,")), body, &[], LIVE, &served_policy())
 }
 
 /// The Content-Security-Policy of a served page. The report that it opens is a `blob:`, which inherits this policy, so
@@ -48,7 +39,7 @@ pub(crate) fn served_policy() -> String {
 /// A policy that allows these scripts and the page's style sheet by their hashes, and nothing from elsewhere.
 fn policy(scripts: &[&str], more: &[&str]) -> String {
     let hashes: Vec<String> = scripts.iter().map(|script| sha256::source(&element(script))).collect();
-    let own = [format!("script-src {}", hashes.join(" ")), format!("style-src {}", sha256::source(&unix(STYLE)))];
+    let own = [format!("script-src {}", hashes.join(" ")), format!("style-src {}", sha256::source(&STYLE))];
     let fixed = ["base-uri 'none'", "form-action 'none'"];
     let all = own.iter().map(String::as_str).chain(more.iter().copied()).chain(fixed);
     ["default-src 'none'"].into_iter().chain(all).collect::<Vec<_>>().join("; ")
@@ -64,46 +55,63 @@ fn unix(text: &str) -> String {
     text.replace("\r\n", "\n")
 }
 
-fn page((title, icon): (&str, &str), body: &str, cases: &[Json], script: &str, policy: &str) -> String {
+fn page((title, icon): (&str, Option<&str>), body: &Markup, cases: &[Json], script: &str, policy: &str) -> String {
     // Nothing in the data can end the script's element.
     let data = Json::from_iter(cases.iter().cloned()).to_string().replace('<', "\\u003c");
-    format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta http-equiv=\"Content-Security-Policy\" \
-         content=\"{policy}\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n\
-         {icon}<style>{}</style>\n</head>\n<body>\n{body}<script type=\"application/json\" id=\"cases\">{data}</script>\n\
-         <script>{}</script>\n</body>\n</html>\n",
-        escape(title),
-        unix(STYLE),
-        element(script)
-    )
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta http-equiv="Content-Security-Policy" content=(policy);
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { (title) }
+                @if let Some(icon) = icon { link rel="icon" href=(icon); }
+                style { (PreEscaped(STYLE.as_str())) }
+            }
+            body {
+                (body)
+                script type="application/json" id="cases" { (PreEscaped(data)) }
+                script { (PreEscaped(element(script))) }
+            }
+        }
+    };
+    page.into_string() + "\n"
 }
 
-/// What the figures show.
-pub(crate) const MEANING: &str = "<p>The <em>thrust line</em> is where the resultant force crosses the joints: while it stays \
-within the blocks an arch without tension can stand, and where it touches a face a <em>hinge</em> can form. A hinge is drawn \
-where the blocks still touch; the joint opens on the other side. In walls a bar at each joint shows where its force acts, along \
-which line and how great it is. A <em>strut</em> is a set of forces that balances the load alone, without weight: a scene that \
-has one carries any load. In the second figure of a case blocks are displaced as the mechanism begins to move, exaggerated.</p>\n";
+/// Returns true if a cell is a number, with its unit or without.
+fn is_number(cell: &str) -> bool {
+    cell.split(' ').next().is_some_and(|word| word.parse::<f64>().is_ok()) && !cell.contains(',')
+}
 
-/// A table; cells that begin like a number are aligned right.
-pub(crate) fn table(header: &[String], rows: impl Iterator<Item = Vec<String>>) -> String {
-    let head: String = header.iter().map(|cell| format!("<th>{}</th>", escape(cell))).collect();
-    let body: String = rows
-        .map(|row| {
-            let cells: String = row
-                .iter()
-                .map(|cell| {
-                    let number = cell.split(' ').next().is_some_and(|word| word.parse::<f64>().is_ok());
-                    let class = match cell.as_str() {
-                        "failed" => " class=\"bad\"",
-                        _ if number && !cell.contains(',') => " class=\"number\"",
-                        _ => "",
-                    };
-                    format!("<td{class}>{}</td>", escape(cell))
-                })
-                .collect();
-            format!("<tr>{cells}</tr>\n")
-        })
-        .collect();
-    format!("<div class=\"wide\"><table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{body}</tbody></table></div>\n")
+/// A table; columns of numbers are aligned right.
+pub(crate) fn table(header: &[String], rows: impl Iterator<Item = Vec<String>>) -> Markup {
+    let rows: Vec<Vec<String>> = rows.collect();
+    let number = |column: usize| {
+        let mut filled =
+            rows.iter().filter_map(|row| row.get(column)).filter(|cell| !["", "–"].contains(&cell.as_str()));
+        filled.clone().next().is_some() && filled.all(|cell| is_number(cell))
+    };
+    let numbers: Vec<bool> = (0..header.len()).map(number).collect();
+    let class = |column: usize, cell: &str| match cell {
+        "failed" => Some("bad"),
+        _ => numbers.get(column).is_some_and(|number| *number).then_some("number"),
+    };
+    html! {
+        div class="wide" {
+            table {
+                thead { tr { @for cell in header { th { (cell) } } } }
+                tbody {
+                    @for row in &rows {
+                        tr { @for (column, cell) in row.iter().enumerate() { td class=[class(column, cell)] { (cell) } } }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A drawing with its caption.
+pub(crate) fn figure(svg: &str, caption: &str) -> Markup {
+    html! { figure { (PreEscaped(svg)) figcaption { (caption) } } }
 }

@@ -4,11 +4,10 @@ use super::assumptions::{assumptions, sources};
 use crate::config::dotted_key::join;
 use crate::config::key_meaning::KeyMeaning;
 use crate::figures::format::{format_quantity, format_value};
-use crate::figures::plot::svg::escape;
 use crate::study::{Case, Study, meaning_in};
+use maud::{Markup, html};
 use serde_json::Value as Json;
 use std::collections::HashSet;
-use std::fmt::Write;
 
 /// Longest list of numbers that is written out.
 const LISTED: usize = 8;
@@ -24,35 +23,37 @@ const SECTIONS: [(&str, &str); 7] = [
     ("Solver", "solver"),
 ];
 
-/// The calculation record of a study, as HTML: what its first case was given, defaults included, in SI units, then
-/// what varies from case to case.
-pub fn record(study: &Study) -> String {
-    let Some(case) = study.case(0) else { return String::new() };
-    let case = case.as_ref();
-    let mut text = String::from("<div class=\"record\">\n");
-    for (heading, table) in SECTIONS {
-        let value = &case.resolved[table];
-        if value.as_object().is_some_and(|map| map.is_empty()) || value.is_null() {
-            continue;
+/// The calculation record of a study: what its first case was given, defaults included, in SI units, then what varies
+/// from case to case.
+pub fn record(study: &Study) -> Markup {
+    html! {
+        @if let Some(case) = study.case(0) {
+            @let case = case.as_ref();
+            div class="record" {
+                @for (heading, table) in SECTIONS {
+                    @let value = &case.resolved[table];
+                    @if !value.is_null() && value.as_object().is_none_or(|map| !map.is_empty()) {
+                        (section(heading, &rows_of(table, value, case)))
+                    }
+                }
+                (section("What varies", &varied(study)))
+                (section("Assumptions", &assumptions(case)))
+                (section("Sources", &sources(case)))
+            }
         }
-        text += &section(heading, &rows_of(table, value, case));
     }
-    text += &section("What varies", &varied(study));
-    text += &section("Assumptions", &assumptions(case));
-    text += &section("Sources", &sources(case));
-    text + "</div>\n"
 }
 
-/// One table of words and values under a heading; nothing where there are none.
-pub fn section(heading: &str, rows: &[(String, String)]) -> String {
-    if rows.is_empty() {
-        return String::new();
+/// One table of words and values under a heading; nothing if it has no rows.
+pub fn section(heading: &str, rows: &[(String, String)]) -> Markup {
+    html! {
+        @if !rows.is_empty() {
+            section {
+                h4 { (heading) }
+                table class="inputs" { @for (words, value) in rows { tr { th scope="row" { (words) } td { (value) } } } }
+            }
+        }
     }
-    let mut text = format!("<section><h4>{heading}</h4><table class=\"inputs\">\n");
-    for (words, value) in rows {
-        let _ = writeln!(text, "<tr><th scope=\"row\">{}</th><td>{}</td></tr>", escape(words), escape(value));
-    }
-    text + "</table></section>\n"
 }
 
 fn rows_of(table: &str, value: &Json, case: &Case) -> Vec<(String, String)> {

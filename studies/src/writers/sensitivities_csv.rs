@@ -9,6 +9,7 @@ use crate::config::key_meaning::KeyMeaning;
 use crate::figures::format::{format_number, format_short};
 use crate::results::{CaseResult, SensitivityEntry};
 use crate::study::{Study, meaning_in};
+use maud::{Markup, html};
 use serde_json::Value as Json;
 use std::io::{self, Write};
 
@@ -77,11 +78,11 @@ fn row(Entry { case, own: entry, meaning }: &Entry) -> Vec<String> {
     ]
 }
 
-/// The report's table; empty where no case has any.
-pub(super) fn table(study: &StudyOutput) -> String {
+/// The report's table; empty if no case has derivatives.
+pub(super) fn table(study: &StudyOutput) -> Markup {
     let count = study.results.cases.iter().map(|case| case.sensitivities.len()).sum::<usize>();
     if count == 0 {
-        return String::new();
+        return html! {};
     }
     let header =
         ["id", "number", "value", "per unit, falling", "per unit, growing", "% of the factor per 1 % of it", "", "key"];
@@ -111,16 +112,15 @@ pub(super) fn table(study: &StudyOutput) -> String {
             entry.key.clone(),
         ]
     });
-    let more = if count > ROWS {
-        format!("<p>The first {ROWS} of {count} rows; all are in sensitivities.csv.</p>\n")
-    } else {
-        String::new()
-    };
-    format!(
-        "<h2>Sensitivities</h2>\n<p>How the load factor changes with each number, from the optimal field and mechanism: its \
-         derivatives where the number falls and where it grows. Numbers that it does not depend on are left out.</p>\n{}{more}",
-        page::table(&header.map(String::from), rows)
-    )
+    html! {
+        h2 { "Sensitivities" }
+        p {
+            "How the load factor changes with each number, from the optimal field and mechanism: its derivatives where the number \
+             falls and where it grows. Numbers that it does not depend on are left out."
+        }
+        (page::table(&header.map(String::from), rows))
+        @if count > ROWS { p { "The first " (ROWS) " of " (count) " rows; all are in sensitivities.csv." } }
+    }
 }
 
 register!(

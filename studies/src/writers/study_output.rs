@@ -57,7 +57,8 @@ impl<'a> StudyOutput<'a> {
         };
         let mut keys = study.swept_keys();
         keys.add_keys_of(cases.iter().map(Cow::as_ref));
-        let swept = results.cases.first().map(|case| &case.label.parameters);
+        // Cases that a kind makes have more keys than the other cases.
+        let swept = results.cases.iter().map(|case| &case.label.parameters).max_by_key(|own| own.len());
         StudyOutput {
             name: &study.name,
             results,

@@ -5,6 +5,7 @@
 
 use std::fs;
 use std::path::Path;
+use voussoir::config::source_line::with_source;
 use voussoir::kinds::read_study;
 
 fn message_of(path: &Path) -> String {
@@ -17,7 +18,10 @@ fn message_of(path: &Path) -> String {
         .collect();
     match read_study(&text, file, &sets) {
         Ok(_) => "no mistake was found\n".into(),
-        Err(wrong) => wrong.mistakes().iter().map(|mistake| format!("{mistake}\n")).collect(),
+        Err(wrong) => {
+            let text_of = |name: &str| (name == file).then(|| text.clone());
+            wrong.mistakes().iter().map(|mistake| with_source(mistake, &text_of, false) + "\n").collect()
+        }
     }
 }
 

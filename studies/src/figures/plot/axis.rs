@@ -2,6 +2,9 @@
 
 use super::number::{round_values, tick_label};
 
+/// An axis is logarithmic if its greatest value is this many times its least.
+pub const WIDE: f64 = 50.0;
+
 /// A straight axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Axis {
@@ -44,6 +47,12 @@ impl Scale {
     /// Place of a value \[px\].
     pub fn at(&self, value: f64) -> f64 {
         self.axis.at(if self.log { value.log10() } else { value })
+    }
+
+    /// Distance of a place from the nearer end of the axis \[px\].
+    pub fn from_ends(&self, place: f64) -> f64 {
+        let [from, to] = self.axis.places;
+        (place - from).abs().min((place - to).abs())
     }
 
     /// Values with a line and a number.

@@ -12,7 +12,7 @@ const PLOT: f64 = 440.0;
 const ROW: f64 = 22.0;
 const LEFT: f64 = 84.0;
 const RIGHT: f64 = WIDTH - 22.0;
-/// Where the legend begins \[px\].
+/// Left end of the legend \[px\].
 const MARGIN: f64 = 24.0;
 /// Dashes of lines, so that they are told apart in grey.
 const DASHES: [&str; 5] = ["", "9 4", "2.5 3", "12 4 2.5 4", "6 3"];
@@ -69,7 +69,7 @@ pub fn chart(
     canvas.finish([WIDTH, height], title, alternative.trim_end())
 }
 
-/// Each line with its first, greatest and last value: what a reader who does not see the chart needs.
+/// Each line with its first, greatest and last value.
 fn described_lines(series: &[Series]) -> String {
     let line = |own: &Series| {
         let at = |point: &(f64, f64)| format!("{} at {}", format_short(point.1, 4), format_short(point.0, 4));

@@ -3,7 +3,7 @@
 
 use std::fmt::Write;
 
-/// Background.
+/// Colour of the background.
 pub const PAPER: &str = "#ffffff";
 /// Ordinary text and axes.
 pub const INK: &str = "#222222";
@@ -29,7 +29,7 @@ pub fn line(index: usize) -> &'static str {
 }
 
 /// Every colour of a figure with the one that replaces it on a dark page.
-pub const DARK: [(&str, &str); 35] = [
+pub const DARK: [(&str, &str); 36] = [
     (PAPER, "#16181b"),
     (INK, "#e6e6e6"),
     (QUIET, "#b4b4b4"),
@@ -58,6 +58,7 @@ pub const DARK: [(&str, &str); 35] = [
     ("#f4eede", "#35322a"),
     ("#b9ad93", "#7d735c"),
     ("#dce9f1", "#1f3a4d"),
+    ("#c9e8dd", "#1f4a3c"),
     ("#e0762e", "#ff9a56"),
     ("#a05a00", "#e3a24d"),
     ("#6b6150", "#b8ab8c"),

@@ -1,6 +1,6 @@
 //! Numbers in figures: how they are written, and steps of 1, 2 or 5 times a power of ten.
 
-/// `x` with so many significant digits; powers of ten only below 1e-4 and from 1e7.
+/// `x` with this number of significant digits; powers of ten only below 1e-4 and from 1e7.
 pub fn format_number(x: f64, digits: usize) -> String {
     if x == 0.0 || !x.is_finite() {
         return format!("{x}");
@@ -13,7 +13,7 @@ pub fn format_number(x: f64, digits: usize) -> String {
     format!("{:.*}", (digits as i32 - 1 - exponent).max(0) as usize, x)
 }
 
-/// `x` in the shortest form that has at most so many significant digits.
+/// `x` in the shortest form that has at most this number of significant digits.
 pub fn format_short(x: f64, digits: usize) -> String {
     let text = format_number(x, digits);
     let (decimals, power) = text.find('e').map_or((text.as_str(), ""), |at| text.split_at(at));

@@ -1,4 +1,4 @@
-//! The one canvas of all figures: it writes SVG elements, escapes text and knows nothing of what is drawn.
+//! The canvas of all figures. It writes SVG elements and escapes text.
 
 use super::colours::{INK, PAPER, dark_rules, line};
 use super::number::format_short;
@@ -274,7 +274,7 @@ impl Canvas {
         14.0 + 23.0 * lines.len() as f64
     }
 
-    /// The whole drawing on paper, with its name and what it shows for readers who do not see it.
+    /// The whole drawing with a background, its title and a description for readers who do not see it.
     pub fn finish(self, [width, height]: [f64; 2], title: &str, description: &str) -> String {
         let mut whole = Canvas::default();
         let (width, height) = (format!("{width:.0}"), format!("{height:.0}"));
@@ -304,19 +304,19 @@ pub fn hatched(id: &str) -> String {
     format!("url(#{id})")
 }
 
-/// The drawing as a file of its own: with a style sheet for dark screens.
+/// The drawing as a separate file, with a style sheet for dark screens.
 pub fn as_file(svg: &str) -> String {
     let rules = dark_rules("svg", |colour| svg.contains(&format!("=\"{colour}\"")));
     svg.replacen("<title>", &format!("<style>{rules}</style>\n<title>"), 1)
 }
 
-/// The drawing with ids of its own, since ids are shared by all drawings of a page.
+/// The drawing with a prefix before all ids, since the drawings of a page share their ids.
 pub fn own_ids(svg: &str, prefix: &str) -> String {
     let prefix = escape(prefix);
     svg.replace(" id=\"", &format!(" id=\"{prefix}-")).replace("=\"url(#", &format!("=\"url(#{prefix}-"))
 }
 
-/// The boxes of all texts that are not turned, with their words: what a test of a layout needs.
+/// The boxes of all texts that are not turned, with their words.
 #[cfg(test)]
 pub(crate) fn text_boxes(svg: &str) -> Vec<(String, Area)> {
     let attribute = |tag: &str, name: &str| -> String {

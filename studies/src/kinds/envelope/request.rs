@@ -1,5 +1,6 @@
 //! The request of an envelope: the table of its study, and the runs of a case.
 
+use crate::loads::VehicleAxles;
 use crate::study::Case;
 use serde_json::Value as Json;
 use voussoir_core::plugin::Keys;
@@ -80,12 +81,39 @@ impl Request {
         let directions = self.directions.unwrap_or(Directions::Both).words();
         let each = |vehicle: &String| {
             let run = |direction: &&str| Run { vehicle: Some(vehicle.clone()), direction: Some(direction.to_string()) };
-            directions.iter().map(run).collect::<Vec<_>>()
+            let once = directions.len() > 1 && self.is_same_both_ways(case, vehicle);
+            directions.iter().take(if once { 1 } else { 2 }).map(run).collect::<Vec<_>>()
         };
         vehicles.iter().flat_map(each).collect()
     }
 
-    /// Returns the values of a run at a position, by key.
+    /// Returns true if a vehicle that stands backward loads the bridge as one that stands forward at another place of the range:
+    /// it is symmetric, and no axle of it is on the bridge at those places of a vehicle that stands backward which one that
+    /// stands forward does not reach.
+    fn is_same_both_ways(&self, case: &Case, vehicle: &str) -> bool {
+        // Sleepers reach beyond the axles.
+        if case.resolved.at(&self.beside("track")).is_some_and(|track| !track.is_null()) {
+            return false;
+        }
+        let table = case.resolved.get("vehicles").and_then(|all| all.get(vehicle));
+        let Some(vehicle) = table.and_then(|table| serde_json::from_value::<VehicleAxles>(table.clone()).ok()) else {
+            return false;
+        };
+        let Some(centre) = vehicle.centre_of_symmetry() else { return false };
+        let ends = vehicle.axles.iter().flat_map(|axle| [axle.at - axle.length / 2.0, axle.at + axle.length / 2.0]);
+        let (first, last) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+        let joints = case.assembly.extrados().into_iter().flat_map(|chord| chord.ends.map(|end| end.x));
+        let (left, right) = joints.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+        // Backward at x is forward at x - 2 centre.
+        let (from, to) = (self.from, self.to);
+        match centre {
+            0.0 => true,
+            centre if centre > 0.0 => from + last < left,
+            _ => to + first > right,
+        }
+    }
+
+    /// The values of a run at a place, by key.
     pub fn values(&self, run: &Run, value: f64) -> Vec<(String, Json)> {
         let mut values = vec![(self.parameter.clone(), Json::from(value))];
         values.extend(run.vehicle.iter().map(|vehicle| (self.beside("vehicle"), vehicle.clone().into())));

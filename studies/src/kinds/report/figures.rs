@@ -9,6 +9,7 @@ use crate::figures::format::format_short;
 use crate::figures::plot::chart::chart;
 use crate::figures::plot::series::{ChartStyle, Marker, Series, Spot};
 use crate::writers::page;
+use maud::Markup;
 use std::collections::BTreeMap;
 use voussoir_core::plugin::Keys;
 
@@ -154,8 +155,8 @@ impl Chart {
 }
 
 impl Table {
-    /// Returns the table as HTML.
-    pub fn html(&self, all: &BTreeMap<String, Selection>, parts: &Parts) -> String {
+    /// The table as HTML.
+    pub fn html(&self, all: &BTreeMap<String, Selection>, parts: &Parts) -> Markup {
         let columns: Vec<(String, Line)> = self
             .series
             .iter()

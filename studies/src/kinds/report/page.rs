@@ -5,10 +5,11 @@ use super::contents::Contents;
 use super::figures::Image;
 use super::parts::Parts;
 use crate::figures::format::format_seconds;
-use crate::figures::plot::svg::{escape, own_ids};
+use crate::figures::plot::svg::own_ids;
 use crate::kinds::kind::{Part, Piece};
 use crate::writers::markdown::markdown;
 use crate::writers::page;
+use maud::{Markup, PreEscaped, html};
 
 /// Returns the page as HTML.
 pub fn results_page(
@@ -23,45 +24,49 @@ pub fn results_page(
     let text = |words: &str| {
         markdown(words, &|place| {
             drawn.set(drawn.get() + 1);
-            image(contents, parts, place).map(|svg| own_ids(&svg, &format!("drawn-{}", drawn.get())))
+            image(contents, parts, place).map(|image| own_ids(&image, &format!("drawn-{}", drawn.get())))
         })
     };
-    let mut body = format!("<h1>{}</h1>\n{}", escape(title), text(&contents.introduction));
-    body += &claims(answers, &text);
-    for (place, part) in parts.list().iter().enumerate() {
-        let words = contents.text.get(place).map_or("", |words| words.trim());
-        body += &format!("<section id=\"{}\">\n{}", escape(&part.folder), heading(words, &part.folder));
-        body += &text(words);
-        body += &answered(parts, place, part);
-        body += "</section>\n";
-    }
-    body += &contents.text.get(parts.list().len()).map(|words| text(words)).unwrap_or_default();
-    body += "<h2>Time</h2>\n<p>Time of each study's cases, summed; studies with several jobs take less.</p>\n";
+    let last = contents.text.get(parts.list().len());
+    let body = html! {
+        h1 { (title) }
+        (text(&contents.introduction))
+        (claims(answers, &text))
+        @for (place, part) in parts.list().iter().enumerate() {
+            @let words = contents.text.get(place).map_or("", |words| words.trim());
+            section id=(part.folder) {
+                (heading(words, &part.folder))
+                (text(words))
+                (answered(parts, place, part))
+            }
+        }
+        @if let Some(words) = last { (text(words)) }
+        h2 { "Time" }
+        p { "Time of each study's cases, summed; studies with several jobs take less." }
+        (times(parts))
+        footer {
+            "Written by Voussoir " (version) @if let Some(date) = date { ", " (date) }
+            ". Each study has a folder beside this page with its results, tables and figures."
+        }
+    };
+    page::whole(title, &body, &[])
+}
+
+fn times(parts: &Parts) -> Markup {
     let header = ["study", "cases", "time"].map(String::from);
     let rows = parts.list().iter().enumerate().map(|(place, part)| {
         vec![part.folder.clone(), parts.cases(place).len().to_string(), format_seconds(parts.seconds(place))]
     });
-    body += &page::table(&header, rows);
-    let date = date.map_or(String::new(), |date| format!(", {}", escape(date)));
-    body += &format!(
-        "<footer>Written by Voussoir {}{date}. Each study has a folder beside this page with its results, tables and \
-         figures.</footer>\n",
-        escape(version)
-    );
-    page::whole(title, &body, &[])
+    page::table(&header, rows)
 }
 
-/// Returns the heading of a part: the heading in its text, otherwise the name of its study; empty if the part has no content
-/// below it except its results.
-fn heading(words: &str, study: &str) -> String {
-    if words.is_empty() || words.starts_with('#') { String::new() } else { format!("<h2>{}</h2>\n", escape(study)) }
+/// The heading of a part: its text's own, or else the name of its study. A part without a text has none.
+fn heading(words: &str, study: &str) -> Markup {
+    html! { @if !words.is_empty() && !words.starts_with('#') { h2 { (study) } } }
 }
 
-/// Returns the claims with their verdicts first; the tests are in a section that opens.
-fn claims(answers: &[Answer], text: &dyn Fn(&str) -> String) -> String {
-    if answers.is_empty() {
-        return String::new();
-    }
+/// The claims with their verdicts; the tests of each can be opened.
+fn claims(answers: &[Answer], text: &dyn Fn(&str) -> Markup) -> Markup {
     let count = |verdict: Verdict| answers.iter().filter(|answer| answer.verdict == verdict).count();
     let all = [Verdict::Reproduced, Verdict::Refuted, Verdict::DependsOn, Verdict::Undecided];
     let words = |verdict: &Verdict| match verdict {
@@ -70,30 +75,25 @@ fn claims(answers: &[Answer], text: &dyn Fn(&str) -> String) -> String {
     };
     let some = all.iter().filter(|verdict| count(**verdict) > 0);
     let counted: Vec<String> = some.map(|verdict| format!("{} {}", count(*verdict), words(verdict))).collect();
-    let mut body = format!(
-        "<h2>Claims</h2>\n<p class=\"summary\">Of {} claims <strong>{}</strong>. Every verdict is computed from the numbers \
-         below it.</p>\n",
-        answers.len(),
-        escape(&counted.join(", "))
-    );
-    for answer in answers {
-        body += &claim(answer, text);
+    html! {
+        @if !answers.is_empty() {
+            h2 { "Claims" }
+            p class="summary" {
+                "Of " (answers.len()) " claims " strong { (counted.join(", ")) }
+                ". Every verdict is computed from the numbers below it."
+            }
+            @for answer in answers { (claim(answer, text)) }
+        }
     }
-    body
 }
 
-fn claim(answer: &Answer, text: &dyn Fn(&str) -> String) -> String {
+fn claim(answer: &Answer, text: &dyn Fn(&str) -> Markup) -> Markup {
     let claim = answer.claim;
-    let source = if claim.source.is_empty() {
-        String::new()
-    } else {
-        format!(" <span class=\"quiet\">({})</span>", escape(&claim.source))
-    };
     let class = match answer.verdict {
-        Verdict::Reproduced => "yes",
-        Verdict::Refuted => "no",
-        Verdict::DependsOn => "partly",
-        Verdict::Undecided => "bad",
+        Verdict::Reproduced => "verdict yes",
+        Verdict::Refuted => "verdict no",
+        Verdict::DependsOn => "verdict partly",
+        Verdict::Undecided => "verdict bad",
     };
     let header = ["", "number", "", "condition"].map(String::from);
     let rows = claim.tests.iter().zip(&answer.tests).map(|(test, tested)| {
@@ -114,46 +114,44 @@ fn claim(answer: &Answer, text: &dyn Fn(&str) -> String) -> String {
             format!("{} with value = {}", test.holds, test.value),
         ]
     });
-    format!(
-        "<details class=\"claim\" id=\"claim-{}\"><summary><span class=\"verdict {class}\">{}</span> {}. {}{source}</summary>\n{}{}</details>\n",
-        escape(&claim.id),
-        escape(&answer.words()),
-        escape(&claim.id),
-        escape(&claim.claim),
-        page::table(&header, rows),
-        text(&claim.remark)
-    )
+    html! {
+        details class="claim" id={ "claim-" (claim.id) } {
+            summary {
+                span class=(class) { (answer.words()) } " " (claim.id) ". " (claim.claim)
+                @if !claim.source.is_empty() { " " span class="quiet" { "(" (claim.source) ")" } }
+            }
+            (page::table(&header, rows))
+            (text(&claim.remark))
+        }
+    }
 }
 
-/// Returns the input and the results of a part.
-fn answered(parts: &Parts, place: usize, part: &Part) -> String {
+/// The cases of a part, how they ended and the inputs of its study.
+fn answered(parts: &Parts, place: usize, part: &Part) -> Markup {
     let statuses = parts.statuses(place);
     let words: Vec<String> =
         statuses.iter().map(|(status, count)| format!("{count} {}", status.replace('_', " "))).collect();
     let failed = parts.uncertified(place);
-    let proof = match failed {
-        0 => "every answer certified".to_string(),
-        count => format!("<strong class=\"bad\">{count} not certified</strong>"),
-    };
-    let mut body = format!(
-        "<p class=\"quiet\"><code>{}</code>, {} cases: {}; {proof}. <a href=\"{}/report.html\">All cases of this study</a>.</p>\n",
-        escape(&part.folder),
-        parts.cases(place).len(),
-        escape(&words.join(", ")),
-        escape(&part.folder).replace(' ', "%20")
-    );
-    if let Some(record) = parts.piece(&part.folder, Piece::Record) {
-        body += &format!("<details><summary>Inputs</summary>\n{record}</details>\n");
+    html! {
+        p class="quiet" {
+            code { (part.folder) } ", " (parts.cases(place).len()) " cases: " (words.join(", ")) "; "
+            @if failed == 0 { "every answer certified" } @else { strong class="bad" { (failed) " not certified" } }
+            ". " a href={ (part.folder.replace(' ', "%20")) "/report.html" } { "All cases of this study" } "."
+        }
+        @if let Some(record) = parts.piece(&part.folder, Piece::Record) {
+            details { summary { "Inputs" } (PreEscaped(record)) }
+        }
     }
-    body
 }
 
-/// Returns the content of an image.
+/// The drawing or table at the place of an image.
 fn image(contents: &Contents, parts: &Parts, place: &str) -> Option<String> {
     match Image::parse(place)? {
-        Image::Table(name) => {
-            contents.tables.iter().find(|table| table.name == name).map(|table| table.html(&contents.series, parts))
-        }
+        Image::Table(name) => contents
+            .tables
+            .iter()
+            .find(|table| table.name == name)
+            .map(|table| table.html(&contents.series, parts).into_string()),
         _ if !parts.figures => Some(String::new()),
         Image::Chart(name) => {
             contents.charts.iter().find(|chart| chart.name == name).map(|chart| chart.svg(&contents.series, parts))

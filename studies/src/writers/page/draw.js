@@ -38,10 +38,9 @@ const frame = own => {
   const margin = 0.08 * Math.max(box[2] - box[0], box[3] - box[1]);
   return [box[0] - margin, box[1] - margin, box[2] - box[0] + 2 * margin, box[3] - box[1] + 2 * margin].map(x => x.toFixed(3)).join(' ');
 };
-// The picture of a case with each body moved by its twist; `line` is a thrust line, `joints` what presses there.
-const draw = (svg, own, moved, line, joints) => {
+// The blocks of a case, each moved by its twist, in metres; `line` is a thrust line, `joints` what presses there.
+const paint = (svg, own, moved, line, joints) => {
   svg.replaceChildren();
-  svg.setAttribute('viewBox', frame(own));
   own.bodies.forEach((points, body) => {
     if (moved && own.free[body]) make('polygon', { class: 'ghost', points: text(placed(own, body, [0, 0, 0])) }, svg);
   });
@@ -50,6 +49,11 @@ const draw = (svg, own, moved, line, joints) => {
   });
   for (const piece of joints || []) make(piece.open ? 'polyline' : 'polygon', { class: piece.open ? 'open' : 'stress', points: text(piece.points) }, svg);
   for (const piece of line || []) make('polyline', { class: 'thrust', points: text(piece) }, svg);
+};
+// The same as a picture of its own.
+const draw = (svg, own, moved, line, joints) => {
+  svg.setAttribute('viewBox', frame(own));
+  paint(svg, own, moved, line, joints);
 };
 const pieces = line => {
   const out = [[]];

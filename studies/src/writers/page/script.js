@@ -47,43 +47,91 @@ for (const table of document.querySelectorAll('.wide > table')) {
   }
 }
 
-for (const place of document.querySelectorAll('.moving')) {
-  const own = cases.get(+place.dataset.case);
-  if (!own) continue;
-  const svg = make('svg', { role: 'img', 'aria-label': 'moving drawing' }, place);
-  const label = make('label', {}, place), path = own.states && own.states.length > 1;
-  label.append(path ? 'State ' : 'Motion ');
+// Scenes that move: the blocks, the thrust line and the hinges of the drawing make room for those at the slider's place; loads,
+// supports and fill stay.
+for (const place of document.querySelectorAll('.scene[data-case]')) {
+  const own = cases.get(+place.dataset.case), room = place.querySelector('.metres');
+  const path = own && own.states && own.states.length > 1;
+  if (!room || !path && !(own && own.motion)) continue;
+  place.classList.add('moves');
+  const tools = make('div', { class: 'tools' });
+  place.querySelector('svg').after(tools);
+  const play = make('button', { type: 'button' }, tools);
+  const label = make('label', {}, tools);
+  label.append(path ? 'state ' : 'motion ');
   const slider = make('input', { type: 'range', min: 0, max: path ? own.states.length - 1 : 100, value: path ? own.peak || 0 : 0 }, label);
-  const said = make('output', {}, label);
-  const magnify = make('label', {}, place);
+  const magnify = make('label', {}, tools);
   let factor;
   if (path) {
-    magnify.append(' displacements × ');
+    magnify.append('displacements × ');
     factor = make('input', { type: 'number', min: 1, value: own.magnify || 1 }, magnify);
   }
-  const chart = place.closest('details') && place.closest('details').querySelector('svg .plot');
-  let cursor;
+  const said = make('output', {}, tools);
+  const chart = place.closest('.case').querySelector('svg .plot');
+  let cursor, running = null;
+  const hinges = moved => {
+    for (const [joint, x, y] of own.hinges || []) {
+      const [px, py] = follow(own, joint, moved, [x, y]);
+      make('circle', { class: 'hinge', cx: px, cy: -py, r: 5 / +room.dataset.scale }, room);
+    }
+  };
   const show = () => {
+    const atRest = !path && +slider.value === 0;
+    place.classList.toggle('moved', !atRest);
     if (!path) {
-      draw(svg, own, twists(own, slider.value / 100), slider.value > 0 ? [] : pieces(own.thrust));
-      said.textContent = slider.value > 0 ? ' moving' : ' at rest, with the thrust line';
+      const moved = twists(own, slider.value / 100);
+      if (atRest) room.replaceChildren();
+      else {
+        paint(room, own, moved, []);
+        hinges(moved);
+      }
+      said.textContent = atRest ? 'at rest' : 'displacements exaggerated';
       return;
     }
     const state = own.states[slider.value], times = Math.max(1, +factor.value || 1);
     const moved = own.bodies.map((_, body) => state.bodies[body].map(u => u * times));
     const line = state.thrust.map((point, joint) => point && follow(own, joint, moved, point));
-    draw(svg, own, moved, pieces(line), pressures(own, state, moved));
-    said.textContent = ` ${state.stage}, λ = ${short(state.factor)}, ${short(state.displacement * 1e3)} mm`;
+    paint(room, own, moved, pieces(line), pressures(own, state, moved));
+    said.textContent = `${state.stage}, λ = ${short(state.factor)}, ${short(state.displacement * 1e3)} mm`;
     if (chart) {
-      if (!cursor) cursor = make('circle', { r: 6, fill: 'none', stroke: '#c8102e', 'stroke-width': 3, class: 'cursor' }, chart);
+      if (!cursor) cursor = make('circle', { r: 6, class: 'cursor' }, chart);
       const [x, y] = [axis(chart.dataset.x), axis(chart.dataset.y)];
       cursor.setAttribute('cx', x.place(state.displacement * 1e3));
       cursor.setAttribute('cy', y.place(state.factor));
       cursor.setAttribute('visibility', state.live ? 'visible' : 'hidden');
     }
   };
-  slider.addEventListener('input', show);
+  const stop = () => {
+    cancelAnimationFrame(running);
+    running = null;
+    play.textContent = '▶ play';
+  };
+  // Once through all states of a path; there and back for a mechanism.
+  const start = () => {
+    let begun = null;
+    play.textContent = '❚❚ pause';
+    const step = now => {
+      begun = begun === null ? now : begun;
+      const share = Math.min(1, (now - begun) / (path ? 6000 : 4000));
+      slider.value = Math.round(slider.max * (path ? share : 1 - Math.abs(1 - 2 * share)));
+      show();
+      if (share < 1) running = requestAnimationFrame(step); else stop();
+    };
+    running = requestAnimationFrame(step);
+  };
+  play.addEventListener('click', () => running === null ? start() : stop());
+  slider.addEventListener('input', () => {
+    stop();
+    show();
+  });
   if (factor) factor.addEventListener('input', show);
+  // On paper the scene is at rest, with the mechanism beside it.
+  addEventListener('beforeprint', () => {
+    stop();
+    if (!path) slider.value = 0;
+    show();
+  });
+  stop();
   show();
 }
 
@@ -105,10 +153,12 @@ for (const plot of document.querySelectorAll('svg .plot')) {
     });
   }
   if (!points.length) continue;
+  // The name becomes a label, so that no second tip hides the values.
+  const name = svg.querySelector('title');
   svg.setAttribute('tabindex', '0');
-  svg.setAttribute('role', 'img');
-  svg.setAttribute('aria-label', 'chart; arrow keys step from point to point');
-  const ring = make('circle', { r: 7, fill: 'none', stroke: '#000', 'stroke-width': 1.5, visibility: 'hidden' }, plot);
+  svg.setAttribute('aria-label', `${name.textContent}; arrow keys step from point to point`);
+  name.remove();
+  const ring = make('circle', { r: 7, class: 'ring', visibility: 'hidden' }, plot);
   let now = 0;
   const show = (point, left, top) => {
     ring.setAttribute('cx', point.px);
@@ -119,7 +169,7 @@ for (const plot of document.querySelectorAll('svg .plot')) {
       tip.append(`, case ${point.id}`);
       const own = cases.get(point.id);
       if (own) {
-        draw(make('svg', { class: 'moving' }, make('div', { class: 'moving', 'data-drawn': '' }, tip)), own, own.motion && twists(own, 0.6), own.motion ? [] : pieces(own.thrust));
+        draw(make('svg', {}, tip), own, own.motion && twists(own, 0.6), own.motion ? [] : pieces(own.thrust));
       }
     }
     tip.hidden = false;
@@ -149,10 +199,10 @@ for (const plot of document.querySelectorAll('svg .plot')) {
   });
 }
 
-// On paper everything is open.
+// On paper everything is open but the pictures of cases: those that the reader has opened are printed.
 let closed = [];
 addEventListener('beforeprint', () => {
-  closed = [...document.querySelectorAll('details:not([open])')];
+  closed = [...document.querySelectorAll('details:not([open])')].filter(one => !one.querySelector('.case'));
   closed.forEach(one => { one.open = true; });
 });
 addEventListener('afterprint', () => closed.forEach(one => { one.open = false; }));
