@@ -1,11 +1,11 @@
-"""How masonry made of blocks stands and collapses.
+"""Stability and collapse of masonry made of blocks.
 
     import voussoir
     results = voussoir.run("my_bridge.toml")        # or a dictionary with the same keys, or the text of a file
     results[0].load_factor
 
-A study is said once: `run` answers all its cases with everything that proves them, `sweep` answers many cases as columns,
-on this machine or on a cluster. `law` makes a class a joint law.
+`run` solves all cases of a study and returns the results with their proofs. `sweep` solves many cases, on this machine or
+on a cluster, and returns columns. `law` registers a class as a joint law.
 """
 
 from __future__ import annotations
@@ -35,13 +35,17 @@ def run(
     jobs: int = 1,
     progress: _Any = None,
 ) -> Results:
-    """Answers the cases of a study of any kind.
+    """Solves the cases of a study of any kind.
 
-    `study` is a dictionary with the keys of a study file, the path of such a file, or its text. `set` overrides keys, as
-    `{"joints.dry.friction": 0.5}`; `cases` are the ids to answer; `jobs` cases are worked on side by side. `progress` is
-    called with a dictionary: `{"event": "begins", "cases": 38}`, then `"answered"` with case, status and load_factor, and
-    `"path"` with case, stage, factor and states. If it returns False the run ends and what is answered is returned; an
-    exception of it, or Ctrl-C, ends the run and is raised. Raises StudyError with every mistake of the study.
+    `study` is a dictionary with the keys of a study file, the path of such a file, or its text. `set` overrides keys, for
+    example `{"joints.dry.friction": 0.5}`. `cases` are the ids of the cases to solve. `jobs` is the number of cases that
+    are solved in parallel.
+
+    `progress` is called with a dictionary: `{"event": "begins", "cases": 38}`, then `"answered"` with case, status and
+    load_factor, and `"path"` with case, stage, factor and states. If it returns False, the run ends and returns the solved
+    cases. If it raises an exception, or you press Ctrl-C, the run ends with this exception.
+
+    Raises StudyError with all mistakes of the study.
     """
     from ._study import source
 
@@ -50,24 +54,24 @@ def run(
 
 
 def check(study: Study, *, set: dict[str, _Any] | None = None) -> dict[str, _Any]:
-    """Name, number of cases (`count`), `notes` and the `plan` of a study without mistakes; else StudyError."""
+    """Returns name, number of cases (`count`), `notes` and `plan` of a study. Raises StudyError if it has mistakes."""
     from ._study import source
 
     return _voussoir.check(source(study, set))
 
 
 def verify(folder: str | _os.PathLike[str], *, jobs: int = 1) -> list[str]:
-    """What is wrong with a results folder that `voussoir run` or `Results.write` has written; nothing if all is confirmed."""
+    """Checks a results folder written by `voussoir run` or `Results.write`. Returns the findings; empty if all is confirmed."""
     found: list[str] = _voussoir.verify(_os.fspath(folder), jobs)["findings"]
     return found
 
 
 def schema() -> dict[str, _Any]:
-    """The JSON Schema of study files."""
+    """Returns the JSON Schema of study files."""
     found: dict[str, _Any] = _json.loads(_voussoir.schema())
     return found
 
 
 def plugins(kind: str | None = None) -> dict[str, str]:
-    """Tags and summaries of plug-ins: of a kind such as "laws", "materials", "scenes", "solvers", or of all."""
+    """Returns tags and summaries of plug-ins of one kind ("laws", "materials", "scenes", "solvers" and others), or of all."""
     return {tag: summary for of, tag, summary in _voussoir.plugins() if kind is None or of == kind}

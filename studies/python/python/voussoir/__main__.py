@@ -6,7 +6,7 @@ from . import _voussoir
 
 
 def main() -> None:
-    """Does what the arguments of the process ask for, and ends it."""
+    """Runs the command of the process arguments and exits with its exit code."""
     sys.stdout.flush()
     sys.exit(_voussoir.main(sys.argv[1:]))
 

@@ -27,7 +27,7 @@ _Class = TypeVar("_Class", bound="type[Any]")
 
 class Facet:
     """A half plane `normal` · t <= `bound` of admissible tractions t = (t_n, t_t) [Pa], t_n > 0 in compression, and the
-    direction of flow on it; flow is associated where `flow` is left out. `mode` is "opening", "sliding" or "crushing"."""
+    direction of flow on it. Without `flow`, flow is associated. `mode` is "opening", "sliding" or "crushing"."""
 
     def __init__(self, mode: str, normal: Sequence[float], bound: float, flow: Sequence[float] | None = None) -> None:
         if mode not in ("opening", "sliding", "crushing"):
@@ -47,13 +47,14 @@ class Facet:
 
 
 def law(name: str) -> Callable[[_Class], _Class]:
-    """Registers a class as a joint law. It has `facets()`, a list of `Facet` (`law = "python_facets"`), or
-    `respond(gap, state)` with `stiffness` and, where there is memory, `state_names` (`law = "python_response"`).
+    """Registers a class as a joint law. For `law = "python_facets"`, the class has `facets()`, which returns a list of
+    `Facet`. For `law = "python_response"`, it has `respond(gap, state)`, `stiffness` and, if the law has a memory,
+    `state_names`.
 
-    `respond` gets gaps (points, 2) [m], open > 0, and states (points, n), and returns (traction, state) or a dictionary
-    with `traction` (points, 2) [Pa], compression > 0, `state`, and where known `tangent` (points, 2, 2) [Pa/m], `stored`
-    and `dissipated` (points) [J/m2]. Without a tangent it is found by differences over `size` (1e-4 m unless the class says
-    otherwise). It must be a pure function of its arguments.
+    `respond` receives gaps (points, 2) [m], open > 0, and states (points, n). It returns (traction, state) or a dictionary
+    with `traction` (points, 2) [Pa], compression > 0, `state`, and optionally `tangent` (points, 2, 2) [Pa/m], `stored`
+    and `dissipated` (points) [J/m2]. If the tangent is missing, it is computed by differences with a step of 1e-6 times the
+    attribute `size` of the class (default 1e-4 m). `respond` must be a pure function of its arguments.
     """
 
     def register(cls: _Class) -> _Class:
@@ -64,7 +65,7 @@ def law(name: str) -> Callable[[_Class], _Class]:
 
 
 def make(name: str, parameters: str) -> Any:
-    """An object of a registered class."""
+    """Creates an object of a registered class."""
     if name not in _CLASSES:
         known = ", ".join(sorted(_CLASSES)) or "none"
         raise KeyError(f'no class is registered as "{name}" with @voussoir.law in this process (registered: {known})')
@@ -72,13 +73,13 @@ def make(name: str, parameters: str) -> Any:
 
 
 def check(name: str, parameters: str, form: str) -> tuple[str, str] | None:
-    """What is wrong with a law: a key of its table and the complaint."""
+    """Checks a law. Returns the key of its table and the mistake, or None."""
     if name not in _CLASSES:
         known = ", ".join(sorted(_CLASSES)) or "none"
         return "class", f'no class is registered as "{name}" with @voussoir.law in this process (registered: {known})'
     try:
         made = make(name, parameters)
-    except Exception as error:  # noqa: BLE001 - whatever its author raises is what is told
+    except Exception as error:  # noqa: BLE001 - any exception of the class is reported
         wanted = inspect.signature(_CLASSES[name])
         return "parameters", f"{name}{wanted} cannot be made with them: {type(error).__name__}: {error}"
     try:
@@ -103,12 +104,12 @@ def check(name: str, parameters: str, form: str) -> tuple[str, str] | None:
 
 
 def facets(made: Any) -> list[tuple[str, list[float], float, list[float]]]:
-    """The facets of a law, as the native module takes them."""
+    """Returns the facets of a law in the form that the native module expects."""
     return [(facet.mode, facet.normal, facet.bound, facet.flow) for facet in made.facets()]
 
 
 def stiffness(made: Any) -> list[float] | None:
-    """[k_n, k_t] [Pa/m] where the law has it."""
+    """Returns [k_n, k_t] [Pa/m] if the law has a stiffness."""
     found = getattr(made, "stiffness", None)
     if found is None:
         return None
@@ -119,12 +120,12 @@ def stiffness(made: Any) -> list[float] | None:
 
 
 def state_names(made: Any) -> list[str]:
-    """What each number of the state is, with its unit."""
+    """Returns the name of each number of the state, with its unit."""
     return [str(name) for name in getattr(made, "state_names", ())]
 
 
 def initial_state(made: Any) -> list[float]:
-    """The state of the untouched joint: zeros unless the class says otherwise."""
+    """Returns the state of the untouched joint: zeros, unless the class defines `initial_state`."""
     names = state_names(made)
     found = getattr(made, "initial_state", None)
     numbers = [0.0] * len(names) if found is None else [float(x) for x in (found() if callable(found) else found)]
@@ -134,7 +135,7 @@ def initial_state(made: Any) -> list[float]:
 
 
 def respond(made: Any, gap: bytes, state: bytes, count: int) -> tuple[bytes, bytes, bytes, bytes, bytes]:
-    """Tractions, tangents, states, stored and dissipated energies of a group of points."""
+    """Computes tractions, tangents, states, stored and dissipated energies of a group of points."""
     gaps = np.frombuffer(gap).reshape(count, 2)
     old = np.frombuffer(state).reshape(count, len(state_names(made)))
     answer = _answer(made, gaps, old)
@@ -166,7 +167,7 @@ def _answer(made: Any, gaps: Any, old: Any) -> dict[str, Any]:
 
 
 def _differences(made: Any, gaps: Any, old: Any) -> Any:
-    """The tangent by central differences."""
+    """Computes the tangent by central differences."""
     step = 1e-6 * float(getattr(made, "size", 1e-4))
     tangent = np.empty((len(gaps), 2, 2))
     for j in range(2):

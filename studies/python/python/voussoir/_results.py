@@ -1,4 +1,4 @@
-"""Results of a run: cases with arrays, figures that show themselves, and the files the command line would write."""
+"""Results of a run: cases with arrays, figures for notebooks, and the files that the command line would write."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ Array = NDArray[np.float64]
 
 
 def _array(values: Any) -> Array:
-    """Numbers, with NaN for null."""
+    """Converts numbers to an array, with NaN for null."""
     return np.array(values, dtype=np.float64)
 
 
 def _columns(entries: list[dict[str, Any]] | None) -> dict[str, NDArray[Any]] | None:
-    """A list of entries with the same keys as an array for each key."""
+    """Converts a list of entries with the same keys to an array for each key."""
     if entries is None:
         return None
     keys = entries[0].keys() if entries else ()
@@ -29,7 +29,7 @@ def _columns(entries: list[dict[str, Any]] | None) -> dict[str, NDArray[Any]] | 
 
 
 class Figure:
-    """A figure as SVG; it shows itself in notebooks."""
+    """A figure as SVG. Notebooks display it."""
 
     def __init__(self, name: str, svg: str) -> None:
         self.name = name
@@ -47,10 +47,10 @@ class Figure:
 
 
 class Case:
-    """The answer to one case. Every key of its entry in results.json is an attribute; lists of numbers are arrays."""
+    """The result of one case. Every key of its entry in results.json is an attribute; lists of numbers are arrays."""
 
     def __init__(self, entry: dict[str, Any]) -> None:
-        #: The entry of results.json as it stands.
+        #: The unchanged entry of results.json.
         self.raw = entry
 
     def __getattr__(self, name: str) -> Any:
@@ -69,46 +69,46 @@ class Case:
 
     @property
     def certified(self) -> bool:
-        """Whether every residual of the certificate is within its tolerance."""
+        """True if every residual of the certificate is within its tolerance."""
         return bool(self.raw["certificate"]["passed"]) if "certificate" in self.raw else self.raw["status"] != "stalled"
 
     @property
     def bounds(self) -> Array | None:
-        """[proved lower, proved upper] factor."""
+        """[proved lower bound, proved upper bound] of the factor."""
         found = self.raw.get("bounds")
         return None if found is None else _array(found)
 
     @property
     def curve(self) -> Array | None:
-        """(displacement [m], factor) row by row, where `[output] curve = true`."""
+        """Rows of (displacement [m], factor), if `[output] curve = true`."""
         found = self.raw.get("curve")
         return None if found is None else _array(found)
 
     @property
     def field(self) -> dict[str, NDArray[Any]] | None:
-        """Contact forces: `joint`, `point` [m] and `force` [N] (normal, tangential), a row a point."""
+        """Contact forces: `joint`, `point` [m] and `force` [N] (normal, tangential), one row for each point."""
         return _columns(self.raw.get("field"))
 
     @property
     def motion(self) -> dict[str, NDArray[Any]] | None:
-        """The mechanism: `body` and `velocity` (x, y, rotation), a row a body."""
+        """The mechanism: `body` and `velocity` (x, y, rotation), one row for each body."""
         return _columns(self.raw.get("motion"))
 
     @property
     def displacements(self) -> Any:
-        """Displacements of a path's end, a row a body."""
+        """Displacements at the end of a path, one row for each body."""
         found = self.raw.get("displacements")
         return _columns(found) if isinstance(found, list) and found and isinstance(found[0], dict) else found
 
     @property
     def thrust_line(self) -> Array | None:
-        """Where the resultant crosses each joint [m]; NaN where a joint carries nothing."""
+        """The point where the resultant crosses each joint [m]; NaN if a joint is not loaded."""
         found = self.raw.get("thrust_line")
         return None if found is None else _array([[np.nan, np.nan] if point is None else point for point in found])
 
     @property
     def rows(self) -> Array | None:
-        """Of a driven point: a row a step, named by `columns`."""
+        """For a driven point: one row for each step; `columns` contains the names."""
         found = self.raw.get("rows")
         return None if found is None else _array(found)
 
@@ -119,15 +119,15 @@ class Results(Sequence[Case]):
     def __init__(self, name: str, files: dict[str, bytes], table: str, remarks: list[str], certified: bool) -> None:
         #: Name of the study.
         self.name = name
-        #: What the command line would write: bytes by file name.
+        #: The files that the command line would write: bytes by file name.
         self.files = files
         #: The table that the command line prints.
         self.table = table
-        #: What one should know of the run.
+        #: Remarks on the run for the user.
         self.remarks = remarks
-        #: Whether every case is answered and certified.
+        #: True if every case is solved and certified.
         self.certified = certified
-        #: results.json as it stands.
+        #: The unchanged content of results.json.
         self.raw: dict[str, Any] = json.loads(files["results.json"]) if "results.json" in files else {"cases": []}
         self._cases = [Case(entry) for entry in self.raw["cases"]]
 
@@ -156,19 +156,19 @@ class Results(Sequence[Case]):
 
     @property
     def figures(self) -> dict[str, Figure]:
-        """Figures by name; each shows itself in a notebook."""
+        """Figures by name. Notebooks display them."""
         names = sorted(name for name in self.files if name.endswith(".svg"))
         stems = {name: Path(name).stem for name in names}
         return {stem: Figure(stem, self.files[name].decode()) for name, stem in stems.items()}
 
     @property
     def report(self) -> str | None:
-        """report.html, one self-contained page."""
+        """Returns report.html, one self-contained page."""
         found = self.files.get("report.html")
         return None if found is None else found.decode()
 
     def columns(self) -> dict[str, list[Any]]:
-        """Parameters and answers as columns, for pandas or polars."""
+        """Returns parameters and results as columns, for pandas or polars."""
         keys = list(dict.fromkeys(key for case in self for key in case.raw.get("parameters", {})))
         columns: dict[str, list[Any]] = {"id": [case.raw["id"] for case in self]}
         for name in ("variant", "scene"):
@@ -189,7 +189,7 @@ class Results(Sequence[Case]):
         return f"<table><caption>{html.escape(self.name)}</caption><tr>{head}</tr>{body}</table>"
 
     def write(self, folder: str | os.PathLike[str]) -> None:
-        """Writes what the command line would write; `voussoir.verify` checks it."""
+        """Writes the files that the command line would write; `voussoir.verify` checks them."""
         for name, content in self.files.items():
             path = Path(folder) / name
             path.parent.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""A study as it is given: a dictionary, a path, or the text of a file."""
+"""Converts a study (a dictionary, a path, or the text of a file) for the native module."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from typing import Any, Union
 #: A dictionary with the keys of a study file, the path of such a file, or its text.
 Study = Union[Mapping[str, Any], str, "os.PathLike[str]"]
 
-#: (form, text, name of the file, keys that are set), as the native module takes it.
+#: (form, text, name of the file, overridden keys), in the form that the native module expects.
 Source = tuple[str, str, str, list[tuple[str, str]]]
 
 
 def plain(value: Any) -> Any:
-    """What JSON has no word for but a study may hold: numbers and arrays of NumPy, tuples, paths."""
+    """Converts values that JSON cannot represent but a study may contain: numbers and arrays of NumPy, paths."""
     if hasattr(value, "tolist"):
         return value.tolist()
     if isinstance(value, os.PathLike):
@@ -24,12 +24,12 @@ def plain(value: Any) -> Any:
 
 
 def dumps(value: Any) -> str:
-    """JSON of a value in a study."""
+    """Converts a value of a study to JSON."""
     return json.dumps(value, default=plain, allow_nan=False)
 
 
 def toml_value(value: Any) -> str:
-    """A value as `--set` takes it: TOML, which JSON is but for tables."""
+    """Converts a value to TOML, as `--set` expects it. Values other than tables are written as in JSON."""
     if isinstance(value, Mapping):
         return "{ " + ", ".join(f"{json.dumps(key)} = {toml_value(item)}" for key, item in value.items()) + " }"
     if isinstance(value, (list, tuple)):
@@ -38,7 +38,7 @@ def toml_value(value: Any) -> str:
 
 
 def source(study: Study, overrides: Mapping[str, Any] | None = None) -> Source:
-    """What the native module takes. A text with a line break or an `=` is the study itself, any other a path."""
+    """Converts a study for the native module. A text with a line break or an `=` is a study, any other text a path."""
     overrides = overrides or {}
     if isinstance(study, Mapping):
         return "json", dumps(study), "", [(key, dumps(value)) for key, value in overrides.items()]

@@ -1,4 +1,4 @@
-"""Many cases as columns, on this machine or on any pool of workers."""
+"""Solves many cases, on this machine or on a pool of workers, and returns columns."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ import numpy as np
 from . import _voussoir
 from ._study import Source, Study, source
 
-#: Cases that a worker is given at once.
+#: Greatest number of cases in one task of a worker.
 CHUNK = 512
 
 
 class Table(dict[str, Any]):
-    """Columns by name, a row a case in order of id: numbers as arrays (NaN where there is none), words as lists.
+    """Columns by name, with one row for each case in order of id. Numbers are arrays (NaN if missing), words are lists.
 
-    `pandas.DataFrame(table)` and `polars.DataFrame(table)` take it as it is.
+    `pandas.DataFrame(table)` and `polars.DataFrame(table)` accept it unchanged.
     """
 
     @property
@@ -35,8 +35,8 @@ class Table(dict[str, Any]):
         return [dict(zip(names, row)) for row in zip(*self.values())]
 
     def write_parquet(self, path: str | os.PathLike[str]) -> None:
-        """Writes the columns as a Parquet file, which pandas, polars, DuckDB and others read: numbers keep every bit, a number
-        that there is none of is null. Needs polars (`pip install voussoir[parquet]`).
+        """Writes the columns as a Parquet file, for pandas, polars, DuckDB and other programs. Numbers keep every bit; a missing
+        number is null. Needs polars (`pip install voussoir[parquet]`).
         """
         import polars
 
@@ -53,13 +53,13 @@ class Table(dict[str, Any]):
 
 @functools.lru_cache(maxsize=4)
 def _reader(key: tuple[str, str, str, tuple[tuple[str, str], ...]]) -> _voussoir.Sweep:
-    """The study of a worker, read once in each process and not checked again."""
+    """Reads the study of a worker, once in each process and without checking it again."""
     form, text, file, sets = key
     return _voussoir.Sweep((form, text, file, list(sets)), False)
 
 
 def solve_chunk(study: Source, ids: range, version: str) -> dict[str, Any]:
-    """What a worker does: solves some cases and gives their columns."""
+    """The task of a worker: solves some cases and returns their columns."""
     if version != _voussoir.__version__:
         raise RuntimeError(f"the worker has voussoir {_voussoir.__version__}, the caller {version}: install the same on both")
     form, text, file, sets = study
@@ -79,15 +79,18 @@ def sweep(
     chunk: int | None = None,
     progress: Callable[[int, int], Any] | None = None,
 ) -> Table:
-    """Answers every case of a study and gives a row for each: parameters, status, load factor, bounds, mechanism.
+    """Solves every case of a study and returns a row for each: parameters, status, load factor, bounds, mechanism.
 
-    Forces and motions are not kept, so that a hundred thousand cases fit; `voussoir.run(study, cases=[id])` gives them for
-    one. `client` is whoever works: a `dask.distributed.Client`, a `concurrent.futures` executor, anything with `submit`;
-    without one `jobs` cases are worked on side by side here. Workers get `chunk` cases at a time. A worker that dies loses
-    nothing where its pool gives its work to another, as Dask does. `progress` is called with (answered, all).
+    Forces and motions are not stored, so that a hundred thousand cases fit into memory; `voussoir.run(study, cases=[id])`
+    returns them for one case.
 
-    Every case is made once before the first is answered: StudyError tells every mistake. Results do not depend on who
-    works, bit for bit, but for `seconds`.
+    `client` is the pool of workers: a `dask.distributed.Client`, a `concurrent.futures` executor, or any object with
+    `submit`. Without a client, `jobs` cases are solved in parallel in this process. A task of a worker has `chunk` cases.
+    If a worker dies, no results are lost if its pool repeats the task on another worker, as Dask does. `progress` is
+    called with (number of solved cases, number of all cases).
+
+    Every case is created once before the first is solved, so that StudyError contains all mistakes. Results are the same
+    on every pool, bit for bit, except `seconds`.
     """
     given = source(study, set)
     reader = _voussoir.Sweep(given)
@@ -103,7 +106,7 @@ def sweep(
             parts.append(reader.solve(list(range(start, stop)), jobs))
             tell(stop, count)
         return _joined(parts)
-    # Dask would take two chunks of the same study for the same work, which they are: it may.
+    # Dask merges tasks with the same arguments. This is correct, because the same chunk has the same results.
     futures = [client.submit(solve_chunk, given, ids, _voussoir.__version__) for ids in ranges]
     answered = 0
     for future, ids in zip(futures, ranges):
@@ -114,7 +117,7 @@ def sweep(
 
 
 def _joined(parts: list[dict[str, Any]]) -> Table:
-    """The columns of all parts, one below the other."""
+    """Concatenates the columns of all parts."""
     names = list(dict.fromkeys(name for part in parts for name in part))
     table = Table()
     for name in names:
