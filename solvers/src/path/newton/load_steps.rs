@@ -1,4 +1,4 @@
-//! The load steps one after the other, and the answer.
+//! The load steps in order, and the answer.
 
 use super::load_to_factor::load_to_factor;
 use super::pieces;
@@ -52,7 +52,7 @@ pub(super) fn trace(problem: &PathProblem, settings: &PathSettings, observer: &m
     answer(tracer)
 }
 
-/// Follows the load steps one after the other.
+/// Follows the load steps in order.
 fn run<'a>(tracer: &mut Tracer<'a, '_>, problem: &'a PathProblem) {
     let mut earlier = Vec::new();
     for (index, load_step) in problem.load_steps.iter().enumerate() {
@@ -60,7 +60,7 @@ fn run<'a>(tracer: &mut Tracer<'a, '_>, problem: &'a PathProblem) {
         tracer.state.factor = load_step.start;
         tracer.in_force.strategy =
             tracer.settings.strategy(load_step.stage).cloned().unwrap_or_else(|| Arc::new(ArcLength::default()));
-        // What the problem does not have is refused before the path begins.
+        // // Missing monitors were refused before the start of the path.
         tracer.system.monitors = resolve(problem, &tracer.in_force.strategy.monitors()).unwrap_or_default();
         tracer.system.load(StagedLoads::new(earlier.clone(), &load_step.loading, load_step.start));
         let gradient = tracer.system.gradient(&tracer.state);
@@ -69,7 +69,7 @@ fn run<'a>(tracer: &mut Tracer<'a, '_>, problem: &'a PathProblem) {
             LoadStepEnd::Collapse(most) => pieces::driver::follow(tracer, load_step, most),
             LoadStepEnd::Factor(factor) => load_to_factor(tracer, load_step, factor),
         };
-        // Behind a peak a structure comes back to the load as another one: it has snapped through.
+        // // Beyond a peak a structure reaches the load in another equilibrium: it has snapped through.
         if tracer.limit.peak.is_some() && matches!(outcome, LoadStepEnding::Reached) {
             tracer.ending.status = Status::Collapse;
             outcome = LoadStepEnding::Ended;
@@ -95,8 +95,8 @@ fn run<'a>(tracer: &mut Tracer<'a, '_>, problem: &'a PathProblem) {
     tracer.ending.status = if tracer.limit.peak.is_some() { Status::LimitPoint } else { Status::Stands };
 }
 
-/// The stability of the state at which a stage ends. From an unstable one damped descent leads to a stable one; where
-/// it leads to none the stage does not stand.
+/// Examines the stability of the state at the end of a stage. From an unstable state damped descent leads to a stable
+/// one; if no stable state is found, the stage does not stand.
 fn end_stage(tracer: &mut Tracer, load_step: &LoadStep) -> LoadStepEnding {
     let settles = tracer.system.settles();
     let state = tracer.state.clone();
@@ -122,13 +122,13 @@ fn end_stage(tracer: &mut Tracer, load_step: &LoadStep) -> LoadStepEnding {
     LoadStepEnding::Reached
 }
 
-/// Writes the stability of a stage's last state down.
+/// Records the stability of the last state of a stage.
 fn record_stability(tracer: &mut Tracer, stage: usize, found: StateStability) {
     let StateStability { under_load, under_control, sufficient_only } = found;
     tracer.record.stability.push(StageStability { stage, under_load, under_control, sufficient_only });
 }
 
-/// The answer of a trace that has ended.
+/// Returns the answer of a finished trace.
 fn answer(mut tracer: Tracer) -> PathAnswer {
     let claims = matches!(tracer.ending.status, Status::LimitPoint | Status::Collapse) && tracer.limit.peak.is_some();
     if let (true, Some(why)) = (claims, tracer.limit.unproven.take()) {
@@ -148,7 +148,7 @@ fn answer(mut tracer: Tracer) -> PathAnswer {
     let (balance, stored) = (&tracer.record.balance, tracer.record.state.stored);
     let size = balance.scale(stored);
     if size > 1e-12 * tracer.system.units().energy() {
-        // The same words in all cases, so that a study shows them once.
+        // // The same words in all cases, so that a study shows them once.
         let words = "path_energy in the certificate is the share of Σ|work| + |stored| + dissipated that the balance work − stored − \
                      dissipated leaves (trapezoidal rule over the steps)";
         notes.push(words.into());
@@ -164,7 +164,7 @@ fn answer(mut tracer: Tracer) -> PathAnswer {
     }
     let (state, last, factor, motion) = match tracer.limit.peak {
         Some(peak) => {
-            // Where bonds soften every joint moves at a peak: only the end shows which ones are hinges.
+            // // If bonds soften, every joint moves at a peak: only the end of the path shows the hinges.
             let softens = !tracer.system.laws.responses.is_empty();
             let motion =
                 if softens { tracer.ending.motion.or(peak.motion) } else { peak.motion.or(tracer.ending.motion) };

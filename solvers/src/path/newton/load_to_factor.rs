@@ -1,4 +1,4 @@
-//! Load steps to a factor: in one step where that is exact, else in steps.
+//! Load steps to a factor: in one step if that is exact, otherwise in several steps.
 
 use super::pieces;
 use crate::path::newton::model::control::Control;
@@ -11,9 +11,9 @@ use crate::path::newton::tracing::step_energy::step_energy;
 use crate::path::newton::tracing::tracer::{LoadStepEnding, Tracer};
 use voussoir_core::path::LoadStep;
 
-/// To a factor: in one step where nothing irreversible happens in it, else in steps.
+/// Applies the load up to a factor: in one step if nothing irreversible happens in it, otherwise in several steps.
 pub(super) fn load_to_factor(tracer: &mut Tracer, load_step: &LoadStep, factor: f64) -> LoadStepEnding {
-    // From nothing a load grows in proportion; later a point may slide and come to rest within any step.
+    // // From the unloaded state a load grows in proportion; later a point may slide and stop within any step.
     let from_nothing = tracer.state.force.iter().flatten().all(|r| *r == 0.0);
     if !from_nothing {
         return pieces::driver::follow(tracer, load_step, factor);
@@ -38,7 +38,7 @@ pub(super) fn load_to_factor(tracer: &mut Tracer, load_step: &LoadStep, factor: 
     pieces::driver::follow(tracer, load_step, factor)
 }
 
-/// Whether a state that one step reached is stable: with finite displacements others may be in equilibrium as well.
+/// Returns true if a state after one step is stable: with finite displacements other equilibria may exist.
 fn is_stable(tracer: &mut Tracer, next: &State) -> bool {
     !tracer.system.finite() || second_order_work(&mut tracer.system, next).is_none_or(|work| work.turned == 0)
 }

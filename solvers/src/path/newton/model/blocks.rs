@@ -1,20 +1,20 @@
-//! Bodies whose material yields: their linearisation within a step and what they remember.
+//! Bodies with yielding material: their linearisation within a step, and their history.
 
 use std::rc::Rc;
 use std::sync::Arc;
 use voussoir_core::elastic::{InelasticState, Linearisation};
 use voussoir_core::path::{PathProblem, Yielded};
 
-/// A body whose material yields, within a step.
+/// A body with yielding material within a step.
 #[derive(Debug, Clone)]
 pub struct YieldingBlock {
-    /// At the present displacements of its nodes.
+    /// Linearisation at the present displacements of its nodes.
     pub linear: Rc<Linearisation>,
-    /// What it remembered when the step began.
+    /// History at the start of the step.
     pub base: Arc<InelasticState>,
 }
 
-/// All bodies that may yield, undeformed.
+/// Returns all bodies that may yield, undeformed.
 pub fn undeformed(problem: &PathProblem) -> Result<Vec<Option<YieldingBlock>>, String> {
     if !problem.yields() {
         return Ok(Vec::new());
@@ -28,7 +28,7 @@ pub fn undeformed(problem: &PathProblem) -> Result<Vec<Option<YieldingBlock>>, S
     problem.bodies.iter().map(body).collect()
 }
 
-/// The bodies that have yielded, as others read them.
+/// Returns the states of the bodies that have yielded, for results.
 pub fn yielded(blocks: &[Option<YieldingBlock>]) -> Vec<Option<Yielded>> {
     let record = |inner: &YieldingBlock| {
         let (displacement, state) = (inner.linear.displacement.clone(), inner.linear.end.clone());

@@ -1,9 +1,9 @@
-//! What fixes a step: a factor, or a length along a row of the unknowns. The strategies' monitors.
+//! The control of a step: a factor, or a length along a row of the unknowns. The monitors of strategies.
 
 use std::rc::Rc;
 use voussoir_core::model::geometry::Vec2;
 
-/// What fixes a step.
+/// The control of a step.
 #[derive(Debug, Clone)]
 pub enum Control {
     /// λ itself.

@@ -1,4 +1,4 @@
-//! What the deformation of bodies adds to gaps and equilibrium (see `kinematics`), with its derivatives.
+//! The part of the bodies' deformation in gaps and equilibrium (see `kinematics`), with its derivatives.
 
 use super::blocks::YieldingBlock;
 use super::derivatives::{Gradient, Hessian, OfPair};
@@ -9,7 +9,7 @@ use crate::linear::inner;
 use nalgebra::{DMatrix, Matrix2};
 use voussoir_core::model::geometry::{Vec2, turned};
 
-/// C of a body: of one that yields, its linearisation's.
+/// Returns the flexibility C of a body; for a yielding body that of its linearisation.
 fn flexibility<'b>(
     geometry: &Geometry<'b>,
     body: usize,
@@ -28,8 +28,8 @@ fn times_flexibility(geometry: &Geometry, body: usize, f: &[f64], blocks: &[Opti
     v
 }
 
-/// Derivatives of w·f, f the forces on a body's points, by contact forces (given to `add` with their
-/// row) and by the factor that grows; the bodies' rotations held.
+/// Computes derivatives of w·f, with f the forces on a body's points, by contact forces (passed to `add` with their
+/// row) and by the growing factor; the bodies' rotations are held.
 pub fn by_forces(
     geometry: &Geometry,
     body: usize,
@@ -51,7 +51,7 @@ pub fn by_forces(
     own.filter_map(|(_, slot, _, load)| slot.map(|slot| (back * *load).dot(&at(slot)))).sum()
 }
 
-/// Adds what the deformation of a body gives.
+/// Adds the part of a body's deformation to the gradient.
 pub fn add_elastic_gradient(geometry: &Geometry, body: usize, place: &Place, out: &mut Gradient) {
     let Place { force, motion, loads, blocks } = *place;
     let f = geometry.body_forces(body, force, motion, loads);
@@ -96,7 +96,7 @@ fn at(v: &[f64], slot: usize) -> Vec2 {
     Vec2::new(v[2 * slot], v[2 * slot + 1])
 }
 
-/// Adds what the deformation of a body gives.
+/// Adds the part of a body's deformation to the second derivatives.
 pub fn add_elastic_hessian(geometry: &Geometry, body: usize, place: &Place, gradient: &Gradient, out: &mut Hessian) {
     let Some(flexibility) = flexibility(geometry, body, place.blocks) else { return };
     let moved: Vec<MovedSide> = geometry
@@ -112,7 +112,7 @@ pub fn add_elastic_hessian(geometry: &Geometry, body: usize, place: &Place, grad
     for columns in by_joints() {
         by_joints().for_each(|rows| out.forces.add_turned(rows, columns, flexibility));
     }
-    // By the factor.
+    // // Derivative by the factor.
     let back = geometry.turn(-place.motion[body][2]);
     let mut pushed = vec![0.0; flexibility.nrows()];
     for (_, slot, _, load) in place.loads.growing().forces.iter().filter(|l| l.0 == body) {
@@ -133,7 +133,7 @@ pub fn add_elastic_hessian(geometry: &Geometry, body: usize, place: &Place, grad
     }
 }
 
-/// ∂f/∂θ of a body and its neighbours; adds the second derivatives by rotations that are diagonal in them.
+/// Returns ∂f/∂θ of a body and its neighbours, and adds the second derivatives that are diagonal in the rotations.
 fn forces_by_rotations(
     geometry: &Geometry,
     body: usize,
@@ -181,7 +181,7 @@ fn forces_by_rotations(
     columns
 }
 
-/// Adds what rotations give with finite displacements.
+/// Adds the derivatives by rotations with finite displacements.
 fn add_rotations(
     geometry: &Geometry,
     body: usize,
@@ -195,7 +195,7 @@ fn add_rotations(
     let columns = forces_by_rotations(geometry, body, place, v, out);
     let products: Vec<Vec<f64>> =
         columns.iter().map(|(_, column)| times_flexibility(geometry, body, column, place.blocks)).collect();
-    // Where a block yields, C need not be symmetric: gaps by rotations take C, moments by forces Cᵀ.
+    // // If a block yields, C need not be symmetric: gaps by rotations use C, moments by forces use Cᵀ.
     let yields = matches!(place.blocks.get(body), Some(Some(inner)) if inner.linear.yielding > 0);
     let across: Option<Vec<Vec<f64>>> = yields.then(|| {
         let times = |column: &[f64]| flexibility.column_iter().map(|c| inner(c.as_slice(), column)).collect();

@@ -16,16 +16,16 @@ pub struct Gradient {
     pub stored: f64,
 }
 
-/// Second derivatives by the motions of two bodies, which the contact points of a joint add up.
+/// Second derivatives by the motions of two bodies, summed over the contact points of a joint.
 #[derive(Debug, Default)]
 pub struct OfPair {
-    /// Where the motions of both begin.
+    /// First index of the motions of both bodies.
     at: [usize; 2],
     values: [[f64; 6]; 6],
 }
 
 impl OfPair {
-    /// Goes on with two bodies, whose motions begin there; what those before have added up to becomes entries.
+    /// Starts with two bodies, whose motions begin at these indices; the sums of the previous pair become entries.
     pub fn begin(&mut self, at: [usize; 2], entries: &mut Vec<(usize, usize, f64)>) {
         if self.at != at {
             self.end(entries);
@@ -40,7 +40,7 @@ impl OfPair {
         self.values[i][j] += value;
     }
 
-    /// What has been added up becomes entries.
+    /// Converts the sums to entries.
     pub fn end(&mut self, entries: &mut Vec<(usize, usize, f64)>) {
         let place = |i: usize| self.at[i / 3] + i % 3;
         for (i, row) in self.values.iter().enumerate() {
@@ -51,18 +51,18 @@ impl OfPair {
     }
 }
 
-/// Second derivatives of Π over (r, q of all bodies), and the derivative of the gradient by the factor that grows.
+/// Second derivatives of Π over (r, q of all bodies), and the derivative of the gradient by the growing factor.
 #[derive(Debug, Clone)]
 pub struct Hessian {
     /// Gaps by forces.
     pub forces: BlockMatrix,
-    /// All else: entry (i, j, value), both halves.
+    /// All other derivatives: entry (i, j, value), both halves.
     pub entries: Vec<(usize, usize, f64)>,
     pub factor: Vec<f64>,
 }
 
 impl Hessian {
-    /// Without entries, for so many forces and motions and about so many entries.
+    /// Creates derivatives without entries, for this number of forces and motions and about this number of entries.
     pub fn zeros(pattern: Arc<Pattern>, size: usize, entries: usize) -> Self {
         let forces = BlockMatrix::zeros(pattern);
         Hessian { forces, entries: Vec::with_capacity(entries), factor: vec![0.0; size] }

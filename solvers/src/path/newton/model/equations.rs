@@ -1,4 +1,4 @@
-//! Rows of gaps and balance in units, and of them the rows of contact points by mode.
+//! Rows of gaps and balance in units, and the rows of contact points by mode.
 
 use super::derivatives::Hessian;
 use crate::contact::mode::ContactMode;
@@ -12,29 +12,30 @@ use std::rc::Rc;
 use std::sync::Arc;
 use voussoir_core::linear::Entries;
 
-/// Combinations of two forces or gaps, one a row.
+/// Combinations of two forces or gaps, one per row.
 type Combined = [[f64; 2]; 2];
 
 fn diagonal(value: f64) -> Combined {
     [[value, 0.0], [0.0, value]]
 }
 
-/// Gaps and balance by all unknowns.
+/// Gaps and balance as functions of all unknowns.
 #[derive(Debug)]
 pub struct Equations {
     /// Two rows per contact point: normal and tangential gap.
     pub gaps: Rc<GapRows>,
     /// Three rows per free body.
     pub bodies: Rc<CsrMatrix>,
-    /// The column of the factor, which the rows hold too.
+    /// The column of the factor, which is also in the rows.
     pub factor: Vec<f64>,
 }
 
-/// Entries of a row that is open, of the equations or of what is added to them.
+/// Entries of an open row, of the equations or of the added terms.
 type Open<'r> = &'r mut Vec<(usize, f64)>;
 
 impl Equations {
-    /// Of linear blocks with small displacements, whose `load` grows; `pattern` of the joints.
+    /// Creates the equations of linear blocks with small displacements under the growing `load`; `pattern` of the
+    /// joints.
     pub fn linear(system: &System, load: &Load, pattern: Arc<Pattern>) -> Self {
         let (points, last, unit) = (2 * system.contacts, system.size(), system.units.factor);
         let driven = load.gap.as_flattened().iter().chain(load.wrench.as_flattened());
@@ -56,7 +57,7 @@ impl Equations {
         Equations { gaps: Rc::new(GapRows { forces, others }), bodies, factor }
     }
 
-    /// From second derivatives of Π.
+    /// Creates the equations from second derivatives of Π.
     pub fn new(system: &System, hessian: Hessian) -> Self {
         let (u, base, last) = (system.units, 2 * system.contacts, system.size());
         let of_gaps = hessian.entries.iter().filter(|e| e.0 < base).count();
@@ -94,7 +95,7 @@ impl Equations {
         Equations { gaps: Rc::new(GapRows { forces, others }), bodies, factor }
     }
 
-    /// The rows of a contact point in a mode, with what is added to them.
+    /// Returns the rows of a contact point in a mode, with the added terms.
     pub fn point_rows(law: Option<&YieldPolygon>, mode: ContactMode) -> PointRows {
         let (mut force, mut gap): (Combined, Combined) = Default::default();
         let (mut force_shift, mut gap_shift): (Combined, Combined) = Default::default();
@@ -113,7 +114,8 @@ impl Equations {
         PointRows { force, gap, force_shift, gap_shift }
     }
 
-    /// The rows of a contact point whose law gives tractions from gaps: own and stiffness as `traction_row` has them.
+    /// Returns the rows of a contact point whose law gives tractions from gaps; `own` and `stiffness` as from
+    /// `traction_row`.
     pub fn response_rows(own: [f64; 2], stiffness: [[f64; 2]; 2]) -> PointRows {
         PointRows {
             force: [[own[0], 0.0], [0.0, own[1]]],
@@ -123,9 +125,9 @@ impl Equations {
         }
     }
 
-    /// Adds row k of a contact point to open rows: its equation, and what is added. The latter keeps the equations
-    /// monotone where it is `whole`; where the forces of other points are left out of it, those of open points have
-    /// equations of their own, which can be condensed out.
+    /// Adds row k of a contact point to open rows: its equation and its added term. If the term is `whole`, it keeps
+    /// the equations monotone. Otherwise the forces of other points are left out of it, so that open points have
+    /// separate equations and can be condensed out.
     pub fn add_row(&self, rows: &PointRows, (c, k): (usize, usize), whole: bool, equation: Open, shift: Open) {
         let forces = self.gaps.len();
         let open = rows.gap == [[0.0; 2]; 2];

@@ -1,4 +1,4 @@
-//! The factorised equations of contact modes, and what one factorisation leaves to the next.
+//! The factorised equations of contact modes, and the data kept from one factorisation to the next.
 
 use super::equations::Equations;
 use crate::contact::mode::ContactMode;
@@ -12,14 +12,15 @@ use std::rc::Rc;
 
 /// Factorised equations of contact modes.
 pub enum ModeEquations {
-    /// Whatever bodies stand beside each other.
+    /// Any arrangement of bodies.
     Sparse(Condensed),
-    /// Of elastic bodies in a chain.
+    /// A chain of elastic bodies.
     Chain(ChainFactors),
 }
 
 impl ModeEquations {
-    /// Unknowns from the `first` that is no force, for right-hand sides that the rows of contact points have none of.
+    /// Returns the unknowns from `first`, the first that is not a force, for right-hand sides that are zero in the rows
+    /// of contact points.
     pub fn motions(&self, first: usize, rights: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
         match self {
             ModeEquations::Chain(factors) => factors.motions(rights),
@@ -55,7 +56,7 @@ impl Factorised for ModeEquations {
     }
 }
 
-/// Factors with what they are of.
+/// Factors with the data that identify their equations.
 pub struct Kept {
     pub equations: Rc<Equations>,
     pub modes: Vec<ContactMode>,
@@ -64,34 +65,35 @@ pub struct Kept {
     /// Rate of viscous wrenches.
     pub damping: f64,
     pub held: Rc<BorderedFactors<ModeEquations>>,
-    /// What unit right-hand sides of the two rows of contact points give, an unknown held in the control's place.
+    /// Responses to unit right-hand sides of the two rows of contact points, with an unknown held in the control's
+    /// place.
     pub responses: RefCell<BTreeMap<usize, [Vec<f64>; 2]>>,
 }
 
-/// Factors that are held: of the beginning and the end of a step, and of what lies between.
+/// Number of stored factors: from the start and the end of a step, and between.
 const HELD: usize = 4;
 
-/// What factorisations leave to the next.
+/// Factors kept for later solutions.
 #[derive(Default)]
 pub struct LastFactors {
-    /// The last ones, where nothing but modes and laws makes the matrix; the latest first.
+    /// The last factors, latest first, if only modes and laws determine the matrix.
     held: VecDeque<Rc<Kept>>,
     pub elimination: Elimination,
 }
 
 impl LastFactors {
-    /// Another load grows, or factors have not served.
+    /// Removes all factors, for another load or after they have failed.
     pub fn forget(&mut self) {
         self.held.clear();
     }
 
-    /// Holds factors.
+    /// Stores factors.
     pub fn hold(&mut self, kept: Kept) {
         self.held.push_front(Rc::new(kept));
         self.held.truncate(HELD);
     }
 
-    /// All that are held.
+    /// Returns all stored factors.
     pub fn held(&self) -> impl Iterator<Item = &Rc<Kept>> {
         self.held.iter()
     }

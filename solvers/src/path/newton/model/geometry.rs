@@ -16,7 +16,7 @@ pub struct Side {
     pub slot: usize,
 }
 
-/// Where derivatives are taken: contact forces, motions, loads, and the bodies that yield.
+/// Point at which derivatives are computed: contact forces, motions, loads, and the yielding bodies.
 #[derive(Clone, Copy)]
 pub struct Place<'a> {
     pub force: &'a [[f64; 2]],
@@ -25,7 +25,7 @@ pub struct Place<'a> {
     pub blocks: &'a [Option<YieldingBlock>],
 }
 
-/// A contact point where its bodies have moved rigidly.
+/// A contact point after rigid motions of its bodies.
 pub struct Frame {
     /// R⁺ξ⁺ and R⁻ξ⁻.
     pub arms: [Vec2; 2],
@@ -40,7 +40,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Axes turned back from those by β to the mean ones.
+    /// Returns the mean axes: the axes turned back by β.
     pub fn mean(&self) -> [Vec2; 2] {
         let back = rotation((0.5 - self.share[0]) * self.turn);
         self.axes.map(|e| back * e)
@@ -62,18 +62,19 @@ impl Turn {
     }
 }
 
-/// Frames of contact points one after the other: of rotations, which those of one joint have in common, sines and cosines
-/// are taken once.
+/// Frames of contact points in order. The points of a joint have the same rotations, whose sines and cosines are
+/// computed once.
 pub struct Frames<'m> {
     geometry: &'m Geometry<'m>,
     motion: &'m [[f64; 3]],
     turns: Vec<Turn>,
-    /// The last angles of axes, and of axes in the middle, with their rotations.
+    /// The last angles of the axes and of the mean axes, with their rotations.
     last: [(f64, Matrix2<f64>); 2],
 }
 
 impl Frames<'_> {
-    /// Rotation by an angle which those before may have had, none where displacements are small.
+    /// Returns the rotation by an angle, reused if the previous angle is the same; the identity with small
+    /// displacements.
     fn turn(&mut self, which: usize, angle: f64) -> Matrix2<f64> {
         if self.last[which].0 != angle {
             self.last[which] = (angle, self.geometry.turn(angle));
@@ -81,12 +82,12 @@ impl Frames<'_> {
         self.last[which].1
     }
 
-    /// Displacement of a point of a body by its rigid motion.
+    /// Returns the displacement of a point of a body by its rigid motion.
     fn rigid(&self, body: usize, point: Vec2) -> Vec2 {
         self.geometry.displaced(body, point, self.motion[body], &self.turns[body])
     }
 
-    /// Of a contact point.
+    /// Returns the frame of a contact point.
     pub fn of(&mut self, contact: usize) -> Frame {
         let geometry = self.geometry;
         let c = &geometry.problem.contacts[contact];
@@ -106,13 +107,13 @@ impl Frames<'_> {
     }
 }
 
-/// Geometry of a problem as the path solver sees it.
+/// Geometry of a problem for the path solver.
 pub struct Geometry<'a> {
     pub problem: &'a PathProblem,
     pub finite: bool,
     /// Contact points of every body.
     pub sides: Vec<Vec<Side>>,
-    /// Contact points by joints, and which joints are on one elastic body.
+    /// Contact points by joints; joints on the same elastic body are coupled.
     pub pattern: Arc<Pattern>,
 }
 
@@ -121,7 +122,7 @@ fn rotation(angle: f64) -> Matrix2<f64> {
     Matrix2::new(cosine, -sine, sine, cosine)
 }
 
-/// Contact points by joints; those on one elastic body feel each other.
+/// Returns the contact points by joints; joints on the same elastic body are coupled.
 fn by_joints(problem: &PathProblem, sides: &[Vec<Side>]) -> Pattern {
     let joint = |c: &Contact| (c.joint, c.minus.body, c.plus.body);
     let joints = problem.contacts.chunk_by(|a, b| joint(a) == joint(b)).enumerate();
@@ -158,7 +159,8 @@ impl<'a> Geometry<'a> {
 
     fn displaced(&self, body: usize, point: Vec2, [x, y, _]: [f64; 3], turn: &Turn) -> Vec2 {
         let arm = point - self.problem.bodies[body].pole;
-        // R a − a without the difference of what is as large as the arm: gaps round by the motions, not by the scene.
+        // // R a − a without subtraction of numbers of the size of the arm: rounding of gaps is relative to the
+        // motions, not to the scene.
         let swing = if self.finite {
             turned(arm) * turn.rotation[(1, 0)] - arm * (2.0 * turn.half * turn.half)
         } else {
@@ -167,18 +169,18 @@ impl<'a> Geometry<'a> {
         Vec2::new(x, y) + swing
     }
 
-    /// Displacement of a point of a body by its rigid motion.
+    /// Returns the displacement of a point of a body by its rigid motion.
     pub fn rigid(&self, body: usize, point: Vec2, motion: &[[f64; 3]]) -> Vec2 {
         self.displaced(body, point, motion[body], &self.turned(motion[body][2]))
     }
 
-    /// Velocity of a point of a body that moves on from a motion at a rate.
+    /// Returns the velocity of a point of a body that moves from a motion at a rate.
     pub fn velocity(&self, body: usize, point: Vec2, motion: &[[f64; 3]], rate: &[[f64; 3]]) -> Vec2 {
         let arm = self.turn(motion[body][2]) * (point - self.problem.bodies[body].pole);
         Vec2::new(rate[body][0], rate[body][1]) + turned(arm) * rate[body][2]
     }
 
-    /// Frames of contact points where bodies have these motions.
+    /// Returns the frames of contact points for these motions of the bodies.
     pub fn frames<'m>(&'m self, motion: &'m [[f64; 3]]) -> Frames<'m> {
         Frames {
             geometry: self,
@@ -188,12 +190,12 @@ impl<'a> Geometry<'a> {
         }
     }
 
-    /// Rotation by an angle, none where displacements are small.
+    /// Returns the rotation by an angle; the identity with small displacements.
     pub fn turn(&self, angle: f64) -> Matrix2<f64> {
         if self.finite { rotation(angle) } else { Matrix2::identity() }
     }
 
-    /// [n t] r in the undeformed axes, and R(−s φ/2).
+    /// Returns [n t] r in the undeformed axes, and R(−s φ/2).
     pub fn carried(&self, side: &Side, force: &[[f64; 2]], motion: &[[f64; 3]]) -> (Vec2, Matrix2<f64>) {
         let c = &self.problem.contacts[side.contact];
         let phi = motion[c.plus.body][2] - motion[c.minus.body][2];
@@ -201,7 +203,7 @@ impl<'a> Geometry<'a> {
         (c.normal * normal + c.tangent * tangent, self.turn(-side.sign * phi / 2.0))
     }
 
-    /// The same of all points of a body: those of one joint have one rotation.
+    /// Returns the same for all points of a body; the points of one joint have one rotation.
     pub fn all_carried(
         &self,
         body: usize,
@@ -222,7 +224,7 @@ impl<'a> Geometry<'a> {
         })
     }
 
-    /// Forces on the points of a body in its axes \[N\].
+    /// Returns the forces on the points of a body in its axes \[N\].
     pub fn body_forces(&self, body: usize, force: &[[f64; 2]], motion: &[[f64; 3]], loads: &Loads) -> Vec<f64> {
         let points = self.problem.bodies[body].flexibility.as_ref().map_or(0, |c| c.nrows());
         let mut f = vec![0.0; points];
@@ -251,7 +253,8 @@ mod tests {
     use voussoir_core::limit::Counters;
     use voussoir_core::path::PathBody;
 
-    /// Small turns move points by their angle times the arm to rounding of that, not of the arm; large ones as R a − a.
+    /// Small rotations move points by angle times arm, with rounding relative to that product; large rotations by R a −
+    /// a.
     #[test]
     fn a_small_turn_moves_a_point_to_relative_rounding() {
         let body = PathBody {

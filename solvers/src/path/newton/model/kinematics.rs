@@ -1,8 +1,7 @@
 //! Gaps, equilibrium and their exact derivatives, from one potential.
 //!
-//! With x± = X_b + u_b + R(θ_b)(ξ + v_b) for the two sides of a contact point, θ_c = θ⁻ + β (θ⁺ − θ⁻)
-//! (β = ½, or 0 and 1 where the point is one body's and slides on the other's face, and between them a function of the
-//! slip: [`Sliding`](voussoir_core::path::Sliding)), e_i = R(θ_c) n, R(θ_c) t, the gaps are g_i = g_0 + e_i·(x⁺ − x⁻) and
+//! With x± = X_b + u_b + R(θ_b)(ξ + v_b) for the two sides of a contact point, θ_c = θ⁻ + β (θ⁺ − θ⁻), e_i = R(θ_c) n,
+//! R(θ_c) t and the gaps g_i = g_0 + e_i·(x⁺ − x⁻),
 //!
 //! ```text
 //! Π(r, q) = Σ_c r·g_rigid(q) + ½ r·c r + Σ_b ½ fᵀ C f + Σ F·x_rigid(q)
@@ -10,20 +9,21 @@
 //! ∂Π/∂r = g,   ∂Π/∂q = Gqᵀ r + w + λ p = 0 (the moments of v_b included)
 //! ```
 //!
-//! C: flexibility of the body, relative to its mean motion, so that the weight is part of w only. Of a body
-//! that yields, u = C f + c is its linearisation ([`Linearisation`](voussoir_core::elastic::Linearisation)):
-//! Π is then no potential, its gradient and their derivatives stay as they are with this u, and C need not be
-//! symmetric. Small displacements are the same potential to
-//! second order at the undeformed place: R = 1 and no second derivatives of rotations.
-//! Source: the mixed form of Hellinger and Reissner with corotational frames (Wriggers 2006,
-//! Computational Contact Mechanics; Crisfield 1997, Non-linear Finite Element Analysis 2, ch. 17).
+//! β = ½; β = 0 or 1 if the point is a point of one body that slides on the face of the other; between these it is a
+//! function of the slip ([`Sliding`](voussoir_core::path::Sliding)). C: flexibility of the body relative to its mean
+//! motion, so that the weight is part of w only. For a yielding body, u = C f + c is its linearisation
+//! ([`Linearisation`](voussoir_core::elastic::Linearisation)): Π is then not a potential, its gradient and their
+//! derivatives keep their form with this u, and C need not be symmetric. Small displacements use the same potential to
+//! second order at the undeformed position: R = 1 and no second derivatives of rotations. Source: the mixed form of
+//! Hellinger and Reissner with corotational frames (Wriggers 2006, Computational Contact Mechanics; Crisfield 1997,
+//! Non-linear Finite Element Analysis 2, ch. 17).
 
 use super::deformation::{add_elastic_gradient, add_elastic_hessian};
 use super::derivatives::{Gradient, Hessian, OfPair};
 use super::geometry::{Frame, Geometry, Place};
 use voussoir_core::model::geometry::{Vec2, turned};
 
-/// First derivatives of Π at contact forces and motions; `blocks` are the bodies that yield.
+/// Computes the first derivatives of Π at contact forces and motions; `blocks` are the yielding bodies.
 pub fn gradient(geometry: &Geometry, place: &Place) -> Gradient {
     let Place { force, motion, loads, .. } = *place;
     let problem = geometry.problem;
@@ -81,18 +81,19 @@ fn add_force(balance: &mut [[f64; 3]], bodies: [usize; 2], frame: &Frame, push: 
     }
 }
 
-/// Force along the mean tangent by which β changes with the slip: ∂(r·g)/∂β β'.
+/// Returns the force along the mean tangent from the change of β with the slip: ∂(r·g)/∂β β'.
 fn passing_force(frame: &Frame, push: Vec2) -> f64 {
     turned(push).dot(&frame.jump) * frame.share[1] * frame.turn
 }
 
-/// An entry and its mirror image.
+/// Adds an entry and its mirror image.
 fn both(add: &mut impl FnMut(usize, usize, f64), i: usize, j: usize, value: f64) {
     add(i, j, value);
     add(j, i, value);
 }
 
-/// Derivatives of e·(x⁺ − x⁻) by the motions of plus and minus, whose columns begin `at`; e turns with a share β.
+/// Returns the derivatives of e·(x⁺ − x⁻) by the motions of plus and minus, whose columns begin `at`; e turns with a
+/// share β.
 fn by_motion(frame: &Frame, at: [usize; 2], e: Vec2, share: f64, finite: bool) -> [(usize, f64); 6] {
     let turning = if finite { turned(e).dot(&frame.jump) } else { 0.0 };
     let [plus, minus] = [(1.0, share), (-1.0, 1.0 - share)];
@@ -104,7 +105,7 @@ fn by_motion(frame: &Frame, at: [usize; 2], e: Vec2, share: f64, finite: bool) -
     [a, b, c, d, e, f]
 }
 
-/// Adds second derivatives of P·(x⁺ − x⁻) by the motions, P turning with a share β.
+/// Adds the second derivatives of P·(x⁺ − x⁻) by the motions; P turns with a share β.
 fn add_turning(add: &mut impl FnMut(usize, usize, f64), frame: &Frame, at: [usize; 2], push: Vec2, share: f64) {
     let (across, jump) = (turned(push), &frame.jump);
     let [high, low] = [share, 1.0 - share];
@@ -121,9 +122,8 @@ fn add_turning(add: &mut impl FnMut(usize, usize, f64), frame: &Frame, at: [usiz
     both(add, at[0] + 2, at[1] + 2, mixed);
 }
 
-/// Adds what the second derivatives of r·g have beside those at a fixed β, where β changes with the slip s. With a and s
-/// the gaps in the mean axes, D = θ⁺ − θ⁻, φ = (β(s) − ½) D, ρ = (P·n_m, P·t_m), W = P·(x⁺ − x⁻) and
-/// M = ∂W/∂φ = s ρ_n − a ρ_t, ∂M/∂φ = −W:
+/// Adds the second derivatives of r·g from the change of β with the slip s. With a and s the gaps in the mean axes, D =
+/// θ⁺ − θ⁻, φ = (β(s) − ½) D, ρ = (P·n_m, P·t_m), W = P·(x⁺ − x⁻) and M = ∂W/∂φ = s ρ_n − a ρ_t, ∂M/∂φ = −W:
 ///
 /// ```text
 /// ∂g/∂s    (e_t, −e_n)·(x⁺ − x⁻) φ_s          W_s    M φ_s
@@ -154,7 +154,7 @@ fn add_passing(add: &mut impl FnMut(usize, usize, f64), frame: &Frame, (row, at)
     }
 }
 
-/// Second derivatives of Π.
+/// Computes the second derivatives of Π.
 pub fn hessian(geometry: &Geometry, place: &Place, gradient: &Gradient) -> Hessian {
     let Place { force, motion, loads, .. } = *place;
     let problem = geometry.problem;

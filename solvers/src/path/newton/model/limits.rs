@@ -9,24 +9,26 @@ use voussoir_core::path::PathProblem;
 /// Limits of the iterations of Newton's method.
 #[derive(Debug, Clone)]
 pub struct Iterations {
-    /// Rule by which all iterations are shortened.
+    /// Rule that shortens all iterations.
     pub search: Option<LineSearch>,
-    /// Iterations of Newton's method.
+    /// Greatest number of iterations of Newton's method.
     pub iterations: u64,
-    /// Iterations whose equations may have no solution: the shifted equations, a soft bedding, show the points that close.
+    /// Greatest number of iterations with equations without a solution: the solution of the shifted equations, which
+    /// act as a soft bedding, shows the points that close.
     pub unsolved: u32,
-    /// Iterations in which few points change and do not become fewer, up to which they are no cycle.
+    /// Greatest number of iterations in which few points change and do not become fewer; with more, they form a cycle.
     pub cycle: u32,
-    /// Iterations up to which a load is reached in one step.
+    /// Greatest number of iterations for a load in one step.
     pub one_step: u64,
 }
 
 /// Limits of Newton's method and of steps.
 #[derive(Debug, Clone)]
 pub struct Limits {
-    /// True if rates depend on the history: points that yield on have other tangents than points that unload.
+    /// True if rates depend on the history: points that yield have other tangents than points that unload.
     pub remembers: bool,
-    /// True if equations and factors of a place may serve states near it: those of a chain of elastic blocks with laws of facets.
+    /// True if equations and factors of a state may be used at nearby states: chains of elastic blocks with laws of
+    /// facets.
     pub nearby: bool,
     /// True if one piece may carry any load.
     pub carries_any_load: bool,
@@ -35,29 +37,30 @@ pub struct Limits {
     pub rounding: f64,
     /// Distance from the predictor, relative to the step, beyond which a state is on another branch of a law.
     pub branch: f64,
-    /// Size by which positions round \[m\]; zero if they round by their own size, as small displacements do.
+    /// Size to which rounding of positions is relative \[m\]; zero with small displacements, which round by their own
+    /// size.
     pub place: f64,
-    /// Share of the displacements to which Newton's method gives positions.
+    /// Accuracy of positions in Newton's method, relative to the displacements.
     pub position: f64,
     /// Greatest rotation of an iteration \[rad\].
     pub rotation: f64,
-    /// Greatest force, relative to its unit, with which forces of a state are compared with each other only.
+    /// Greatest force, relative to its unit, for which forces of a state are compared only with each other.
     pub weak: f64,
-    /// Share of the motion of a mechanism that is followed first.
+    /// First part of the motion of a mechanism that is followed, as a share.
     pub mechanism: f64,
-    /// Energy that a step may leave over, relative to its stage.
+    /// Accepted energy error of a step, relative to its stage.
     pub energy: f64,
 }
 
 impl Limits {
-    /// Of a problem, if displacements are `finite` or small, and if its elastic blocks form a `chain`.
+    /// Returns the limits of a problem, for `finite` or small displacements; `chain`: its elastic blocks form a chain.
     pub fn of(problem: &PathProblem, finite: bool, chain: bool, units: Units) -> Limits {
         let (bonds, yields) = (problem.contacts.iter().any(|c| c.law.response().is_some()), problem.yields());
         let remembers = bonds || yields;
         let mut limits = Limits {
             remembers,
             nearby: finite && chain && !remembers,
-            // Strengths bound a block that may yield, and displaced positions any load.
+            // // The strength of a block that may yield bounds the load, and so do displaced positions.
             carries_any_load: !yields && !finite,
             newton: Iterations { search: None, iterations: 30, unsolved: 10, cycle: u32::MAX, one_step: u64::MAX },
             rounding: 0.0,
@@ -66,7 +69,7 @@ impl Limits {
             position: if yields { SETTINGS.inequality() } else { 0.0 },
             rotation: f64::INFINITY,
             weak: -1.0,
-            // With small displacements the mechanism is the same all along.
+            // // With small displacements the mechanism does not change.
             mechanism: 1.0,
             energy: SETTINGS.energy_of_stage,
         };
@@ -78,14 +81,14 @@ impl Limits {
             (limits.weak, limits.mechanism) = (SETTINGS.small, 1e-3);
         }
         if bonds {
-            // Between the pieces of a law whole iterations may cycle. A law that softens converges soon or not at all: shorter
-            // steps cost less than long iterations.
+            // // Between the pieces of a law whole iterations may cycle. A softening law converges soon or not at all:
+            // shorter steps cost less than more iterations.
             let nothing = SETTINGS.admissible;
             limits.newton.search =
                 Some(LineSearch { decrease: 0.3, halvings: 4, memory: 1, nothing, merits: Vec::new() });
             (limits.newton.iterations, limits.branch) = (25, SETTINGS.half);
             limits.rounding = limits.rounding.max(400.0 * f64::EPSILON);
-            // Bonds that soften are followed more closely step by step.
+            // // Softening bonds need a smaller energy error in each step.
             limits.energy = SETTINGS.fine;
         }
         limits

@@ -1,9 +1,9 @@
-//! The loads in force: those that earlier stages left and the one that grows.
+//! The present loads: the loads left by earlier stages and the growing load.
 
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::path::Loading;
 
-/// The loads in force: each loading with its factor, the one that grows last.
+/// The present loads: each loading with its factor; the growing one is last.
 pub struct Loads<'a> {
     pub parts: Vec<(f64, &'a Loading)>,
 }
@@ -17,7 +17,7 @@ impl Loads<'_> {
         self.parts[self.parts.len() - 1].1
     }
 
-    /// Motion of all held bodies by settlement.
+    /// Returns the motion of all held bodies by settlement.
     pub fn settled(&self, bodies: usize) -> Vec<[f64; 3]> {
         let mut motion = vec![[0.0; 3]; bodies];
         for (factor, loading) in &self.parts {
@@ -29,7 +29,7 @@ impl Loads<'_> {
     }
 }
 
-/// The present load step on top of what earlier ones left.
+/// The present load step, added to the loads of earlier ones.
 #[derive(Clone)]
 pub struct StagedLoads<'a> {
     pub earlier: Vec<(f64, &'a Loading)>,
@@ -39,16 +39,16 @@ pub struct StagedLoads<'a> {
     pub damping: Option<Damping>,
 }
 
-/// Viscous wrenches on the free bodies: rate × the motion since, both in units.
+/// Viscous wrenches on the free bodies: rate × the motion since the start, both in units.
 #[derive(Debug, Clone)]
 pub struct Damping {
     pub rate: f64,
-    /// Motions from which they pull.
+    /// Motions at the start.
     pub from: Vec<[f64; 3]>,
 }
 
 impl<'a> StagedLoads<'a> {
-    /// Loads without damping.
+    /// Creates loads without damping.
     pub fn new(earlier: Vec<(f64, &'a Loading)>, growing: &'a Loading, start: f64) -> Self {
         StagedLoads { earlier, growing, start, damping: None }
     }

@@ -1,4 +1,4 @@
-//! The problem as data: geometry, laws, loads, the state, gaps and balance with their derivatives.
+//! The data of the problem: geometry, laws, loads, the state, gaps and balance with their derivatives.
 
 pub mod blocks;
 pub mod control;

@@ -1,4 +1,4 @@
-//! A state of a step, what it remembers, and its rate along the path.
+//! A state of a step, its history, and its rate along the path.
 
 use super::blocks::YieldingBlock;
 use super::geometry::Place;
@@ -17,19 +17,19 @@ pub struct State {
     pub mode: Vec<ContactMode>,
     /// s: irreversible gap.
     pub slip: Vec<[f64; 2]>,
-    /// What laws of tractions from gaps say, with their history.
+    /// Responses of laws of tractions from gaps, with their history.
     pub updates: TractionUpdates,
-    /// Bodies whose material yields, by body.
+    /// Bodies with yielding material, by body.
     pub blocks: Vec<Option<YieldingBlock>>,
 }
 
 impl State {
-    /// Where derivatives at it are taken.
+    /// Returns the point at which its derivatives are computed.
     pub fn place<'a>(&'a self, loads: &'a Loads<'a>) -> Place<'a> {
         Place { force: &self.force, motion: &self.motion, loads, blocks: &self.blocks }
     }
 
-    /// Whether derivatives at another state are those at this one.
+    /// Returns true if derivatives at another state are those at this one.
     pub fn is_at_place_of(&self, other: &State) -> bool {
         let same = |(a, b): (&Option<YieldingBlock>, &Option<YieldingBlock>)| match (a, b) {
             (Some(a), Some(b)) => Rc::ptr_eq(&a.linear, &b.linear),
@@ -42,7 +42,7 @@ impl State {
             && self.blocks.iter().zip(&other.blocks).all(same)
     }
 
-    /// Whether a block yields in the step that ends here.
+    /// Returns true if a block yields in the step that ends here.
     pub fn yields(&self) -> bool {
         self.blocks.iter().flatten().any(|inner| inner.linear.yielding > 0)
     }
@@ -68,7 +68,7 @@ impl Tangent {
     }
 }
 
-/// A state a share of a rate on.
+/// Returns a state moved by a share of a rate.
 pub fn moved(state: &State, rate: &Tangent, share: f64) -> State {
     let mut guess = state.clone();
     for (r, dr) in guess.force.iter_mut().zip(&rate.force) {

@@ -1,4 +1,4 @@
-//! The system of a step as data: units, laws, loads, geometry; and what the last evaluations leave to the next.
+//! The data of the system of a step: units, laws, loads, geometry; and cached evaluations.
 
 use super::blocks::{YieldingBlock, undeformed};
 use super::control::MonitorWeights;
@@ -25,39 +25,39 @@ use voussoir_core::path::PathProblem;
 
 /// Laws of the contact points.
 pub struct Laws {
-    /// Of facets, each once.
+    /// Laws of facets, each stored once.
     pub polygons: Vec<YieldPolygon>,
-    /// For each contact point the index of its polygon.
+    /// Index of the polygon of each contact point.
     pub polygon_of: Vec<Option<usize>>,
-    /// Of tractions from gaps.
+    /// Laws of tractions from gaps.
     pub responses: Responses,
-    /// Undeformed bodies whose material yields.
+    /// Undeformed bodies with yielding material.
     undeformed: Vec<Option<YieldingBlock>>,
 }
 
-/// Work and failures of the last steps. People read it, the solver does not.
+/// Work and failures of the last steps, for reports only.
 #[derive(Default)]
 pub struct Report {
     pub counters: Counters,
-    /// Iterations of Newton's method: the budget of a load step.
+    /// Number of iterations of Newton's method, compared with the budget of a load step.
     pub iterations: u64,
-    /// Greatest relative residual of each iteration of the last step that was tried.
+    /// Greatest relative residual of each iteration of the last attempted step.
     pub residuals: Vec<f64>,
-    /// The reason why a law or a block gave no stresses last.
+    /// The reason of the last failure of a law or a block.
     pub failure: Option<String>,
 }
 
-/// Places whose equations are held: the beginning and the end of a step, and what lies between.
+/// Number of states with stored equations: the start and the end of a step, and between.
 const PLACES: usize = 4;
 
-/// What is computed once for many iterations.
+/// Results that are computed once for many iterations.
 #[derive(Default)]
 pub struct Cache {
-    /// Gaps and balance of linear blocks with small displacements, of the present load step.
+    /// Gaps and balance of linear blocks with small displacements in the present load step.
     pub equations: Option<Rc<Equations>>,
-    /// The last ones of finite displacements or blocks that yield, with the states that they are of; the latest first.
+    /// The last equations with finite displacements or yielding blocks, with their states; latest first.
     pub at: VecDeque<(State, Rc<Equations>)>,
-    /// The last gradient, with the state that it is of.
+    /// The last gradient, with its state.
     pub gradient: RefCell<Option<(State, Rc<Gradient>)>>,
     pub factors: LastFactors,
 }
@@ -68,18 +68,18 @@ pub struct StepSystem<'a> {
     pub geometry: Geometry<'a>,
     pub laws: Laws,
     pub limits: Limits,
-    /// The problem in its units, with the unit of the factor that grows now.
+    /// The problem in scaled units, with the unit of the growing factor.
     pub scaled: System,
     pub loads: StagedLoads<'a>,
     pub cache: Cache,
-    /// What the strategy watches.
+    /// Monitors of the strategy.
     pub monitors: Vec<MonitorWeights>,
     pub report: Report,
     /// Relative tolerance of loads.
     pub tolerance: f64,
 }
 
-/// What laws of tractions from gaps add to the compliance of contact points before anything has moved.
+/// Returns the additional compliance of contact points with laws of tractions from gaps, before any motion.
 fn softening(problem: &PathProblem, responses: &Responses) -> Result<Vec<[f64; 2]>, String> {
     let untouched = responses.update(&vec![[0.0; 2]; problem.contacts.len()], &problem.untouched())?;
     let of_point = |(point, c): (&TractionPoint, &voussoir_core::path::Contact)| {
@@ -120,23 +120,24 @@ impl<'a> StepSystem<'a> {
         })
     }
 
-    /// Relative residual of a state that is found. The error of a load is about the residual divided by the remaining stiffness, so
-    /// that residuals are kept four orders of magnitude below the tolerance of loads, but not below rounding.
+    /// Returns the relative residual of a converged state. The error of a load is about the residual divided by the
+    /// remaining stiffness. Residuals are therefore four orders of magnitude below the tolerance of loads, but not
+    /// below rounding.
     pub fn found(&self) -> f64 {
         (SETTINGS.fine * self.tolerance).clamp(SETTINGS.rounding, SETTINGS.inequality())
     }
 
-    /// Units of the unknowns.
+    /// Returns the units of the unknowns.
     pub fn units(&self) -> Units {
         self.scaled.units
     }
 
-    /// Number of unknowns.
+    /// Returns the number of unknowns.
     pub fn size(&self) -> usize {
         self.scaled.size() + 1
     }
 
-    /// Begins a load step.
+    /// Starts a load step.
     pub fn load(&mut self, loads: StagedLoads<'a>) {
         self.scaled.units.factor = self.scaled.units.of_factor(self.problem, loads.growing);
         self.loads = loads;
@@ -146,12 +147,12 @@ impl<'a> StepSystem<'a> {
         self.cache.factors.forget();
     }
 
-    /// Adds to a counter of the work done.
+    /// Adds to a counter of the work.
     pub fn count(&mut self, what: &str, by: u64) {
         *self.report.counters.entry(what.into()).or_default() += by;
     }
 
-    /// Whether equilibrium is that of displaced positions.
+    /// Returns true with finite displacements: equilibrium in displaced positions.
     pub fn finite(&self) -> bool {
         self.geometry.finite
     }
@@ -161,7 +162,8 @@ impl<'a> StepSystem<'a> {
         self.problem.load_size(self.loads.growing) == 0.0
     }
 
-    /// Forces and a factor that are rounding of the loads become nothing with small displacements. Bonds have given their own.
+    /// Sets forces and a factor within rounding of the loads to zero, with small displacements. Forces of bonds are not
+    /// changed.
     pub fn drop_rounding(&self, state: &mut State) {
         let (u, start) = (self.scaled.units, self.loads.start);
         let largest = state.force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
@@ -176,7 +178,7 @@ impl<'a> StepSystem<'a> {
         }
     }
 
-    /// The state before anything has moved.
+    /// Returns the state before any motion.
     pub fn undeformed(&self) -> State {
         let points = self.problem.contacts.len();
         let motion = vec![[0.0; 3]; self.problem.bodies.len()];
@@ -190,25 +192,25 @@ impl<'a> StepSystem<'a> {
             updates: TractionUpdates { memory: self.problem.untouched(), ..TractionUpdates::default() },
             blocks: self.laws.undeformed.clone(),
         };
-        // The update of untouched joints has succeeded in `new`.
+        // // The update of undeformed joints has succeeded in `new`.
         if let Ok(updates) = self.laws.responses.update(&state.gap, &state.updates.memory) {
             state.updates = updates;
         }
         state
     }
 
-    /// The facets of a contact point, where its law has that form.
+    /// Returns the facets of a contact point, if its law has facets.
     pub fn law(&self, contact: usize) -> Option<&YieldPolygon> {
         self.laws.polygon_of[contact].map(|law| &self.laws.polygons[law])
     }
 
-    /// ρ of a contact point: the inverse of its own compliance \[N/m\].
+    /// Returns ρ of a contact point: the inverse of its own compliance \[N/m\].
     pub fn stiffness(&self, contact: usize) -> [f64; 2] {
         let mean = self.scaled.units.displacement / self.scaled.units.force;
         self.scaled.compliance[contact].map(|own| 1.0 / if own > 1e-9 * mean { own } else { mean })
     }
 
-    /// Motions with the held bodies where their settlements put them.
+    /// Moves the held bodies to their settlements.
     pub fn settle(&self, motion: &mut [[f64; 3]], factor: f64) {
         let settled = self.loads.at(factor).settled(motion.len());
         for (body, motion) in motion.iter_mut().enumerate() {
@@ -218,7 +220,7 @@ impl<'a> StepSystem<'a> {
         }
     }
 
-    /// First derivatives of Π at a state.
+    /// Returns the first derivatives of Π at a state.
     pub fn gradient(&self, state: &State) -> Rc<Gradient> {
         let mut last = self.cache.gradient.borrow_mut();
         if let Some((_, found)) = last.as_ref().filter(|(at, _)| at.is_at_place_of(state)) {
@@ -230,7 +232,7 @@ impl<'a> StepSystem<'a> {
         found
     }
 
-    /// Gaps and balance linearised at a state.
+    /// Returns gaps and balance linearised at a state.
     pub fn equations(&mut self, state: &State) -> Rc<Equations> {
         if self.finite() || state.yields() {
             let known = self.cache.at.iter().position(|(at, _)| at.is_at_place_of(state));
@@ -255,12 +257,12 @@ impl<'a> StepSystem<'a> {
         self.cache.equations.get_or_insert_with(linear).clone()
     }
 
-    /// Δg of a step at a contact point.
+    /// Returns Δg of a step at a contact point.
     pub fn step_gap(&self, start: &State, state: &State, contact: usize) -> [f64; 2] {
         [state.gap[contact][0] - start.slip[contact][0], state.gap[contact][1] - start.slip[contact][1]]
     }
 
-    /// The irreversible gaps and the plastic strains of a step become history.
+    /// Adds the irreversible gaps and the plastic strains of a step to the history.
     pub fn keep(&self, start: &State, state: &mut State) {
         state.blocks.iter_mut().flatten().for_each(|inner| inner.base = inner.linear.end.clone());
         for c in 0..state.gap.len() {

@@ -1,26 +1,25 @@
 //! Contact points with laws of tractions from gaps: r = A t(g, history).
 //!
-//! Two rows a point, with K = −A ∂t/∂g of the update itself and each row in its own scale,
+//! Each point has two rows. With K = −A ∂t/∂g of the update itself and a separate scale for each row,
 //!
 //! ```text
 //! σ (r − A t(g)) = 0,    σ (dr + K dg) = −σ (r − A t(g)),    σ = 1 / (F + U max|K|)
 //! ```
 //!
-//! where the joint is stiff against the rest this is g − c r = 0, where it has lost its stiffness
-//! r = A t: both are conditioned like the other rows. The history is that of the last converged state
-//! until the step is accepted.
+//! If the joint is stiff compared with the rest, this is g − c r = 0; if it has lost its stiffness, it is r = A t. Both
+//! are conditioned like the other rows. The history is that of the last converged state until the step is accepted.
 
 use std::sync::Arc;
 use voussoir_core::law::{InterfaceResponse, TractionPoint, UpdateBranch};
 use voussoir_core::path::PathProblem;
 
-/// Contact points of one law, and where their states stand.
+/// Contact points of one law, with the places of their states.
 #[derive(Debug, Clone)]
 struct Group {
     law: Arc<dyn InterfaceResponse>,
     /// Contact points.
     points: Vec<usize>,
-    /// Place of each point's state among those of all points.
+    /// Place of each point's state in the states of all points.
     places: Vec<usize>,
 }
 
@@ -30,12 +29,12 @@ pub struct Responses {
     groups: Vec<Group>,
     /// For each contact point its group and the place of its state, if it has such a law.
     of: Vec<Option<(usize, usize)>>,
-    /// Joint and place of each contact point.
+    /// Joint of each contact point, and position.
     places: Vec<(usize, [f64; 2])>,
 }
 
-/// A point with the name of its branch: an open one without normal traction, if its law names no branches. A tangent by differences
-/// is that of both sides next to the corner.
+/// Returns a point with the name of its branch: if its law names no branches, a point without normal traction is open.
+/// Next to the corner a tangent by differences mixes both sides.
 fn named(point: TractionPoint, gap: [f64; 2]) -> TractionPoint {
     match point.branch == UpdateBranch::ELASTIC && point.traction[0] == 0.0 && gap[0] > 0.0 {
         true => TractionPoint { branch: UpdateBranch::OPEN, tangent: [[0.0; 2], point.tangent[1]], ..point },
@@ -43,14 +42,14 @@ fn named(point: TractionPoint, gap: [f64; 2]) -> TractionPoint {
     }
 }
 
-/// What the laws say at a state.
+/// Responses of the laws at a state.
 #[derive(Debug, Clone, Default)]
 pub struct TractionUpdates {
-    /// For each contact point; empty without such laws.
+    /// Response of each contact point; empty without such laws.
     pub points: Vec<TractionPoint>,
-    /// States of the laws after the step, contact point after contact point.
+    /// States of the laws after the step, in the order of the contact points.
     pub memory: Vec<f64>,
-    /// Those before it.
+    /// States of the laws before the step.
     pub before: Vec<f64>,
 }
 
@@ -82,18 +81,18 @@ impl Responses {
         self.of[contact].is_some()
     }
 
-    /// Number of points.
+    /// Returns the number of points.
     pub fn count(&self) -> u64 {
         self.groups.iter().map(|group| group.points.len() as u64).sum()
     }
 
-    /// The contact points.
+    /// Returns the contact points.
     pub fn points(&self) -> impl Iterator<Item = usize> + '_ {
         self.groups.iter().flat_map(|group| group.points.iter().copied())
     }
 
-    /// The answer of the law of a contact point at a gap, from the states of all points before. `None` if it has no such law or the
-    /// law fails.
+    /// Returns the response of the law of a contact point at a gap, from the states of all points before. `None` if it
+    /// has no such law or the law fails.
     pub fn at(&self, contact: usize, gap: [f64; 2], before: &[f64]) -> Option<TractionPoint> {
         let (group, at) = self.of[contact]?;
         let law = &self.groups[group].law;
@@ -101,7 +100,7 @@ impl Responses {
         law.respond_point(gap, old, &mut old.to_vec()).ok().map(|point| named(point, gap))
     }
 
-    /// Names the law, the joint, the point and the gap at which it failed.
+    /// Returns a message with the law, the joint, the point and the gap of a failure.
     fn failure(&self, group: &Group, index: usize, gap: Option<&[f64; 2]>, why: &str) -> String {
         let contact = group.points.get(index).copied().unwrap_or_default();
         let place = self.places.get(contact).copied().unwrap_or_default();
@@ -111,7 +110,7 @@ impl Responses {
         )
     }
 
-    /// One update of all points, group by group. An error says what went wrong.
+    /// Updates all points, group by group. An error gives the reason of the failure.
     pub fn update(&self, gaps: &[[f64; 2]], before: &[f64]) -> Result<TractionUpdates, String> {
         if self.is_empty() {
             return Ok(TractionUpdates::default());

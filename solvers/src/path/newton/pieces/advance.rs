@@ -1,8 +1,9 @@
 //! A step along a piece, which ends at the first event if there is one in it.
 //!
-//! Monitors are known with their rates at both ends of a step. One that is negative at the end has a root in it. One that is
-//! positive at both ends, but whose cubic of Hermite is negative between them, may have two: the step is cut there. A
-//! root is bracketed, and located by the roots of cubics to the tolerance of the monitor.
+//! The values and rates of monitors are known at both ends of a step. A monitor that is negative at the end has a root
+//! in the step. A monitor that is positive at both ends may have two roots if its Hermite cubic is negative between
+//! them; the step then ends there. A root is bracketed, and located by the roots of cubics to the tolerance of the
+//! monitor.
 
 use super::corrector::correct;
 use super::monitors::Reading;
@@ -14,9 +15,9 @@ use crate::path::newton::model::system::StepSystem;
 use crate::path::newton::quantities::ahead::length_ahead;
 use crate::settings::SETTINGS;
 
-/// Points between the ends of a step at which a cubic is looked at.
+/// Number of points between the ends of a step at which a cubic is evaluated.
 const SAMPLES: usize = 16;
-/// States that are computed to locate an event.
+/// Greatest number of states that are computed to locate an event.
 const MOST_TRIALS: usize = 100;
 
 /// A state of a piece at the end of a step.
@@ -27,27 +28,27 @@ pub(super) struct StepEnd {
     pub length: f64,
     /// Distance from the predictor, relative to the length.
     pub error: f64,
-    /// Error of the trapezoidal rule for the factor's change by its rates at both ends, relative to that change.
-    /// Without it a factor that falls, rises and falls again within the step would not be noticed.
+    /// Error of the trapezoidal rule for the factor's change, from its rates at both ends, relative to that change. It
+    /// reveals a factor that falls, rises and falls again within the step.
     pub unexplained: f64,
 }
 
-/// How a step ends.
+/// The end of a step.
 pub(super) enum Advance {
-    /// Without an event.
+    /// No event.
     Whole(StepEnd),
-    /// The modes of some monitors end: their numbers.
+    /// The modes of some monitors end: their indices.
     Event(StepEnd, Vec<usize>),
     /// The factor turns.
     Turn(StepEnd),
-    /// The target.
+    /// The target is reached.
     Target(StepEnd),
-    /// Newton's method finds no state. A shorter step may.
+    /// Newton's method finds no state; a shorter step may succeed.
     Failed,
 }
 
 impl Advance {
-    /// The last state.
+    /// Returns the last state.
     pub fn end(&self) -> Option<&StepEnd> {
         match self {
             Advance::Whole(end) | Advance::Event(end, _) | Advance::Turn(end) | Advance::Target(end) => Some(end),
@@ -56,16 +57,16 @@ impl Advance {
     }
 }
 
-/// What is looked for besides events.
+/// The other ends of a step that are located besides events.
 #[derive(Clone, Copy)]
 pub(super) struct Watched {
-    /// Sign of the rate of the factor, if its change is looked for.
+    /// Sign of the rate of the factor, if its change is located.
     pub sense: Option<f64>,
     /// A factor, and the sign in which it is approached.
     pub target: Option<(f64, f64)>,
 }
 
-/// A state on the piece with its readings: those of the monitors, then of the factor's rate, then of the target.
+/// A state on the piece with its readings: first the monitors, then the rate of the factor, then the target.
 struct Trial {
     end: StepEnd,
     readings: Vec<Reading>,
@@ -98,17 +99,17 @@ impl Step<'_, '_> {
         all
     }
 
-    /// Length at which the first branch of a law of tractions ends if its rate stays.
+    /// Returns the length at which the first branch of a law of tractions ends if its rate is constant.
     fn branch_crossing(&self, readings: &[Reading]) -> f64 {
         readings.iter().filter(|reading| reading.of_branch).map(|reading| reading.value).fold(f64::INFINITY, f64::min)
     }
 
-    /// The state at a length, from one nearer to the start.
+    /// Computes the state at a length, from a state nearer to the start.
     fn trial(&mut self, from: &StepEnd, length: f64) -> Option<Trial> {
         self.controlled(from, length, &self.piece.control(length))
     }
 
-    /// The state of a control, about a length away.
+    /// Computes the state of a control, about `length` away.
     fn controlled(&mut self, from: &StepEnd, length: f64, control: &Control) -> Option<Trial> {
         let guess = moved(&from.state, &from.rate, length - from.length);
         let state = correct(self.system, self.start, guess, control)?;
@@ -125,13 +126,13 @@ impl Step<'_, '_> {
         Some(Trial { end: StepEnd { state, rate, length, error, unexplained }, readings })
     }
 
-    /// Distance of two states over the scaled unknowns.
+    /// Returns the distance of two states over the scaled unknowns.
     fn distance(&self, low: &Trial, high: &Trial) -> f64 {
         let row = scaled_row(self.system, &chord(&low.end.state, &high.end.state));
         inner(&row, &row).sqrt()
     }
 
-    /// Error of the trapezoidal rule for the factor.
+    /// Returns the error of the trapezoidal rule for the factor.
     fn unexplained(&self, end: &State, rate: &Tangent, length: f64) -> f64 {
         let [before, after] = [self.piece.tangent.factor, rate.factor].map(|slope| slope * length);
         let gained = end.factor - self.start.factor;
@@ -140,7 +141,7 @@ impl Step<'_, '_> {
         (gained - 0.5 * (before + after)).abs() / size
     }
 
-    /// The state at the target, if a step of a length reaches it by its rate and all modes hold there.
+    /// Computes the state at the target, if a step of a length reaches it by its rate and all modes hold there.
     fn reaching_target(&mut self, low: &StepEnd, length: f64) -> Option<StepEnd> {
         let (target, _) = self.watched.target?;
         let reach = (target - low.state.factor) / low.rate.factor;
@@ -154,7 +155,7 @@ impl Step<'_, '_> {
     }
 }
 
-/// The change from one state to another.
+/// Returns the change from one state to another.
 pub(super) fn chord(from: &State, to: &State) -> Tangent {
     let pairs = |a: &[[f64; 2]], b: &[[f64; 2]]| a.iter().zip(b).map(|(a, b)| [a[0] - b[0], a[1] - b[1]]).collect();
     Tangent {
@@ -165,14 +166,14 @@ pub(super) fn chord(from: &State, to: &State) -> Tangent {
     }
 }
 
-/// The state at a length along a piece from one of its states, whatever its monitors read.
+/// Computes the state at a length along a piece from one of its states, whatever the readings of its monitors.
 pub(super) fn state_at(system: &mut StepSystem, start: &State, piece: &Piece, length: f64) -> Option<StepEnd> {
     let low = StepEnd { state: start.clone(), rate: piece.tangent.clone(), length: 0.0, error: 0.0, unexplained: 0.0 };
     let mut step = Step { system, start, piece, watched: Watched { sense: None, target: None } };
     step.trial(&low, length).map(|trial| trial.end)
 }
 
-/// Goes a length along a piece from one of its states.
+/// Moves a length along a piece from one of its states.
 pub(super) fn advance(
     system: &mut StepSystem,
     (start, piece): (&State, &Piece),
@@ -184,7 +185,7 @@ pub(super) fn advance(
     let end = StepEnd { state: start.clone(), rate: piece.tangent.clone(), length: 0.0, error: 0.0, unexplained: 0.0 };
     let low = Trial { end, readings };
     let crossing = first_crossing(&low.readings);
-    // Beyond the end of a branch of a law of tractions there may be no state along the present tangent.
+    // // Beyond the end of a branch of a law of tractions a state along the present tangent may not exist.
     let of_branch = step.branch_crossing(&low.readings);
     let length = length.min(if of_branch <= crossing { of_branch } else { SETTINGS.beyond * crossing });
     if let Some(end) = step.reaching_target(&low.end, length) {
@@ -206,7 +207,7 @@ pub(super) fn advance(
     }
 }
 
-/// Goes on from a state next to the end of a law's branch up to this end.
+/// Moves from a state next to the end of a law's branch to this end.
 fn at_branch_end(step: &mut Step, low: Trial, mut high: Trial) -> Advance {
     for _ in 0..MOST_TRIALS {
         let left = step.branch_crossing(&high.readings);
@@ -227,7 +228,7 @@ fn at_branch_end(step: &mut Step, low: Trial, mut high: Trial) -> Advance {
     Advance::Whole(high.end)
 }
 
-/// Length at which the first monitor would be zero if all rates stayed.
+/// Returns the length at which the first monitor would be zero with constant rates.
 pub(super) fn first_crossing(readings: &[Reading]) -> f64 {
     let crossing = |reading: &Reading| {
         let rate = reading.rate.filter(|rate| *rate < 0.0 && reading.value > reading.tolerance)?;
@@ -245,7 +246,7 @@ fn locate(step: &mut Step, mut low: Trial, mut high: Trial) -> Advance {
         if width <= SETTINGS.rounding * whole {
             break;
         }
-        // If the root of a cubic has not halved the bracket, a half does: a rate may jump where a material yields.
+        // // If the root of a cubic has not halved the bracket, bisect: rates may jump if a material yields.
         let share = if width > 0.5 * last { 0.5 } else { first_root(&low, &high).clamp(1e-6, 1.0 - 1e-6) };
         last = width;
         let at = low.end.length + share * width;
@@ -254,7 +255,8 @@ fn locate(step: &mut Step, mut low: Trial, mut high: Trial) -> Advance {
             high = middle;
             continue;
         }
-        // A monitor that rests at zero is violated behind a corner of the path: only the bracket gives the place of the corner.
+        // // A monitor that stays at zero is violated beyond a corner of the path: only the bracket gives the position
+        // of the corner.
         let arrives = |i: usize| {
             let here = &middle.readings[i];
             let falls =
@@ -267,7 +269,8 @@ fn locate(step: &mut Step, mut low: Trial, mut high: Trial) -> Advance {
             return ended(low, &high);
         }
     }
-    // A path, its slacks and its openings are continuous: behind a bracket over which one jumps the states are on another branch.
+    // // Slacks and openings are continuous along a path: if one jumps over the bracket, the states beyond are on
+    // another branch.
     let jumps = |(a, b): (&Reading, &Reading)| a.rate.is_some() && !a.is_active() && b.is_violated();
     let far = SETTINGS.cancels * (high.end.length - low.end.length) + length_ahead(step.system, step.start);
     match step.distance(&low, &high) > far || low.readings.iter().zip(&high.readings).any(jumps) {
@@ -277,7 +280,7 @@ fn locate(step: &mut Step, mut low: Trial, mut high: Trial) -> Advance {
     }
 }
 
-/// What ends a step at `low`, behind which `high` violates something.
+/// Returns the end of a step at `low`; `high` beyond it violates a monitor.
 fn ended(low: Trial, high: &Trial) -> Advance {
     let monitors = low.readings.len() - 2;
     let ends = |i: usize| {
@@ -292,7 +295,7 @@ fn ended(low: Trial, high: &Trial) -> Advance {
         (_, true, _) => Advance::Target(low.end),
         (false, ..) => Advance::Event(low.end, hits),
         (true, _, true) => Advance::Turn(low.end),
-        // The bracket is narrower than rounding: all that end in it end here.
+        // // The bracket is narrower than rounding: all monitors that end in it end here.
         _ => {
             let hits: Vec<usize> = (0..monitors).filter(|i| high.readings[*i].is_violated()).collect();
             match (hits.is_empty(), high.readings[target].is_violated()) {
@@ -304,7 +307,7 @@ fn ended(low: Trial, high: &Trial) -> Advance {
     }
 }
 
-/// Share of the way from one trial to another at which the first violated reading is zero.
+/// Returns the share of the way from one trial to another at which the first violated reading is zero.
 fn first_root(low: &Trial, high: &Trial) -> f64 {
     let width = high.end.length - low.end.length;
     let root = |(a, b): (&Reading, &Reading)| {
@@ -322,13 +325,13 @@ fn first_root(low: &Trial, high: &Trial) -> f64 {
     pairs.map(root).fold(1.0, f64::min)
 }
 
-/// The cubic of Hermite by values and derivatives at 0 and 1.
+/// Evaluates the Hermite cubic with these values and derivatives at 0 and 1.
 fn cubic([a, da, b, db]: [f64; 4], x: f64) -> f64 {
     let y = 1.0 - x;
     a * y * y * (1.0 + 2.0 * x) + da * x * y * y + b * x * x * (3.0 - 2.0 * x) - db * x * x * y
 }
 
-/// The first root of a cubic that is positive at 0.
+/// Returns the first root of a cubic that is positive at 0.
 fn cubic_root(of: [f64; 4]) -> Option<f64> {
     let at = |k: usize| k as f64 / SAMPLES as f64;
     let k = (1..=SAMPLES).find(|k| cubic(of, at(*k)) < 0.0)?;
@@ -340,14 +343,14 @@ fn cubic_root(of: [f64; 4]) -> Option<f64> {
     Some(0.5 * (low + high))
 }
 
-/// Share of a step at which a monitor that is positive at both ends may be negative, or the factor may turn if that is
-/// `watched`.
+/// Returns the share of a step at which a monitor that is positive at both ends may be negative, or the factor may turn
+/// if that is `watched`.
 fn hidden_root(low: &Trial, high: &Trial, watched: bool) -> Option<f64> {
     let width = high.end.length;
     let hidden = |(a, b): (&Reading, &Reading)| {
         let (da, db) = (a.rate?, b.rate?);
         let of = [a.value, da * width, b.value, db * width];
-        // Only one that turns inside has a least value there.
+        // // Only a monitor that turns inside the step has its minimum there.
         if a.value <= a.tolerance || da >= 0.0 || db <= 0.0 {
             return None;
         }
@@ -359,7 +362,7 @@ fn hidden_root(low: &Trial, high: &Trial, watched: bool) -> Option<f64> {
     monitors.chain(turn).reduce(f64::min)
 }
 
-/// Share of a step at which the factor may turn if it goes in one sense at both ends.
+/// Returns the share of a step at which the factor may turn if it has the same sense at both ends.
 fn hidden_turn(low: &Trial, high: &Trial) -> Option<f64> {
     let width = high.end.length;
     let [da, db] = [low, high].map(|trial| trial.end.rate.factor * width);
@@ -367,7 +370,7 @@ fn hidden_turn(low: &Trial, high: &Trial) -> Option<f64> {
         return None;
     }
     let gained = high.end.state.factor - low.end.state.factor;
-    // The derivative of the cubic of the factor, in the sense at the ends.
+    // // The derivative of the cubic of the factor, in the sense at the ends.
     let slope = |x: f64| {
         (6.0 * gained * x * (1.0 - x) + da * (1.0 - x) * (1.0 - 3.0 * x) + db * x * (3.0 * x - 2.0)) * da.signum()
     };
@@ -378,7 +381,7 @@ fn hidden_turn(low: &Trial, high: &Trial) -> Option<f64> {
 mod tests {
     use super::*;
 
-    /// The cubic has the values and derivatives that it is made from.
+    /// The cubic has the given values and derivatives.
     #[test]
     fn a_cubic_takes_its_values_and_derivatives() {
         let of = [2.0, -3.0, 0.5, 4.0];

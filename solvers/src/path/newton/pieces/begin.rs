@@ -1,4 +1,4 @@
-//! The first piece of a load step, or of what follows a jump: a rate on which the factor goes in its sense.
+//! The first piece of a load step, or the first piece after a jump: a rate on which the factor changes in its sense.
 
 use super::piece::Piece;
 use super::switch::{Start, is_admissible};
@@ -14,10 +14,10 @@ use crate::path::newton::tracing::tracer::{LoadStepEnding, Tracer, end_path};
 use crate::settings::SETTINGS;
 use voussoir_core::limit::Status;
 
-/// Shares of the load step at which a state is looked for if no rate has been found.
+/// Shares of the load step at which a state is computed if no rate has been found.
 const AHEAD: [f64; 3] = [1e-6, 1e-4, 1e-2];
 
-/// The first piece, or how the load step ends at its start.
+/// Returns the first piece, or the ending if the load step ends at its start.
 pub(super) fn begin(tracer: &mut Tracer, target: f64, direction: f64) -> Result<Piece, LoadStepEnding> {
     match first_rate(tracer, target, direction) {
         Ok((rate, modes)) => {
@@ -29,9 +29,10 @@ pub(super) fn begin(tracer: &mut Tracer, target: f64, direction: f64) -> Result<
     }
 }
 
-/// The rate from a state without forces. The modes of a state under a small load come first: Newton's method keeps the
-/// symmetry of a scene, without which friction that is not associated may have other solutions. If that finds none, the rate
-/// problem of the first piece is solved. If joints are open at first no such rate exists: the path begins at the small load.
+/// Returns the rate from a state without forces. First it uses the modes of a state under a small load: Newton's method
+/// keeps the symmetry of a scene, while non-associated friction may have other solutions. If that finds none, it solves
+/// the rate problem of the first piece. If joints are open at first, no such rate exists: the path begins at the small
+/// load.
 fn rate_from_nothing(tracer: &mut Tracer, target: f64, direction: f64) -> Result<Start, String> {
     let start = tracer.state.clone();
     let length = SETTINGS.first_load * tracer.system.units().factor.min((target - start.factor).abs());
@@ -50,7 +51,7 @@ fn rate_from_nothing(tracer: &mut Tracer, target: f64, direction: f64) -> Result
     rate_in(tracer, modes, target, direction).ok_or_else(|| "the modes that were found have no rate".into())
 }
 
-/// The rate at the present state in some modes, if they admit it.
+/// Returns the rate at the present state in some modes, if they admit it.
 fn rate_in(tracer: &mut Tracer, modes: Vec<ContactMode>, target: f64, direction: f64) -> Option<Start> {
     let state = State { mode: modes, ..tracer.state.clone() };
     let rate = tangent_at(&mut tracer.system, &state, &Control::Factor(target))?.scaled(direction);

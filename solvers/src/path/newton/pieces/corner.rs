@@ -1,7 +1,7 @@
 //! Corners of a path at which points of blocks begin or cease to yield.
 //!
-//! Material points make no events: Newton's method crosses such corners in the middle of a step. If a block softens or flows as a
-//! whole, the path turns sharply, and a state beyond the corner is not near any predictor. Then the step ends at the
+//! Material points have no events: Newton's method crosses such corners within a step. If a block softens or flows as a
+//! whole, the path turns sharply, and a state beyond the corner is far from any predictor. Then the step ends at the
 //! corner, which the law alone locates along the tangent.
 
 use super::monitors::BISECTIONS;
@@ -9,7 +9,8 @@ use crate::path::newton::model::state::{State, Tangent, moved};
 use crate::path::newton::model::system::StepSystem;
 use crate::path::newton::quantities::inelastic::update_blocks;
 
-/// The length along a rate, up to `most`, at which the first point of a block begins or ceases to yield. `None` if none does.
+/// Returns the length along a rate, up to `most`, at which the first point of a block begins or ceases to yield. `None`
+/// if no point does.
 pub(super) fn corner(system: &mut StepSystem, state: &State, rate: &Tangent, most: f64) -> Option<f64> {
     let mut yielding = |length: f64| -> Option<Vec<usize>> {
         let mut there = moved(state, rate, length);

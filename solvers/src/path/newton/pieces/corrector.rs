@@ -1,8 +1,8 @@
 //! Newton's method with the modes of all contact points fixed.
 //!
 //! The equations of a piece are smooth: without a change of mode Newton's method converges quadratically from a
-//! predictor that is near enough. What it finds may violate the inequalities of its modes; [`monitors`](super::monitors)
-//! tell.
+//! predictor that is near enough. The result may violate the inequalities of its modes; [`monitors`](super::monitors)
+//! check them.
 
 use crate::path::newton::model::control::Control;
 use crate::path::newton::model::state::State;
@@ -21,8 +21,8 @@ use crate::settings::SETTINGS;
 /// Number of iterations after which a shorter step is cheaper.
 const MOST: u32 = 12;
 
-/// The state on the piece that starts at `start`, from a guess with its modes. Returns `None` if the iterations do not
-/// converge.
+/// Computes the state on the piece that starts at `start`, from a guess with its modes. Returns `None` if the
+/// iterations do not converge.
 pub(super) fn correct(system: &mut StepSystem, start: &State, guess: State, control: &Control) -> Option<State> {
     let first = first_state(system, start, guess, control);
     let (mut state, mut gradient) = first.map_err(|why| system.report.failure = Some(why)).ok()?;

@@ -1,4 +1,4 @@
-//! Pieces one after the other, from the start of a load step to its end.
+//! Follows pieces from the start of a load step to its end.
 
 use super::advance::{Advance, StepEnd, Watched, advance, chord, state_at};
 use super::begin::begin;
@@ -37,9 +37,9 @@ use voussoir_core::path::{Branching, LimitPointEnd, LoadStep, LoadStepEnd, Prove
 const MOST_STEPS: u64 = 6000;
 /// Greatest number of iterations of Newton's method of a load step.
 const MOST_ITERATIONS: u64 = 20_000;
-/// Lengths, relative to the first step, of steps across a corner.
+/// Lengths of steps across a corner, relative to the first step.
 const ACROSS: [f64; 4] = [1e-4, 1e-3, 1e-5, 1e-6];
-/// Pieces of next to no length one after the other at which the path is lost.
+/// Greatest number of successive pieces of almost zero length.
 const MOST_SHORT_PIECES: u32 = 50;
 
 /// The ending of the load step if a step ends it.
@@ -50,13 +50,13 @@ struct Run<'d> {
     range: Range<'d>,
     piece: Piece,
     length: Lengths,
-    /// True if the factor goes in its sense.
+    /// True if the factor changes in its sense.
     rises: bool,
     cluster: Cluster,
     standing: Standing,
 }
 
-/// From where to where a load step goes.
+/// Start and end of a load step.
 struct Range<'d> {
     load_step: &'d LoadStep,
     target: f64,
@@ -69,9 +69,9 @@ struct Range<'d> {
 /// Lengths of steps along the tangent.
 struct Lengths {
     next: f64,
-    /// Greatest by the strategy.
+    /// Greatest length of the strategy.
     longest: f64,
-    /// That of the first step.
+    /// Length of the first step.
     first: f64,
 }
 
@@ -80,7 +80,7 @@ struct Lengths {
 struct Standing {
     /// True if the present modes are known to be unstable under their loads, and no stable equilibrium is near.
     unstable: bool,
-    /// True if the path moves on under a constant load.
+    /// True if the path continues under a constant load.
     on_plateau: bool,
     /// True if blocks flowed in the last step.
     flows: bool,
@@ -93,11 +93,11 @@ struct Cluster {
     hits: Vec<Monitor>,
     /// Modes, piece and sense before the first event.
     arrival: Option<(Vec<ContactMode>, Piece, bool)>,
-    /// Number of pieces of next to no length.
+    /// Number of pieces of almost zero length.
     pieces: u32,
 }
 
-/// By the strategy, up to a factor or the end of the path.
+/// Follows a load step with the strategy, up to a factor or the end of the path.
 pub fn follow(tracer: &mut Tracer, load_step: &LoadStep, target: f64) -> LoadStepEnding {
     let direction = direction(tracer);
     if target == tracer.state.factor {
@@ -121,12 +121,13 @@ pub fn follow(tracer: &mut Tracer, load_step: &LoadStep, target: f64) -> LoadSte
     end_path(tracer, Status::Stalled, why)
 }
 
-/// Greatest length of a step along the tangent.
+/// Returns the greatest length of a step along the tangent.
 fn greatest_step(tracer: &Tracer) -> f64 {
     let u = tracer.system.units();
     let most = match tracer.in_force.strategy.largest_step() {
         step if step.is_finite() => step,
-        // Friction's flow turns with the blocks: its error adds up over a path, and the error of one step does not show it.
+        // // The flow of friction turns with the blocks: its error accumulates over a path, and the error of one step
+        // does not show it.
         _ => SETTINGS.largest_finite_step,
     };
     most * u.length / u.displacement
@@ -153,7 +154,7 @@ impl<'d> Run<'d> {
         Ok(run)
     }
 
-    /// Length along the tangent of a first step of the strategy.
+    /// Returns the length along the tangent of a first step of the strategy.
     fn by_strategy(&self, tracer: &Tracer) -> f64 {
         let along = increment_along(&tracer.system, &tracer.state, &self.piece.tangent);
         let measured = tracer.in_force.strategy.constraint(&along, None).value.abs();
@@ -166,7 +167,7 @@ impl<'d> Run<'d> {
         }
     }
 
-    /// One step, and how the load step ends in it.
+    /// Makes one step. Returns the ending if the load step ends in it.
     fn step(&mut self, tracer: &mut Tracer) -> Option<LoadStepEnding> {
         let moves = increment_along(&tracer.system, &tracer.state, &self.piece.tangent).motion;
         let length = self.length.next.min(self.length.longest / moves.max(1e-300));
@@ -197,8 +198,8 @@ impl<'d> Run<'d> {
         }
     }
 
-    /// Ends a step that leaves its tangent at the corner where blocks begin to yield, and goes on behind it. `None` if blocks
-    /// begin or cease to yield at no place of the step.
+    /// Ends a step that leaves its tangent at the corner where blocks begin to yield, and continues beyond it. `None`
+    /// if the step has no such corner.
     fn end_at_corner(&mut self, tracer: &mut Tracer, length: f64) -> Option<Ending> {
         let start = tracer.state.clone();
         let at = corner(&mut tracer.system, &start, &self.piece.tangent, length)?;
@@ -222,7 +223,7 @@ impl<'d> Run<'d> {
         if length >= SETTINGS.inequality() * self.length.first {
             return None;
         }
-        // Steps that get too short meet a corner of a law that is no event.
+        // // Steps become too short at a corner of a law that is not an event.
         if let Some(found) = self.around_corner(tracer) {
             self.length.next = 0.1 * self.length.first;
             tracer.state.blocks.clone_from(&found.state.blocks);
@@ -230,7 +231,8 @@ impl<'d> Run<'d> {
             return self.go_on(tracer, found, modes, None);
         }
         if tracer.system.limits.remembers && !self.crowded() {
-            // The rate of an event may be rounding where many points rest at their bounds: the arrival leads on.
+            // // The rate of an event may be rounding if many points are at their bounds: the piece of the arrival
+            // continues the path.
             let arrival = self.cluster.arrival.as_ref().map(|(modes, piece, _)| (modes.clone(), piece.clone()));
             let own = (tracer.state.mode.clone(), self.piece.clone());
             for (modes, piece) in std::iter::once(own).chain(arrival) {
@@ -245,7 +247,8 @@ impl<'d> Run<'d> {
         Some(end_path(tracer, Status::Stalled, why))
     }
 
-    /// The rate that leads on from a state beyond which the piece has none, since blocks or bonds begin to yield there.
+    /// Returns the rate that continues from a state at which blocks or bonds begin to yield and the piece has no
+    /// further states.
     fn around_corner(&mut self, tracer: &mut Tracer) -> Option<LoadingRate> {
         if !tracer.system.limits.remembers || self.crowded() {
             return None;
@@ -257,15 +260,15 @@ impl<'d> Run<'d> {
         (cosine < 1.0 - SETTINGS.distinct()).then_some(found)
     }
 
-    /// Takes a short step from a corner, about along a piece, by Newton's method on the laws themselves: modes and branches may
-    /// change in it. `None` if there is no such step.
+    /// Makes a short step from a corner, approximately along a piece, by Newton's method on the laws themselves: modes
+    /// and branches may change in it. `None` if there is no such step.
     fn across(&mut self, tracer: &mut Tracer, facing: &State, piece: &Piece) -> Option<Ending> {
         let here = tracer.state.clone();
         let (length, next, rate) = ACROSS.iter().map(|share| share * self.length.first).find_map(|length| {
             let control = piece.control(length);
             let guess = moved(facing, &piece.tangent, length);
             let (next, _) = solve_step(&mut tracer.system, &here, guess, &control).ok()?;
-            // Blocks have another answer, in which all of them unload.
+            // // Blocks have another solution, in which all of them unload.
             if facing.yields() && !next.yields() {
                 return None;
             }
@@ -284,13 +287,13 @@ impl<'d> Run<'d> {
         Some((!commit(tracer, next)).then_some(LoadStepEnding::Ended))
     }
 
-    /// Counts a piece of next to no length; returns true if there are too many of them.
+    /// Counts a piece of almost zero length; returns true if there are too many of them.
     fn crowded(&mut self) -> bool {
         self.cluster.pieces += 1;
         self.cluster.pieces > MOST_SHORT_PIECES
     }
 
-    /// Takes a state of the piece over. `None` if the step is to be repeated or the path ends.
+    /// Accepts a state of the piece. `None` if the step must be repeated or the path ends.
     fn take(&mut self, tracer: &mut Tracer, end: StepEnd) -> Result<(), Option<LoadStepEnding>> {
         if end.error > SETTINGS.most_error && end.length > 1e-6 * self.length.first {
             return Err(self.shorten(tracer, end.length * (SETTINGS.wanted_error / end.error).clamp(0.1, 0.5)));
@@ -302,11 +305,11 @@ impl<'d> Run<'d> {
         if !energy.holds && end.length > 1e-3 * self.length.first {
             return Err(self.shorten(tracer, end.length * energy.growth.clamp(0.25, 0.7)));
         }
-        // An event that cuts a step short says nothing of how long the next one may be: its error is rounding.
+        // // A step shortened by an event gives no information about the next length: its error is rounding.
         if end.length >= SETTINGS.telling * self.length.next {
             let by_error = (SETTINGS.wanted_error / end.error.max(1e-300)).max(0.3) * end.length;
             let by_energy = energy.growth.max(0.25) * end.length;
-            // The error is of the second order in the length.
+            // // The error is of second order in the length.
             let by_factor = (0.5 * SETTINGS.most_error / end.unexplained.max(1e-300)).sqrt().max(0.5) * end.length;
             self.length.next = by_error.min(by_energy).min(by_factor).min(2.0 * self.length.next.max(end.length));
         }
@@ -335,8 +338,8 @@ impl<'d> Run<'d> {
         self.after(tracer)
     }
 
-    /// The end at a mechanism under a constant load, if there is one at the present state. If the stage asks for a
-    /// displacement beyond its limit point, the path goes on.
+    /// Returns the ending at a mechanism under a constant load, if there is one at the present state. If the stage
+    /// requests a displacement beyond its limit point, the path continues.
     fn plateau(&mut self, tracer: &mut Tracer) -> Option<LoadStepEnding> {
         if self.standing.on_plateau || !(self.standing.flows || stands_still(tracer, &self.piece)) {
             return None;
@@ -351,7 +354,7 @@ impl<'d> Run<'d> {
         Some(self.end_at_plateau(tracer, found))
     }
 
-    /// The end of the range or of the path behind a step.
+    /// Returns the ending if the range or the path ends after a step.
     fn after(&mut self, tracer: &mut Tracer) -> Option<LoadStepEnding> {
         if self.range.target.is_infinite()
             && let Some(ending) = ray(tracer, &self.piece, self.range.direction)
@@ -365,7 +368,7 @@ impl<'d> Run<'d> {
         ending
     }
 
-    /// The state at the target.
+    /// Accepts the state at the target.
     fn arrive(&mut self, tracer: &mut Tracer, mut end: StepEnd) -> Option<LoadStepEnding> {
         let control = Control::Factor(self.range.target);
         let start = tracer.state.clone();
@@ -378,11 +381,12 @@ impl<'d> Run<'d> {
         }
     }
 
-    /// Past a state at which the factor turns.
+    /// Passes a state at which the factor turns.
     fn turn(&mut self, tracer: &mut Tracer, end: StepEnd) -> Option<LoadStepEnding> {
         let was = self.rises;
         let length = end.length;
-        // At the turn other rates may be singular too, such as the tilt of a block that softens. The chord is not.
+        // // At the turn other rates may be singular too, such as the tilt of a softening block. The chord is not
+        // singular.
         let chord = (length > SETTINGS.distinct() * self.length.first).then(|| chord(&tracer.state, &end.state));
         if let Err(ending) = self.take(tracer, end) {
             return ending;
@@ -391,14 +395,14 @@ impl<'d> Run<'d> {
         if let Some(piece) = chord.and_then(|chord| self.piece.turned(&tracer.system, &chord)) {
             self.piece = piece;
         }
-        // Beyond the turn the rate goes in the other sense; at it the rate is rounding.
+        // // Beyond the turn the rate has the opposite sense; at the turn it is rounding.
         self.rises = !was;
         let slope = SETTINGS.rounding * tracer.system.units().factor;
         self.piece.tangent.factor = if self.rises { slope } else { -slope } * self.range.direction;
         self.at_turn(tracer, was)
     }
 
-    /// Notes a peak or a trough at the present state, from which the piece leads on.
+    /// Records a peak or a trough at the present state, from which the piece continues.
     fn at_turn(&mut self, tracer: &mut Tracer, was: bool) -> Option<LoadStepEnding> {
         if was && !self.rises {
             return self.peak(tracer);
@@ -416,7 +420,8 @@ impl<'d> Run<'d> {
         self.after(tracer)
     }
 
-    /// A load that has stood still since its last limit point and rises again has none there: a mechanism may close a gap.
+    /// Removes the last limit point if the load has been constant since then and rises again: a mechanism may have
+    /// closed a gap.
     fn forget_still_peak(&self, tracer: &mut Tracer) {
         let own = |peak: &&ProvenPeak| peak.load_step == tracer.in_force.load_step;
         let Some(last) = tracer.limit.proven_peaks.last().filter(own) else { return };
@@ -427,7 +432,7 @@ impl<'d> Run<'d> {
         }
     }
 
-    /// At a limit point.
+    /// Handles a limit point.
     fn peak(&mut self, tracer: &mut Tracer) -> Option<LoadStepEnding> {
         if tracer.system.settles() && matches!(self.range.load_step.end, LoadStepEnd::Factor(_)) {
             return self.snap(tracer);
@@ -450,7 +455,7 @@ impl<'d> Run<'d> {
         self.after(tracer)
     }
 
-    /// Beyond a limit point of a settlement: to the equilibrium that damped descent reaches.
+    /// Beyond a limit point of a settlement, continues from the equilibrium that damped descent reaches.
     fn snap(&mut self, tracer: &mut Tracer) -> Option<LoadStepEnding> {
         let mut pushed = tracer.state.clone();
         let work = second_order_work(&mut tracer.system, &pushed);
@@ -473,7 +478,7 @@ impl<'d> Run<'d> {
         }
     }
 
-    /// Goes on from another state than the last one of the piece.
+    /// Continues from a state that is not the last one of the piece.
     fn anew(&mut self, tracer: &mut Tracer) -> Option<LoadStepEnding> {
         match Run::begin(tracer, self.range.load_step, self.range.target, self.range.direction) {
             Ok(run) => {
@@ -484,8 +489,8 @@ impl<'d> Run<'d> {
         }
     }
 
-    /// The first state of a step that is unstable under its loads, on a rising branch above all limit points, with its
-    /// second-order work.
+    /// Returns the first state of a step that is unstable under its loads, on a rising branch above all limit points,
+    /// with its second-order work.
     fn first_unstable(&self, tracer: &mut Tracer, start: &State, end: &StepEnd) -> Option<(StepEnd, SecondOrderWork)> {
         let factor = end.state.factor;
         let mut own = tracer.limit.proven_peaks.iter().filter(|peak| peak.load_step == tracer.in_force.load_step);
@@ -520,7 +525,7 @@ impl<'d> Run<'d> {
         match leave_unstable(tracer, &here, work, false) {
             Departure::Stopped => Some(LoadStepEnding::Ended),
             Departure::Stable => self.anew(tracer),
-            // The present modes go on under control.
+            // // The present modes continue under control.
             Departure::Falls => {
                 let (load_step, factor) = (tracer.in_force.load_step, here.factor);
                 self.standing.unstable = true;
@@ -539,11 +544,12 @@ impl<'d> Run<'d> {
         }
     }
 
-    /// An event: the next piece, and what the path does at it.
+    /// Handles an event: finds the next piece or the ending.
     fn event(&mut self, tracer: &mut Tracer, mut end: StepEnd, hits: Vec<Monitor>) -> Option<LoadStepEnding> {
         tracer.system.count("events", 1);
         if hits.iter().any(|hit| matches!(hit.what, What::Branch(_))) {
-            // Next to the end of a branch a tangent by differences is that of both sides: its rate explains no change.
+            // // Next to the end of a branch a tangent by differences mixes both sides, so that its rate does not
+            // describe any change.
             end.unexplained = 0.0;
         }
         let moved = end.length > 1e-9 * self.length.first;
@@ -585,7 +591,7 @@ impl<'d> Run<'d> {
         }
     }
 
-    /// Goes on along a rate from the present state, with blocks and bonds that yield as the rate asks for.
+    /// Continues along a rate from the present state; blocks and bonds yield as the rate requires.
     fn go_on(
         &mut self,
         tracer: &mut Tracer,
@@ -618,8 +624,8 @@ impl<'d> Run<'d> {
         self.at_turn(tracer, was)
     }
 
-    /// The monitors that end at the present state. After a piece of no length a point was missing from the event: the path is
-    /// taken back to its arrival, and all of them are looked at together.
+    /// Returns the monitors that end at the present state. A piece of zero length shows that the event lacked a point:
+    /// the path returns to its arrival, and all of these points are examined together.
     fn all_hits(&mut self, tracer: &mut Tracer, hits: Vec<Monitor>) -> Vec<Monitor> {
         let known = self.cluster.hits.len();
         for hit in hits {
@@ -639,14 +645,14 @@ impl<'d> Run<'d> {
         self.cluster.hits.clone()
     }
 
-    /// The end where a contact point leaves the face that it slides on.
+    /// Returns the ending if a contact point leaves the face that it slides on.
     fn lose_joint(&mut self, tracer: &mut Tracer, contact: usize) -> LoadStepEnding {
         let slip = tracer.state.gap[contact][1];
         let (apart, why) = lost_joint(tracer, &tracer.system.problem.contacts[contact], slip);
         end_at_lost_joint(tracer, apart, Some(&self.piece.tangent), why)
     }
 
-    /// Names other rates at an event that the rule does not tell from the one that is followed.
+    /// Records other rates at an event that the rule does not distinguish from the chosen one.
     fn note_twins(&self, tracer: &mut Tracer, twins: usize) {
         if twins > 0 {
             let (load_step, factor) = (tracer.in_force.load_step, tracer.state.factor);
@@ -658,7 +664,7 @@ impl<'d> Run<'d> {
         }
     }
 
-    /// The end at an event from which no rate leads on.
+    /// Returns the ending at an event from which no rate continues.
     fn end_at_event(&mut self, tracer: &mut Tracer, why: &str, none_rises: bool, proved: bool) -> LoadStepEnding {
         let factor = tracer.state.factor;
         if self.rises && none_rises {
@@ -675,7 +681,7 @@ impl<'d> Run<'d> {
         end_path(tracer, if proved { Status::LimitPoint } else { Status::Stalled }, why)
     }
 
-    /// Takes the modes of the next piece over, and the tangents of its bonds.
+    /// Accepts the modes of the next piece and the tangents of its bonds.
     fn enter(&mut self, tracer: &mut Tracer, piece: Piece, next: &State) {
         let before = tracer.state.clone();
         tracer.state.mode.clone_from(&next.mode);
@@ -691,8 +697,8 @@ impl<'d> Run<'d> {
             > SETTINGS.rounding * tracer.system.units().factor * motion_size(&tracer.system, rate)
     }
 
-    /// The end at a mechanism under a constant load. Limit points from which the load has stood still up to here are the
-    /// same one: where contact points pass to a corner the load of a block that slides changes a little.
+    /// Returns the ending at a mechanism under a constant load. Limit points since which the load has been constant are
+    /// the same one: the load of a sliding block changes slightly if contact points reach a corner.
     fn end_at_plateau(&mut self, tracer: &mut Tracer, found: Plateau) -> LoadStepEnding {
         let (load_step, factor) = (tracer.in_force.load_step, tracer.state.factor);
         let same = |other: f64| (other - factor).abs() <= SETTINGS.distinct() * factor.abs();

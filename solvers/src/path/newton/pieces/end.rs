@@ -1,11 +1,11 @@
-//! Where a path ends: the range that a stage asks for.
+//! The end of a path: the range that a stage requests.
 
 use crate::path::newton::tracing::tracer::{LoadStepEnding, Tracer, end_path, is_above};
 use crate::settings::SETTINGS;
 use voussoir_core::limit::Status;
 use voussoir_core::path::LoadStep;
 
-/// The ending of a path that has gone as far as its stage asks for.
+/// Returns the ending of a path that has reached the end of its requested range.
 pub(super) fn end_of_range(
     tracer: &mut Tracer,
     load_step: &LoadStep,
@@ -27,14 +27,14 @@ pub(super) fn end_of_range(
         });
     };
     let done = match tracer.settings.stop(load_step.stage) {
-        // A support that goes no further by itself: what follows is a fall.
+        // // A support does not move further by itself: the next motion is a fall.
         [None, None] if tracer.system.settles() => true,
         [None, None] => {
             let fallen = (greatest - factor) * direction;
             fallen >= SETTINGS.half * (greatest - load_step.start).abs() || gone
         }
         [most, least] => {
-            // Counted from the last limit point.
+            // // Measured from the last limit point.
             let from = tracer.limit.proven_peaks.last().map_or(place, |last| last.displacement);
             most.is_some_and(|most| (displacement - from).abs() >= most)
                 || least.is_some_and(|least| (factor - least) * direction <= 0.0)

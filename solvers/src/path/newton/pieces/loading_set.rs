@@ -1,7 +1,8 @@
-//! The rate of a state whose blocks and bonds yield on or unload as this very rate asks for.
+//! The rate of a state whose blocks and bonds yield or unload consistently with this rate.
 //!
-//! A point at its strength has one tangent if it yields on and another one if it unloads. The points that yield on are the loading
-//! set of a rate. A rate leads on if the tangents ahead of the state along it are those that it was computed with.
+//! A point at its strength has one tangent if it yields and another one if it unloads. The yielding points are the
+//! loading set of a rate. A rate continues the path if the tangents just ahead along it are those with which it was
+//! computed.
 
 use super::piece::{Piece, scaled_row};
 use crate::linear::inner;
@@ -13,18 +14,18 @@ use crate::path::newton::solve::nearby::Accuracy;
 use crate::path::newton::solve::tangent::tangent_of_modes;
 use crate::settings::SETTINGS;
 
-/// Loading sets that are tried one after the other.
+/// Greatest number of successive loading sets.
 const MOST_SETS: usize = 30;
-/// Combinations of tangents that are tried if no set follows from another one.
+/// Greatest number of combinations of tangents that are tried if the sets do not converge.
 const MOST_COMBINATIONS: usize = 256;
 
-/// A rate with the state whose tangents it has.
+/// A rate with the state that has its tangents.
 pub(super) struct LoadingRate {
     pub state: State,
     pub rate: Tangent,
 }
 
-/// A rate with motions and factor of size 1, and these over the scaled unknowns.
+/// A rate scaled to motions and factor of size 1, and the same over the scaled unknowns.
 struct Unit {
     rate: Tangent,
     row: Vec<f64>,
@@ -43,7 +44,7 @@ impl Unit {
     }
 }
 
-/// The rate that leads on from a state in its modes, at which a piece arrives. `None` if there is none.
+/// Returns the rate that continues from a state in its modes, at which a piece arrives. `None` if there is none.
 pub(super) fn loading_rate(system: &mut StepSystem, state: &State, arrival: &Piece) -> Option<LoadingRate> {
     match system.laws.responses.is_empty() {
         true => dissipating_rate(system, state, arrival),
@@ -51,8 +52,8 @@ pub(super) fn loading_rate(system: &mut StepSystem, state: &State, arrival: &Pie
     }
 }
 
-/// The same by loading sets of bonds. Unloading, on which the factor turns and nothing dissipates, is no way on. `None` if no
-/// loading set is consistent, or if there are no bonds.
+/// Returns the rate by loading sets of bonds. Unloading, on which the factor turns and nothing dissipates, is not a
+/// continuation. `None` if no loading set is consistent, or if there are no bonds.
 pub(super) fn bond_rate(system: &mut StepSystem, state: &State, arrival: &Piece) -> Option<LoadingRate> {
     if system.laws.responses.is_empty() {
         return None;
@@ -86,7 +87,7 @@ pub(super) fn bond_rate(system: &mut StepSystem, state: &State, arrival: &Piece)
     combined(system, state, arrival, &seen)
 }
 
-/// A rate along which the factor stands still, in the sense in which the load does work; other rates as they are.
+/// Returns a rate with a constant factor in the sense in which the load does work; other rates unchanged.
 fn with_load(system: &mut StepSystem, state: &State, found: Unit) -> Unit {
     let stands = found.rate.factor.abs() <= SETTINGS.residual() * system.units().factor;
     match stands && inner(&found.row, &system.equations(state).factor) < 0.0 {
@@ -100,8 +101,8 @@ fn same_set(one: &State, other: &State) -> bool {
     one.updates.points.iter().zip(&other.updates.points).all(|(a, b)| a.branch == b.branch)
 }
 
-/// The consistent rate that dissipates most among all combinations of the tangents that the bonds of each joint have in some
-/// states. `None` if there is none or if there are too many combinations.
+/// Returns the consistent rate with the greatest dissipation among all combinations of the tangents that the bonds of
+/// each joint have in some states. `None` if there is none or if there are too many combinations.
 fn combined(system: &mut StepSystem, state: &State, arrival: &Piece, seen: &[State]) -> Option<LoadingRate> {
     let first = seen.first()?;
     let mut joints: Vec<Vec<usize>> = Vec::new();
@@ -154,8 +155,8 @@ fn combined(system: &mut StepSystem, state: &State, arrival: &Piece, seen: &[Sta
     best.map(|(_, found)| found)
 }
 
-/// The rate of blocks with the tangents just ahead along the arrival, in the sense that dissipates. Sets of points that yield
-/// are not iterated: on coarse meshes they agree at fewer corners than one look ahead does.
+/// Returns the rate of blocks with the tangents just ahead along the arrival, in the sense that dissipates. Sets of
+/// yielding points are not iterated: on coarse meshes they are consistent at fewer corners than a single look ahead.
 fn dissipating_rate(system: &mut StepSystem, state: &State, arrival: &Piece) -> Option<LoadingRate> {
     let arrives = Unit::of(system, &arrival.tangent)?;
     let facing = facing_ahead(system, state, &arrives.rate)?;
@@ -168,14 +169,14 @@ fn dissipating_rate(system: &mut StepSystem, state: &State, arrival: &Piece) -> 
     Some(LoadingRate { state: facing, rate })
 }
 
-/// The rate with the tangents of a state, of size 1.
+/// Returns the rate with the tangents of a state, of size 1.
 fn rate_of(system: &mut StepSystem, state: &State, row: &[f64]) -> Option<Unit> {
     let equations = system.equations(state);
     let rate = tangent_of_modes(system, state, &equations, row, Accuracy::Rounding)?;
     Unit::of(system, &rate)
 }
 
-/// Dissipation of blocks and bonds in a short step along a rate \[J\].
+/// Returns the dissipation of blocks and bonds in a short step along a rate \[J\].
 fn dissipation(system: &StepSystem, state: &State, ahead: &State, rate: &Tangent) -> f64 {
     let length = length_ahead(system, state);
     let mut sum = length * plastic_power(system, ahead, rate);

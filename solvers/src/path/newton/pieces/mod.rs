@@ -1,9 +1,9 @@
 //! Paths as pieces between located events.
 //!
 //! Within a piece the modes of all contact points are fixed, and the state follows smooth equations F(x, λ) = 0
-//! ([`corrector`]). [`Monitors`](monitors::Monitors) find where a mode ends ([`advance`]). There the rate problem
-//! gives the modes of the next piece ([`switch`]), and [`loading_set`] the blocks and bonds that yield in it. [`driver`] puts
-//! pieces together until their [`end`].
+//! ([`corrector`]). [`Monitors`](monitors::Monitors) detect the end of a mode, and [`advance`] locates it. There the
+//! rate problem gives the modes of the next piece ([`switch`]), and [`loading_set`] the yielding blocks and bonds.
+//! [`driver`] joins pieces up to their [`end`].
 
 mod advance;
 mod begin;

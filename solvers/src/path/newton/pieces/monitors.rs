@@ -1,4 +1,4 @@
-//! Monitor functions of a piece: what must stay positive for the modes of all contact points to hold.
+//! Monitor functions of a piece: they stay positive as long as the modes of all contact points hold.
 //!
 //! ```text
 //! stick     slack of every facet              b A − a·r ≥ 0
@@ -7,8 +7,8 @@
 //! open      opening above the dilated surface ≥ 0
 //! ```
 //!
-//! A point with a law of tractions stays in the branch that the law names. The monitor is the length along the rate up to which
-//! it does, by the law itself: where a bond begins to soften no other function is known of it.
+//! A point with a law of tractions stays in the branch that the law names. Its monitor is the length along the rate up
+//! to the end of the branch, computed with the law itself: the start of softening has no other known function.
 
 use crate::contact::facet::{dot, norm, slack};
 use crate::contact::mode::ContactMode;
@@ -20,21 +20,21 @@ use crate::path::newton::solve::tangent::gap_rounding;
 use crate::settings::SETTINGS;
 use voussoir_core::law::{FacetMode, UpdateBranch};
 
-/// Doublings of a length at which the branch of a law is looked for.
+/// Greatest number of doublings of a length in the search for the end of a branch.
 const DOUBLINGS: usize = 40;
-/// Bisections between two of them.
+/// Number of bisections between two of them.
 pub(super) const BISECTIONS: usize = 50;
 
-/// What a monitor reads.
+/// The quantity of a monitor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum What {
     /// Slack of a facet \[N\].
     Slack(u8),
     /// Opening \[m\].
     Opening,
-    /// Slip that is left until the point leaves its face, against or along t \[m\].
+    /// Remaining slip until the point leaves its face, against or along t \[m\].
     Face { forward: bool },
-    /// Rate of a multiplier, by its number among the unknowns of the mode \[m\].
+    /// Rate of a multiplier, by its index among the unknowns of the mode \[m\].
     Flow(u8),
     /// Length along the rate up to which a law of tractions stays in this branch.
     Branch(UpdateBranch),
@@ -47,7 +47,7 @@ pub(super) struct Monitor {
     pub what: What,
 }
 
-/// What a monitor reads at a state.
+/// The reading of a monitor at a state.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Reading {
     pub value: f64,
@@ -62,7 +62,7 @@ pub(super) struct Reading {
 }
 
 impl Reading {
-    /// The reading of something that does not end.
+    /// The reading of a mode that does not end.
     pub const NEVER: Reading =
         Reading { value: 1.0, rate: None, tolerance: 0.0, rate_tolerance: 0.0, of_branch: false };
 
@@ -71,7 +71,8 @@ impl Reading {
         self.value < -self.tolerance
     }
 
-    /// Returns true if the mode is at its end: points of a symmetric scene end theirs within the rounding of its mesh.
+    /// Returns true if the mode is at its end: points of a symmetric scene end their modes within the rounding of its
+    /// mesh.
     pub fn is_active(&self) -> bool {
         let share = if self.rate.is_some() { SETTINGS.together } else { 1.0 };
         self.value <= share * self.tolerance
@@ -90,7 +91,7 @@ impl Reading {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Monitors(pub Vec<Monitor>);
 
-/// Sizes that readings are compared with.
+/// Sizes to which readings are relative.
 struct Sizes {
     force: f64,
     gap: f64,
@@ -99,7 +100,7 @@ struct Sizes {
 }
 
 impl Monitors {
-    /// The monitors of the modes of all contact points and of the branches of laws of tractions.
+    /// Creates the monitors of the modes of all contact points and of the branches of laws of tractions.
     pub fn of(system: &StepSystem, state: &State) -> Monitors {
         let mut all = Vec::new();
         for (contact, mode) in state.mode.iter().enumerate() {
@@ -138,16 +139,16 @@ impl Monitors {
         Monitors(all)
     }
 
-    /// Reads all of them at a state along a tangent, in a step from `start`.
+    /// Reads all monitors at a state along a tangent, in a step from `start`.
     pub fn read(&self, system: &StepSystem, start: &State, state: &State, tangent: &Tangent) -> Vec<Reading> {
         let greatest = |v: &[[f64; 2]]| v.iter().flatten().fold(0.0, |a: f64, x| a.max(x.abs()));
         let u = system.units();
         let force = greatest(&state.force).max(1e-12 * u.force);
         let rigidity = (0..state.gap.len()).map(|c| system.stiffness(c)).fold(0.0, |a: f64, k| a.max(k[0].max(k[1])));
         let rounding = gap_rounding(system, state);
-        // Newton's method on blocks that yield gives positions to this share of the displacements.
+        // // Accuracy of positions in Newton's method on yielding blocks, relative to the displacements.
         let of_blocks = system.limits.position * fastest(system, &state.motion);
-        // A structure that moves as a whole has gaps and forces whose rates are the rounding of its motion.
+        // // If a structure moves as a whole, the rates of gaps and forces are rounding errors of its motion.
         let gap_rate = greatest(&tangent.gap);
         let gap_rounding = SETTINGS.rounding * fastest(system, &tangent.motion);
         let sizes = Sizes {
@@ -162,7 +163,7 @@ impl Monitors {
 }
 
 impl Monitor {
-    /// The length along a rate up to which the law of a point stays in a branch; negative if it has left it.
+    /// Returns the length along a rate up to which the law of a point stays in a branch; negative if it has left it.
     fn read_branch(
         &self,
         system: &StepSystem,
@@ -176,7 +177,7 @@ impl Monitor {
             return Reading::NEVER;
         }
         let ahead = length_ahead(system, start);
-        // The branch that a law names in a shorter step is rounding of its history and of the state.
+        // // In a shorter step the branch that a law names is rounding of its history and of the state.
         let tolerance =
             (sizes.gap.max(SETTINGS.inequality() * gap[0].hypot(gap[1])) / speed).max(SETTINGS.small * ahead);
         let is_in = |length: f64| {
@@ -184,7 +185,7 @@ impl Monitor {
             let said = system.laws.responses.at(self.contact, there, &start.updates.memory);
             said.is_none_or(|point| point.branch == branch)
         };
-        // Nearer than the place where tangents are taken the branch may be rounding, or a point may not have entered it yet.
+        // // Nearer than the place of the tangents the branch may be rounding, or a point may not have entered it yet.
         let mut far = ahead.max(tolerance);
         let at_start = std::ptr::eq(start, state);
         let inside = at_start || state.updates.points[self.contact].branch == branch || is_in(far);

@@ -7,7 +7,7 @@ use crate::path::newton::model::system::StepSystem;
 use crate::path::newton::solve::tangent::tangent_nearby;
 use std::rc::Rc;
 
-/// Motions and factor of a tangent over the scaled unknowns.
+/// Returns the motions and factor of a tangent over the scaled unknowns.
 pub(super) fn scaled_row(system: &StepSystem, tangent: &Tangent) -> Vec<f64> {
     let u = system.units();
     let first = 2 * system.scaled.contacts;
@@ -21,7 +21,7 @@ pub(super) fn scaled_row(system: &StepSystem, tangent: &Tangent) -> Vec<f64> {
     row
 }
 
-/// A piece at a state of it.
+/// A piece at one of its states.
 #[derive(Clone)]
 pub(super) struct Piece {
     /// Rate with motions and factor of size 1.
@@ -32,12 +32,12 @@ pub(super) struct Piece {
 }
 
 impl Piece {
-    /// The piece of a rate at a state with its modes.
+    /// Creates the piece of a rate at a state with its modes.
     pub fn new(system: &StepSystem, state: &State, tangent: &Tangent) -> Option<Piece> {
         Piece::along(system, tangent, Rc::new(Monitors::of(system, state)))
     }
 
-    /// The same piece with another tangent.
+    /// Returns the same piece with another tangent.
     pub fn turned(&self, system: &StepSystem, tangent: &Tangent) -> Option<Piece> {
         Piece::along(system, tangent, self.monitors.clone())
     }
@@ -52,17 +52,17 @@ impl Piece {
         Some(Piece { tangent: tangent.scaled(1.0 / size), row: Rc::new(row), monitors })
     }
 
-    /// The control of a step of a length along the tangent.
+    /// Returns the control of a step of a length along the tangent.
     pub fn control(&self, length: f64) -> Control {
         Control::Along { row: self.row.clone(), length }
     }
 
-    /// The rate of another state of the piece per unit of the step's length.
+    /// Returns the rate of another state of the piece per unit of the step's length.
     pub fn rate_at(&self, system: &mut StepSystem, state: &State) -> Option<Tangent> {
         tangent_nearby(system, state, &self.control(0.0))
     }
 
-    /// The readings of the monitors at a state along a rate, in a step from `start`.
+    /// Returns the readings of the monitors at a state along a rate, in a step from `start`.
     pub fn read(&self, system: &StepSystem, start: &State, state: &State, rate: &Tangent) -> Vec<Reading> {
         self.monitors.read(system, start, state, rate)
     }

@@ -1,4 +1,4 @@
-//! Whether a piece is a mechanism that moves on under a constant load.
+//! Detects pieces that are mechanisms under a constant load.
 
 use super::advance::{Advance, StepEnd, Watched, advance};
 use super::piece::Piece;
@@ -16,7 +16,7 @@ pub(super) struct Plateau {
     pub unproved: Option<String>,
 }
 
-/// Returns true if a piece starts with a factor and forces that stand still.
+/// Returns true if factor and forces are constant at the start of a piece.
 pub(super) fn stands_still(tracer: &Tracer, piece: &Piece) -> bool {
     let u = tracer.system.units();
     let motion = piece.row[..piece.row.len() - 1].iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -24,7 +24,8 @@ pub(super) fn stands_still(tracer: &Tracer, piece: &Piece) -> bool {
     (piece.tangent.factor / u.factor).abs() <= SETTINGS.admissible * motion && force <= SETTINGS.fine * motion
 }
 
-/// Moves along a piece that stands still; blocks `flows` if the last step has shown it. `None` if it is no plateau.
+/// Moves along a piece with constant factor and forces; `flows` is true if the last step has shown that blocks flow.
+/// `None` if it is no plateau.
 pub(super) fn plateau(tracer: &mut Tracer, piece: &Piece, direction: f64, flows: bool) -> Option<Plateau> {
     let start = tracer.state.clone();
     let fastest = fastest(&tracer.system, &piece.tangent.motion).max(1e-300);
@@ -60,8 +61,8 @@ pub(super) fn plateau(tracer: &mut Tracer, piece: &Piece, direction: f64, flows:
     if moved * fastest < SETTINGS.small * size || !is_same(tracer, &start, &state) {
         return None;
     }
-    // If no facet may change its mode the one rate has a constant factor. Tangents of blocks that flow are regularised and do not
-    // show it.
+    // // If no facet may change its mode, the only rate has a constant factor. Tangents of flowing blocks are
+    // regularised and do not show it.
     let remembers = tracer.system.limits.remembers;
     // Slip and forces of facets give the dissipation of the whole motion.
     let moved = if remembers { states } else { vec![state] };
@@ -75,8 +76,8 @@ pub(super) fn plateau(tracer: &mut Tracer, piece: &Piece, direction: f64, flows:
     }
 }
 
-/// Returns true if blocks yield in a step while factor and forces stand still. The tangent of a block that flows as a whole is
-/// regularised, so that only the step itself shows it.
+/// Returns true if blocks yield in a step with constant factor and forces. The tangent of a block that flows as a whole
+/// is regularised, so that only the step itself shows it.
 pub(super) fn stood_still(tracer: &Tracer, next: &State) -> bool {
     let motion = increment_between(&tracer.system, &tracer.state, next).motion;
     let change = (next.factor - tracer.state.factor).abs() / tracer.system.units().factor;
@@ -88,7 +89,7 @@ fn is_same(tracer: &Tracer, start: &State, state: &State) -> bool {
     let largest = start.force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
     let pairs = start.force.iter().flatten().zip(state.force.iter().flatten());
     let change = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    // If the load has fallen to nothing, both are rounding of their values at the limit point.
+    // // If the load has fallen to zero, both are rounding of their values at the limit point.
     let peak = tracer.limit.peak.as_ref().map_or(0.0, |peak| peak.factor.abs());
     let carried = largest.max(tracer.system.units().force * peak / tracer.system.units().factor);
     change <= SETTINGS.active * carried

@@ -1,4 +1,4 @@
-//! Rays: pieces with small displacements that are admissible without end.
+//! Rays: pieces with small displacements that are admissible without an end.
 
 use super::piece::Piece;
 use crate::path::newton::model::state::{State, Tangent};
@@ -8,7 +8,8 @@ use crate::path::newton::tracing::tracer::{LoadStepEnding, Tracer, end_path};
 use crate::settings::SETTINGS;
 use voussoir_core::limit::Status;
 
-/// The ending of a path on which the load grows without bound along a piece with small displacements, if it does.
+/// Returns the ending of a path on which the load grows without bound along a piece with small displacements, if it
+/// does.
 pub(super) fn ray(tracer: &mut Tracer, piece: &Piece, direction: f64) -> Option<LoadStepEnding> {
     let (u, rate) = (tracer.system.units(), &piece.tangent);
     if !tracer.system.limits.carries_any_load {
@@ -29,14 +30,14 @@ pub(super) fn ray(tracer: &mut Tracer, piece: &Piece, direction: f64) -> Option<
     if !goes_on || !tractions_persist(&tracer.system, &tracer.state, rate) {
         return None;
     }
-    // A support that moves a statically determinate structure asks for no forces.
+    // // A support that moves a statically determinate structure causes no forces.
     let constant = force <= 10.0 * SETTINGS.active * motion && tracer.system.settles();
     let of = |x: f64| if constant { 0.0 } else { x / rate.factor };
     tracer.ending.ray = Some(rate.force.iter().map(|r| r.map(of)).collect());
     Some(end_path(tracer, Status::Unbounded, String::new()))
 }
 
-/// Returns true if the laws give the forces of a rate however far it is followed, at some samples.
+/// Returns true if, at some sample lengths, the laws give the forces of a rate however far it is followed.
 fn tractions_persist(system: &StepSystem, state: &State, rate: &Tangent) -> bool {
     let u = system.units();
     let motion = motion_size(system, rate).max(1e-300) * u.displacement;

@@ -1,4 +1,4 @@
-//! Which modes follow at an event: the rate problem of the points whose modes end.
+//! The modes after an event, from the rate problem of the points whose modes end.
 
 use super::monitors::{Monitor, Monitors, What};
 use super::piece::Piece;
@@ -17,22 +17,23 @@ use voussoir_core::law::FacetMode;
 /// A rate with its modes.
 pub(super) type Start = (Tangent, Vec<ContactMode>);
 
-/// What follows an event.
+/// The continuation after an event.
 pub(super) enum NextPiece {
     /// A rate with its modes.
     Goes {
         rate: Tangent,
         modes: Vec<ContactMode>,
-        /// Number of other rates that the rule does not tell from it.
+        /// Number of other rates that the rule does not distinguish from it.
         twins: usize,
-        /// The reason why it is not decided that no rate has a growing factor, if so.
+        /// If it is not decided that no rate has a growing factor: the reason.
         open: Option<String>,
     },
-    /// Nothing: the reason, whether no rate has a growing factor, and whether nothing at all is proved to continue.
+    /// No continuation: the reason, true if no rate has a growing factor, and true if it is proved that no rate
+    /// continues.
     Nothing { why: String, none_rises: bool, proved: bool },
 }
 
-/// The modes that a point of an event may take.
+/// Returns the modes that a point of an event may enter.
 fn candidates(system: &StepSystem, state: &State, contact: usize, closes: bool) -> Vec<ContactMode> {
     let Some(law) = system.law(contact) else { return Vec::new() };
     let Some((active, open)) = active_facets(system, state, contact, (largest_force(state), closes)) else {
@@ -43,7 +44,7 @@ fn candidates(system: &StepSystem, state: &State, contact: usize, closes: bool) 
     point.candidates()
 }
 
-/// Facets that flow in a mode.
+/// Returns the facets that flow in a mode.
 fn flowing(system: &StepSystem, contact: usize, mode: ContactMode) -> Vec<u8> {
     let facets = system.law(contact).map_or(&[][..], |law| &law.facets);
     match mode {
@@ -56,8 +57,8 @@ fn flowing(system: &StepSystem, contact: usize, mode: ContactMode) -> Vec<u8> {
     }
 }
 
-/// Adds what grows when a point goes from one mode into another to a row: the multipliers of facets that begin to flow, the
-/// slack of facets that stop.
+/// Adds to a row the quantities that grow when a point changes from one mode to another: the multipliers of facets that
+/// begin to flow, the slack of facets that stop.
 fn add_entering(
     system: &StepSystem,
     (force, gap): (&mut [f64], &mut [f64]),
@@ -78,7 +79,8 @@ fn add_entering(
     }
 }
 
-/// The rate with some modes, in the sense in which points that change theirs enter them. `None` if there is none.
+/// Returns the rate with some modes, in the sense in which points with changed modes enter them. `None` if there is
+/// none.
 fn entering_rate(
     system: &mut StepSystem,
     state: &State,
@@ -97,21 +99,21 @@ fn entering_rate(
     }
     add_weighted_gaps(system, &mut row, &by_gap, &equations);
     if row.iter().all(|x| *x == 0.0) {
-        // A point that stops to flow has the same rate on both sides of the event.
+        // // A point that stops flowing has the same rate on both sides of the event.
         row.copy_from_slice(&piece.row);
     }
     let turned = State { mode: modes.to_vec(), ..state.clone() };
     tangent_of_modes(system, &turned, &equations, &row, Accuracy::Fine)
 }
 
-/// Returns true if a rate with its modes leaves none of them at once.
+/// Returns true if a rate violates none of its modes immediately.
 pub(super) fn is_admissible(system: &StepSystem, state: &State, modes: &[ContactMode], rate: &Tangent) -> bool {
     let turned = State { mode: modes.to_vec(), ..state.clone() };
     let monitors = Monitors::of(system, &turned);
     !monitors.read(system, &turned, &turned, rate).iter().any(|reading| reading.leaves())
 }
 
-/// The rates with which the one point of an event enters a new mode, all others as they are.
+/// Returns the rates with which the only point of an event enters a new mode; all others keep theirs.
 fn crossings(system: &mut StepSystem, state: &State, piece: &Piece, hits: &[Monitor]) -> Vec<Start> {
     let contact = hits[0].contact;
     let closes = hits.iter().any(|hit| hit.what == What::Opening);
@@ -131,7 +133,7 @@ fn crossings(system: &mut StepSystem, state: &State, piece: &Piece, hits: &[Moni
     found
 }
 
-/// The contact points of monitors.
+/// Returns the contact points of monitors.
 fn event_points(hits: &[Monitor]) -> EventPoints {
     let of = |belongs: &dyn Fn(What) -> bool| {
         let mut contacts: Vec<usize> = hits.iter().filter(|hit| belongs(hit.what)).map(|hit| hit.contact).collect();
@@ -146,7 +148,7 @@ fn event_points(hits: &[Monitor]) -> EventPoints {
     }
 }
 
-/// A corner has one mode, whichever two of its facets flow.
+/// Returns the mode of a corner, which is the same for all pairs of its facets.
 fn normalised(system: &StepSystem, contact: usize, mode: ContactMode) -> ContactMode {
     match mode {
         ContactMode::Corner(i, j) => {
@@ -156,12 +158,12 @@ fn normalised(system: &StepSystem, contact: usize, mode: ContactMode) -> Contact
     }
 }
 
-/// The piece that follows an event at a state, for the monitors that end there. `direction`: the sense in which the factor
-/// is to grow; `rises`: whether it has grown up to here.
+/// Returns the piece after an event at a state, for the monitors that end there. `direction`: the sense in which the
+/// factor should grow; `rises`: true if it has grown up to the event.
 ///
-/// If one point ends its mode, the solution curve crosses into a cell next to the present one, and the rate in it is the
-/// continuation. The whole rate problem is asked if there are several points, if no crossing or several are admissible, and
-/// before the factor turns: another rate may rise.
+/// If one point ends its mode, the solution curve crosses into a neighbouring cell, and the rate in it is the
+/// continuation. The whole rate problem is solved if there are several points, if there is not exactly one admissible
+/// crossing, and before the factor turns, because another rate may rise.
 pub(super) fn after_event(
     system: &mut StepSystem,
     state: &State,

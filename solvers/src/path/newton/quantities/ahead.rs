@@ -6,13 +6,14 @@ use crate::path::newton::model::state::{State, Tangent, moved};
 use crate::path::newton::model::system::StepSystem;
 use crate::settings::SETTINGS;
 
-/// Length along a rate of size 1 at which the tangents of a state are taken: beyond the rounding of its motions.
+/// Returns the length along a rate of size 1 at which the tangents of a state are computed: beyond the rounding of its
+/// motions.
 pub fn length_ahead(system: &StepSystem, state: &State) -> f64 {
     SETTINGS.distinct() * (fastest(system, &state.motion) / system.units().displacement).max(1.0)
 }
 
-/// The state with blocks and laws of tractions that have the tangents of a place a short length ahead along a rate of size 1. `None` if the
-/// laws give no stresses there.
+/// Returns the state with blocks and laws of tractions that have the tangents a short length ahead along a rate of size
+/// 1. `None` if the laws give no stresses there.
 pub fn facing_ahead(system: &mut StepSystem, state: &State, rate: &Tangent) -> Option<State> {
     let (mut facing, length) = (state.clone(), length_ahead(system, state));
     let mut ahead = moved(state, rate, length);

@@ -5,7 +5,7 @@ use crate::path::newton::model::equations::Equations;
 use crate::path::newton::model::state::State;
 use crate::path::newton::model::system::StepSystem;
 
-/// The gradient of a control over the scaled unknowns.
+/// Returns the gradient of a control over the scaled unknowns.
 pub fn control_row(system: &StepSystem, control: &Control) -> Vec<f64> {
     match control {
         Control::Along { row, .. } => row.to_vec(),
@@ -17,7 +17,7 @@ pub fn control_row(system: &StepSystem, control: &Control) -> Vec<f64> {
     }
 }
 
-/// Distance of a state from the aim of a control.
+/// Returns the distance of a state from the target of a control.
 pub fn control_value(system: &StepSystem, start: &State, state: &State, control: &Control) -> f64 {
     match control {
         Control::Factor(target) => (state.factor - target) / system.units().factor,
@@ -34,7 +34,7 @@ pub fn add_weighted_gaps(system: &StepSystem, row: &mut [f64], by_gap: &[f64], e
     equations.gaps.add_weighted(&weights, row);
 }
 
-/// row · (x − x_start) over the scaled motions and the scaled factor.
+/// Returns row · (x − x_start) over the scaled motions and the scaled factor.
 fn along(system: &StepSystem, start: &State, state: &State, row: &[f64]) -> f64 {
     let u = system.units();
     let first = 2 * system.scaled.contacts;

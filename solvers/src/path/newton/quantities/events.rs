@@ -1,4 +1,4 @@
-//! Events of a step: what contact points begin and stop to do.
+//! Events of a step: changes of the status of contact points.
 
 use crate::contact::mode::ContactMode;
 use crate::path::events::{ContactStatus, transition};
@@ -7,7 +7,7 @@ use crate::path::newton::model::system::StepSystem;
 use voussoir_core::law::{Effect, TractionPoint};
 use voussoir_core::path::PathEvent;
 
-/// Status of a point in a mode of its facets.
+/// Returns the status of a point in a mode of its facets.
 fn of_mode(system: &StepSystem, contact: usize, mode: ContactMode, gap: [f64; 2]) -> ContactStatus {
     let Some(law) = system.law(contact) else { return ContactStatus::Sticks };
     match mode {
@@ -20,7 +20,7 @@ fn of_mode(system: &StepSystem, contact: usize, mode: ContactMode, gap: [f64; 2]
     }
 }
 
-/// Status of a point whose law gives tractions from gaps.
+/// Returns the status of a point whose law gives tractions from gaps.
 fn of_tractions(point: &TractionPoint, gap: [f64; 2], slip: f64) -> ContactStatus {
     match point.branch.effect {
         _ if gap[0] > 0.0 && point.traction == [0.0; 2] && point.tangent == [[0.0; 2]; 2] => ContactStatus::Open,
@@ -30,7 +30,7 @@ fn of_tractions(point: &TractionPoint, gap: [f64; 2], slip: f64) -> ContactStatu
     }
 }
 
-/// Events of a step, in the order of the contact points.
+/// Returns the events of a step, in the order of the contact points.
 pub fn events(system: &StepSystem, load_step: usize, start: &State, state: &State) -> Vec<PathEvent> {
     let of_point = |contact: usize| {
         let what = if system.laws.responses.is(contact) {

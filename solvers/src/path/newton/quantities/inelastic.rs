@@ -1,11 +1,11 @@
-//! Blocks whose material yields: their inner iteration, which goes along with Newton's method on contact
-//! forces and motions.
+//! Blocks with yielding material: their inner iteration, which runs together with Newton's method on contact forces and
+//! motions.
 //!
-//! An iteration sees such a block as u = C f + c at its points, the linearisation at the displacements of
-//! its nodes ([`Linearisation`]). Once forces and motions have moved, the nodes follow by the same
-//! linearisation, stresses are updated there, and the block is linearised again: Newton's method on all
-//! unknowns together, the nodes condensed. What stresses leave of inner equilibrium counts in the
-//! residual of the step. History is that of the last converged step until [`StepSystem::keep`].
+//! In an iteration such a block has u = C f + c at its points, the linearisation at the displacements of its nodes
+//! ([`Linearisation`]). After forces and motions have changed, the nodes follow by the same linearisation, stresses are
+//! updated, and the block is linearised again. This is Newton's method on all unknowns together, with the nodes
+//! condensed. The residual of inner equilibrium is part of the residual of the step. History is that of the last
+//! converged step until [`StepSystem::keep`].
 
 use crate::path::newton::model::blocks::YieldingBlock;
 use crate::path::newton::model::deformation::by_forces;
@@ -13,7 +13,7 @@ use crate::path::newton::model::state::{State, Tangent};
 use crate::path::newton::model::system::StepSystem;
 use std::rc::Rc;
 
-/// The nodes of all blocks follow forces and motions; blocks are linearised where they come to lie.
+/// Moves the nodes of all blocks with forces and motions, and linearises the blocks at their new positions.
 pub fn update_blocks(system: &mut StepSystem, state: &mut State) -> Result<(), String> {
     let loads = system.loads.at(state.factor);
     for index in 0..state.blocks.len() {
@@ -30,7 +30,7 @@ pub fn update_blocks(system: &mut StepSystem, state: &mut State) -> Result<(), S
     Ok(())
 }
 
-/// Greatest force on a node that stresses leave, relative to the greatest contact force.
+/// Returns the greatest unbalanced force on a node, relative to the greatest contact force.
 pub fn block_error(system: &StepSystem, state: &State) -> f64 {
     let loads = system.loads.at(state.factor);
     let force = state.force.iter().flatten().map(|r| r.abs()).fold(system.units().force, f64::max);
@@ -47,13 +47,13 @@ pub fn block_error(system: &StepSystem, state: &State) -> f64 {
     worst
 }
 
-/// Plastic work of a step \[J\].
+/// Returns the plastic work of a step \[J\].
 pub fn plastic_work(start: &State, state: &State) -> f64 {
     let both = start.blocks.iter().flatten().zip(state.blocks.iter().flatten());
     both.map(|(from, to)| to.linear.end.dissipated - from.base.dissipated).sum()
 }
 
-/// ∂(plastic work)/∂(forces on the points) of every block that yields.
+/// Returns ∂(plastic work)/∂(forces on the points) of every yielding block.
 fn plastic_work_by_force(system: &StepSystem, state: &State) -> Vec<(usize, Vec<f64>)> {
     let yielding = state.blocks.iter().enumerate().filter_map(|(index, inner)| {
         let (inner, inelastic) = (inner.as_ref()?, system.problem.bodies[index].inelastic.as_ref()?);
@@ -62,7 +62,7 @@ fn plastic_work_by_force(system: &StepSystem, state: &State) -> Vec<(usize, Vec<
     yielding.collect()
 }
 
-/// Plastic work per unit of a rate \[J\].
+/// Returns the plastic work per unit of a rate \[J\].
 pub fn plastic_power(system: &StepSystem, state: &State, rate: &Tangent) -> f64 {
     let loads = system.loads.at(state.factor);
     let mut power = 0.0;

@@ -1,4 +1,4 @@
-//! Sizes of states, rates and steps in the units of the unknowns: what continuation strategies measure.
+//! Sizes of states, rates and steps in the units of the unknowns, for continuation strategies.
 
 use super::inelastic::{plastic_power, plastic_work};
 use super::monitors::monitored;
@@ -7,19 +7,19 @@ use crate::path::newton::model::state::{State, Tangent};
 use crate::path::newton::model::system::StepSystem;
 use voussoir_core::path::Increment;
 
-/// Greatest rate of a body's displacement \[m\]: of its pole, or by its rotation over the scene's size.
+/// Returns the greatest rate of a body's displacement \[m\]: of its pole, or by its rotation over the scene's size.
 pub fn fastest(system: &StepSystem, motion: &[[f64; 3]]) -> f64 {
     let size = system.units().length;
     motion.iter().map(|q| q[0].hypot(q[1]).max(q[2].abs() * size)).fold(0.0, f64::max)
 }
 
-/// Work-conjugate displacement of the growing load, or how far supports have moved \[m\].
+/// Returns the work-conjugate displacement of the growing load, or the movement of the supports \[m\].
 pub fn load_displacement(system: &StepSystem, motion: &[[f64; 3]], factor: f64) -> f64 {
     let rigid = |body, point| system.geometry.rigid(body, point, motion);
     system.problem.load_displacement((system.loads.growing, factor), motion, rigid)
 }
 
-/// Mean of the changes of motions and gaps in their units.
+/// Returns the mean of the changes of motions and gaps in their units.
 fn mean_change(system: &StepSystem, motion: impl Fn(usize, usize) -> f64, gap: impl Fn(usize, usize) -> f64) -> f64 {
     let (u, points) = (system.units(), system.scaled.contacts);
     let units = u.motion();
@@ -30,7 +30,7 @@ fn mean_change(system: &StepSystem, motion: impl Fn(usize, usize) -> f64, gap: i
     (motions / system.scaled.bodies.max(1) as f64 + gaps / points.max(1) as f64).sqrt()
 }
 
-/// Work of contact forces on changes of gaps, as far as laws of facets make these irreversible \[J\].
+/// Returns the work of contact forces on the irreversible part of changes of gaps, for laws of facets \[J\].
 fn dissipated_by_facets(system: &StepSystem, state: &State, gap: impl Fn(usize) -> [f64; 2]) -> f64 {
     let at_point = |c: usize| {
         let (kept, _) = system.law(c)?.irreversible(state.mode[c], gap(c));
@@ -39,7 +39,7 @@ fn dissipated_by_facets(system: &StepSystem, state: &State, gap: impl Fn(usize) 
     (0..state.gap.len()).filter_map(at_point).sum()
 }
 
-/// Increment between two states in units.
+/// Returns the increment between two states in units.
 pub fn increment_between(system: &StepSystem, start: &State, state: &State) -> Increment {
     let u = system.units();
     let place = |of: &State, body: usize, point| system.geometry.rigid(body, point, &of.motion);
@@ -65,12 +65,13 @@ pub fn increment_between(system: &StepSystem, start: &State, state: &State) -> I
     }
 }
 
-/// Increment of a rate from a state.
+/// Returns the increment of a rate from a state.
 pub fn increment_along(system: &StepSystem, state: &State, rate: &Tangent) -> Increment {
     let u = system.units();
     let velocity = |body, point| system.geometry.velocity(body, point, &state.motion, &rate.motion);
     let moved = system.problem.load_displacement((system.loads.growing, rate.factor), &rate.motion, velocity);
-    // The dissipation of bonds is that of a small step. If the law fails so close to a state, the rest of the rate still counts.
+    // // The dissipation of bonds is computed in a small step. If the law fails so close to a state, the rest of the
+    // rate still counts.
     let small = 1e-6 / tangent_size(system, rate).max(1e-300);
     let ahead = |(g, dg): (&[f64; 2], &[f64; 2])| [0, 1].map(|k| g[k] + small * dg[k]);
     let gaps: Vec<[f64; 2]> = state.gap.iter().zip(&rate.gap).map(ahead).collect();
@@ -87,14 +88,14 @@ pub fn increment_along(system: &StepSystem, state: &State, rate: &Tangent) -> In
     }
 }
 
-/// Size of a rate in units, all of it.
+/// Returns the size of a rate in units, over all unknowns.
 pub fn tangent_size(system: &StepSystem, rate: &Tangent) -> f64 {
     let u = system.units();
     let force: f64 = rate.force.iter().flatten().map(|r| (r / u.force).powi(2)).sum();
     motion_size(system, rate).hypot(rate.factor / u.factor).hypot(force.sqrt())
 }
 
-/// Size of the motion of a rate in units.
+/// Returns the size of the motion of a rate in units.
 pub fn motion_size(system: &StepSystem, rate: &Tangent) -> f64 {
     let u = system.units();
     let gap: f64 = rate.gap.iter().flatten().map(|g| (g / u.displacement).powi(2)).sum();

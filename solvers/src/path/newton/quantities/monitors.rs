@@ -5,7 +5,7 @@ use crate::path::newton::model::system::StepSystem;
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::path::{Contact, MOST_MONITORS, Monitor, PathProblem};
 
-/// The monitors of a strategy, or the name of the first that the problem does not have.
+/// Returns the monitors of a strategy. The error is the name of the first monitor that the problem does not have.
 pub fn resolve(problem: &PathProblem, monitors: &[Monitor]) -> Result<Vec<MonitorWeights>, String> {
     if monitors.len() > MOST_MONITORS {
         return Err(format!("a strategy has at most {MOST_MONITORS} monitors, not {}", monitors.len()));
@@ -29,7 +29,7 @@ pub fn resolve(problem: &PathProblem, monitors: &[Monitor]) -> Result<Vec<Monito
     monitors.iter().map(weights).collect()
 }
 
-/// Weights of the normal gaps of a joint: by areas, or between the two points beside a share of its length.
+/// Returns weights of the normal gaps of a joint: by areas, or between the two points beside a share of its length.
 fn opening(problem: &PathProblem, joint: usize, at: Option<f64>) -> Option<MonitorWeights> {
     let points: Vec<(usize, &Contact)> =
         problem.contacts.iter().enumerate().filter(|(_, c)| c.joint == joint).collect();
@@ -52,7 +52,7 @@ fn opening(problem: &PathProblem, joint: usize, at: Option<f64>) -> Option<Monit
     Some(MonitorWeights { gaps, point: None })
 }
 
-/// Increments of the monitors by those of normal gaps and of points of bodies, in the unit of displacement.
+/// Returns increments of the monitors from those of normal gaps and of points of bodies, in the unit of displacement.
 pub fn monitored(
     system: &StepSystem,
     gap: impl Fn(usize) -> f64,

@@ -1,4 +1,4 @@
-//! What is written down at converged states: their energies, and the state as others read it.
+//! Records of converged states: their energies, and the state for results.
 
 use super::inelastic::plastic_work;
 use super::measure::load_displacement;
@@ -11,7 +11,7 @@ use crate::path::newton::model::system::StepSystem;
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::path::{Loading, PathState};
 
-/// What the work of a step needs of a state.
+/// Returns the data of a state for the work of a step.
 pub fn work_state(system: &StepSystem, state: &State, gradient: &Gradient) -> WorkState {
     let place = |&(body, slot, point, _): &(usize, Option<usize>, Vec2, Vec2)| {
         let rigid = system.geometry.rigid(body, point, &state.motion);
@@ -32,7 +32,7 @@ pub fn work_state(system: &StepSystem, state: &State, gradient: &Gradient) -> Wo
     }
 }
 
-/// Energies after a step: work between its ends, and dissipation.
+/// Returns the energies after a step: work between its ends, and dissipation.
 pub fn energy_after(
     before: EnergyBalance,
     system: &StepSystem,
@@ -44,8 +44,8 @@ pub fn energy_after(
     for contact in 0..state.gap.len() {
         let Some(law) = system.law(contact) else { continue };
         let (kept, _) = law.irreversible(state.mode[contact], system.step_gap(start, state, contact));
-        // Where the point yielded before on the same facet, or carried nothing and yields from nothing, the trapezoidal
-        // rule; where it began to, its force when it began is not known: the force at the end.
+        // // Trapezoidal rule if the point yielded before on the same facet, or yields from zero force. Otherwise its
+        // force at the start of yielding is unknown: the force at the end is used.
         let from_nothing = start.force[contact] == [0.0; 2] && law.facets.iter().all(|f| f.bound == 0.0);
         let same = from_nothing || start.mode[contact] == state.mode[contact];
         let (end, begun) = (state.force[contact], if same { start.force[contact] } else { state.force[contact] });
@@ -57,7 +57,7 @@ pub fn energy_after(
     energy
 }
 
-/// The state as others read it.
+/// Returns the state for results.
 pub fn recorded(
     energy: &EnergyBalance,
     system: &StepSystem,
@@ -68,7 +68,7 @@ pub fn recorded(
     let mut stored = gradient.stored + stored_by_tractions(system, state);
     for contact in 0..state.gap.len() {
         let Some(law) = system.law(contact) else { continue };
-        // A tensile strength that opens holds its force reversibly.
+        // // A tensile strength that opens keeps its force reversibly.
         let gap = [state.gap[contact][0] - state.slip[contact][0], 0.0];
         if law.opens(state.mode[contact]) && state.force[contact][0] < 0.0 {
             stored -= state.force[contact][0] * gap[0].max(0.0);

@@ -4,7 +4,7 @@ use crate::path::newton::model::state::State;
 use crate::path::newton::model::system::StepSystem;
 use crate::path::newton::model::tractions::TractionUpdates;
 
-/// Brings what the laws say in line with a state's gaps, for a step from `start`.
+/// Updates the responses of the laws to a state's gaps, for a step from `start`.
 pub fn update_tractions(system: &mut StepSystem, start: &State, state: &mut State) -> Result<(), String> {
     let count = system.laws.responses.count();
     if count > 0 {
@@ -14,7 +14,7 @@ pub fn update_tractions(system: &mut StepSystem, start: &State, state: &mut Stat
     Ok(())
 }
 
-/// Scale and scaled stiffness of a point's rows: σ F and σ U K.
+/// Returns the scale and the scaled stiffness of a point's rows: σ F and σ U K.
 pub fn traction_row(system: &StepSystem, state: &State, contact: usize) -> ([f64; 2], [[f64; 2]; 2]) {
     let u = system.units();
     let area = system.problem.contacts[contact].area;
@@ -24,7 +24,7 @@ pub fn traction_row(system: &StepSystem, state: &State, contact: usize) -> ([f64
     (sigma.map(|s| s * u.force), scaled)
 }
 
-/// σ (r − A t).
+/// Returns σ (r − A t).
 pub fn traction_residual(system: &StepSystem, state: &State, contact: usize) -> [f64; 2] {
     let area = system.problem.contacts[contact].area;
     let (own, _) = traction_row(system, state, contact);
@@ -32,13 +32,13 @@ pub fn traction_residual(system: &StepSystem, state: &State, contact: usize) -> 
     [0, 1].map(|k| own[k] * (state.force[contact][k] - area * traction[k]) / system.units().force)
 }
 
-/// Greatest difference between forces and what the laws say, beyond rounding of the gaps, relative to the greatest
-/// force: between soft blocks a stiff law turns what is small among motions into a share of the forces.
+/// Returns the greatest difference between forces and the responses of the laws, beyond rounding of the gaps, relative
+/// to the greatest force. Between soft blocks a stiff law turns small errors of motions into a share of the forces.
 pub fn traction_error(system: &StepSystem, state: &State) -> f64 {
     let largest = state.force.iter().flatten().map(|r| r.abs()).fold(system.units().force, f64::max);
     let moved = state.motion.iter().flat_map(|q| &q[..2]).chain(state.gap.iter().flatten());
     let moved = moved.fold(0.0, |a: f64, x| a.max(x.abs()));
-    // Half of what a certificate allows.
+    // // Half of the tolerance of a certificate.
     let place = system.limits.place;
     let rounding = f64::EPSILON * if place > 0.0 { 256.0 * place } else { 32.0 * moved };
     let mut worst: f64 = 0.0;
@@ -53,19 +53,19 @@ pub fn traction_error(system: &StepSystem, state: &State) -> f64 {
     worst
 }
 
-/// Energy that these laws dissipate in the step of an update \[J\].
+/// Returns the energy that these laws dissipate in the step of an update \[J\].
 pub fn dissipated_by(system: &StepSystem, updates: &TractionUpdates) -> f64 {
     let points = updates.points.iter().zip(&system.problem.contacts);
     points.map(|(point, c)| c.area * point.dissipated).sum()
 }
 
-/// Energy that these laws store \[J\].
+/// Returns the energy that these laws store \[J\].
 pub fn stored_by_tractions(system: &StepSystem, state: &State) -> f64 {
     let points = state.updates.points.iter().zip(&system.problem.contacts);
     points.map(|(point, c)| c.area * point.stored).sum()
 }
 
-/// Whether a step from `start` is irreversible at some point.
+/// Returns true if a step from `start` is irreversible at some point.
 pub fn tractions_dissipate(system: &StepSystem, state: &State) -> bool {
     let most = 1e-13 * (stored_by_tractions(system, state).abs() + system.units().energy());
     dissipated_by(system, &state.updates) > most

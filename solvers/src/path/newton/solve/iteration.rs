@@ -19,18 +19,17 @@ use crate::path::newton::quantities::response::{traction_error, traction_row, up
 use crate::settings::SETTINGS;
 use std::rc::Rc;
 
-/// Contact points that want to change above which, twice running where eight times fewer did before, an
-/// iteration is given up: it has left the neighbourhood of a solution, and change by change it does not
-/// come back.
+/// Number of contact points with wrong modes above which an iteration is given up, if the number was eight times
+/// smaller before, twice in succession: it has left the neighbourhood of a solution.
 const ASTRAY: usize = 200;
 
-/// Points that still change up to which they may be in a cycle.
+/// Greatest number of changing points that may be in a cycle.
 const FEW: usize = 4;
-/// Iterations with a line search.
+/// Greatest number of iterations with a line search.
 const SEARCHED: u64 = 30;
 
-/// Newton's method from a guess: how many times all modes may change at once without that their number falls is its
-/// `patience`. What is found, and after how many iterations.
+/// Newton's method from a guess. All modes may change at once `patience` times without a decrease of their number.
+/// Returns the result and the number of iterations.
 pub fn iterate(
     system: &mut StepSystem,
     start: &State,
@@ -58,7 +57,7 @@ pub fn iterate(
         if !norm.is_finite() {
             return Err("an iteration left the numbers".into());
         }
-        // Rounding is what a whole step does not lower.
+        // // A residual that a full step does not lower is rounding.
         let stays = whole && norm > 0.3 * last_norm;
         let settled = norm <= system.found() + rounding || (norm <= SETTINGS.admissible + 30.0 * rounding && stays);
         let fine = !linearised.lags || norm <= SETTINGS.fine * (system.found() + rounding);
@@ -74,8 +73,8 @@ pub fn iterate(
         system.count("newton_iterations", 1);
         system.report.iterations += 1;
         let solution = solve(system, &state, &equations, (&row, &right), Accuracy::Rough);
-        // Modes without a solution may be on the way to ones that have one: with small
-        // displacements the shifted equations, a soft bedding, show which points close.
+        // // Modes without a solution may lead to modes with one: with small displacements the shifted equations, which
+        // act as a soft bedding, show the points that close.
         unsolved += u32::from(solution.as_ref().is_some_and(|(_, solved)| !solved));
         let Some((step, _)) = solution.filter(|_| unsolved <= most_unsolved) else {
             return Err("the modes of the contact points leave no equilibrium".into());
@@ -98,31 +97,32 @@ pub fn iterate(
     Err("the modes of contact points keep changing".into())
 }
 
-/// Where the equations of an iteration are linearised: those of a place serve near it, as long as they take residuals down.
+/// The state at which the equations of an iteration are linearised. They are reused at nearby states as long as they
+/// reduce residuals.
 pub struct LinearisedAt {
-    /// The place; `None` where the equations are always those of the state itself.
+    /// That state; `None` if the equations are always those of the present state.
     place: Option<State>,
-    /// Whether they are not those of the state itself.
+    /// True if they are not those of the present state.
     lags: bool,
 }
 
 impl LinearisedAt {
-    /// For steps from a start, whose equations `serve` near it or not.
+    /// Creates it for steps from a start; `serve` is true if its equations may be reused at nearby states.
     pub fn of(start: &State, serve: bool) -> Self {
         LinearisedAt { place: serve.then(|| start.clone()), lags: false }
     }
 
-    /// Whether the last equations were not those of the state itself.
+    /// Returns true if the last equations were not those of the present state.
     pub fn lags(&self) -> bool {
         self.lags
     }
 
-    /// Whether a residual is small enough for the equations that it was reached with.
+    /// Returns true if a residual is small enough for the equations used.
     pub fn is_fine(&self, norm: f64, found: f64) -> bool {
         !self.lags || norm <= SETTINGS.fine * found
     }
 
-    /// Equations for a state; `slow` where those of the last iteration have not done enough.
+    /// Returns equations for a state; `slow` if those of the last iteration reduced the residual too little.
     pub fn equations(&mut self, system: &mut StepSystem, state: &State, slow: bool) -> Rc<Equations> {
         let Some(place) = &mut self.place else { return system.equations(state) };
         self.lags = !(slow && self.lags) && turned_between(place, state) <= SETTINGS.small;
@@ -133,14 +133,14 @@ impl LinearisedAt {
     }
 }
 
-/// Whether a state whose residual has settled holds: equilibrium, gaps, strengths and laws of tractions.
+/// Returns true if a state with a converged residual satisfies equilibrium, gaps, strengths and laws of tractions.
 pub fn holds_at(
     system: &StepSystem,
     residual: &[f64],
     state: &State,
     (inner, rounding, stays): (f64, f64, bool),
 ) -> bool {
-    // Rounding of positions excuses gaps, not equilibrium.
+    // // Rounding of positions allows errors of gaps, not of equilibrium.
     let holds = || {
         let (gap, force) = gap_error(system, residual, state);
         inner <= SETTINGS.inequality()
@@ -152,7 +152,7 @@ pub fn holds_at(
     (!system.finite() || holds()) && traction_error(system, state) <= SETTINGS.admissible
 }
 
-/// The guess as a state of the step, with what the loads, blocks and laws say there.
+/// Returns the guess as a state of the step, with its loads, blocks and responses of laws.
 pub fn first_state(
     system: &mut StepSystem,
     start: &State,
@@ -169,13 +169,13 @@ pub fn first_state(
     Ok((state, gradient))
 }
 
-/// Greatest rotation of a body from one state to another.
+/// Returns the greatest rotation of a body from one state to another.
 fn turned_between(start: &State, state: &State) -> f64 {
     let turns = state.motion.iter().zip(&start.motion).map(|(q, before)| (q[2] - before[2]).abs());
     turns.fold(0.0, f64::max)
 }
 
-/// Share of an iteration whose rotations stay where the linearisation means something.
+/// Returns the share of an iteration for which its rotations are in the range of the linearisation.
 pub fn rotation_bound(system: &StepSystem, step: &[f64]) -> f64 {
     let points = system.scaled.contacts;
     let turn = (0..system.scaled.bodies)
@@ -184,22 +184,22 @@ pub fn rotation_bound(system: &StepSystem, step: &[f64]) -> f64 {
     (system.limits.rotation / turn.max(1e-300)).min(1.0)
 }
 
-/// How the contact modes change from iteration to iteration: block principal pivoting with its fallback.
+/// The changes of contact modes between iterations: block principal pivoting with its fallback.
 struct ModeChanges {
     patience: u32,
-    /// Iterations without gain that are a cycle.
+    /// Number of iterations without gain that count as a cycle.
     cycle: u32,
     changed: bool,
-    /// Points that want to change, and what they and all others want.
+    /// Points with wrong modes, and the required modes of all points.
     differ: Vec<usize>,
     wanted: Vec<ContactMode>,
-    /// Fewest that wanted to, and iterations since.
+    /// Least number of wrong modes, and iterations since then.
     least: usize,
     without_gain: u32,
-    /// Fewest with which all changed at once, and how often they may without becoming fewer.
+    /// Least number of wrong modes at a change of all modes, and how often all may change without a decrease.
     fewest: usize,
     budget: u32,
-    /// Iterations in a row with far more changes than before.
+    /// Number of successive iterations with far more changes than before.
     astray: u32,
 }
 
@@ -211,7 +211,7 @@ impl ModeChanges {
         ModeChanges { patience, cycle, changed: true, differ, wanted, least, without_gain, fewest, budget, astray }
     }
 
-    /// Takes note of the modes that a state asks for, and of whether the laws hold in its own.
+    /// Records the modes that a state requires; `holds` is true if the laws hold in its own modes.
     fn update(&mut self, state: &State, wanted: Vec<ContactMode>, holds: bool) {
         self.differ = (0..wanted.len()).filter(|c| wanted[*c] != state.mode[*c]).collect();
         self.wanted = wanted;
@@ -222,7 +222,7 @@ impl ModeChanges {
         self.least = self.least.min(count);
     }
 
-    /// Whether the iteration has left the neighbourhood of a solution, or few points cycle.
+    /// Returns true if the iteration has left the neighbourhood of a solution, or if few points cycle.
     fn hopeless(&self) -> bool {
         let cycles = self.changed && self.least <= FEW && self.without_gain >= self.cycle;
         self.astray > 1 || cycles
@@ -243,7 +243,7 @@ impl ModeChanges {
     }
 }
 
-/// Greatest relative residual: balance and yielding against forces, gaps against motions.
+/// Returns the greatest relative residual: balance and yielding relative to forces, gaps relative to motions.
 pub fn relative_residual(system: &StepSystem, residual: &[f64], state: &State) -> f64 {
     let u = system.units();
     let points = state.gap.len();
@@ -256,7 +256,7 @@ pub fn relative_residual(system: &StepSystem, residual: &[f64], state: &State) -
     residual.iter().enumerate().map(by_row).fold(0.0, |worst, x| if x.is_nan() { x } else { worst.max(x) })
 }
 
-/// Whether a contact point's row is an equation of gaps, not of forces.
+/// Returns true if a contact point's row is an equation of gaps, not of forces.
 fn is_gap_row(system: &StepSystem, state: &State, row: usize) -> bool {
     let (point, k) = (row / 2, row % 2);
     if system.laws.responses.is(point) {
@@ -269,9 +269,9 @@ fn is_gap_row(system: &StepSystem, state: &State, row: usize) -> bool {
     }
 }
 
-/// Greatest residual of the gaps of facets, relative to the greatest unknown (rounding of positions, which excuses as
-/// much in units of a displacement, is no share of what has moved much further), and the force that the joint would make
-/// of it, relative to the greatest one. Laws of tractions have an error of their own.
+/// Returns the greatest residual of the gaps of facets, relative to the greatest unknown, and the force that the joint
+/// would give for it, relative to the greatest force. Rounding of positions is an error in units of displacement, so it
+/// is a smaller share of larger motions. Laws of tractions have a separate error.
 pub fn gap_error(system: &StepSystem, residual: &[f64], state: &State) -> (f64, f64) {
     let u = system.units();
     let largest = state.force.iter().flatten().map(|r| r.abs()).fold(1e-6 * u.force, f64::max);
@@ -285,8 +285,8 @@ pub fn gap_error(system: &StepSystem, residual: &[f64], state: &State) -> (f64, 
     (greatest / largest_unknown(system, state), force)
 }
 
-/// Whether all contact forces keep to their strengths within twice what their modes are allowed: rounding of positions
-/// excuses gaps, not those.
+/// Returns true if all contact forces satisfy their strengths within twice the tolerance of modes: rounding of
+/// positions allows errors of gaps, not of strengths.
 fn is_admissible(system: &StepSystem, state: &State) -> bool {
     let largest = state.force.iter().flatten().map(|r| r.abs()).fold(system.units().force, f64::max);
     let keeps = |(c, r): (usize, &[f64; 2])| {
@@ -296,7 +296,7 @@ fn is_admissible(system: &StepSystem, state: &State) -> bool {
     state.force.iter().enumerate().all(keeps)
 }
 
-/// Greatest residual of equilibrium, relative to the greatest force.
+/// Returns the greatest residual of equilibrium, relative to the greatest force.
 pub fn unbalanced_share(system: &StepSystem, residual: &[f64], state: &State) -> f64 {
     let force = state.force.iter().flatten().map(|r| (r / system.units().force).abs()).fold(0.0, f64::max);
     let rows = &residual[2 * state.gap.len()..residual.len() - 1];

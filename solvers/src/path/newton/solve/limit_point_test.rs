@@ -1,8 +1,9 @@
-//! The limit point test: whether a rate with growing λ starts at a converged state (small displacements).
+//! The limit point test: finds out if a rate with growing λ starts at a converged state (small displacements).
 //!
-//! Points with slack in all facets stay stuck, open ones without strength open. With the others, the active set, taken
-//! as stuck, equilibrium and elasticity are one factorisation, which gives the rate problem ṙ = S ġ + s λ̇ over them
-//! ([`rate::problem`](crate::rate::problem)); branching finds a rate with λ̇ = 1 or proves that there is none.
+//! Points with slack in all facets stay stuck; open points without strength stay open. The other points are the active
+//! set. With these points stuck, equilibrium and elasticity are one factorisation, which gives the rate problem ṙ = S ġ
+//! + s λ̇ over them ([`rate::problem`](crate::rate::problem)). Branching finds a rate with λ̇ = 1 or proves that none
+//! exists.
 
 use super::tangent::tangent_from;
 use crate::contact::active_point::ActivePoint;
@@ -23,30 +24,30 @@ use nalgebra::{DMatrix, DVector};
 use voussoir_core::law::FacetMode;
 use voussoir_core::linear::{Entries, SparseLu};
 
-/// Linear programs of a search.
+/// Greatest number of linear programs of a search.
 const MOST: u64 = 20_000;
 
 /// The active set of a state.
 pub struct ActiveSet {
     /// Contact points.
     pub contacts: Vec<usize>,
-    /// Facets of each without slack, and the opening facet where it is open with a strength.
+    /// Facets of each point without slack, and the opening facet if it is open with a strength.
     pub facets: Vec<(Vec<usize>, Option<usize>)>,
-    /// Modes of all points with those of the active set stuck.
+    /// Modes of all points; points of the active set are stuck.
     modes: Vec<ContactMode>,
 }
 
-/// What is known of rates with growing λ.
+/// The result of the test.
 pub enum LimitPointTest {
-    /// There is none.
+    /// No rate with growing λ exists.
     None,
-    /// One, with its modes.
+    /// A rate with growing λ, with its modes.
     Tangent(Tangent, Vec<ContactMode>),
-    /// Not decided, and why.
+    /// Undecided, with the reason.
     Unknown(String),
 }
 
-/// Looks for a rate with λ growing in the sense `direction` at a converged state, or proves that there is none.
+/// Searches a rate with λ growing in the sense `direction` at a converged state, or proves that none exists.
 pub fn limit_point_test(system: &mut StepSystem, state: &State, direction: f64) -> LimitPointTest {
     let active = active_set(system, state, &[]);
     let count: usize = active.facets.iter().map(|(facets, _)| facets.len()).sum();
@@ -71,36 +72,36 @@ pub fn limit_point_test(system: &mut StepSystem, state: &State, direction: f64) 
     }
 }
 
-/// What continues a path after an event.
+/// The continuation of a path after an event.
 pub enum AfterEvent {
     /// A rate with its modes.
     Goes {
         rate: Tangent,
         modes: Vec<ContactMode>,
-        /// Number of other rates that the rule does not tell from it.
+        /// Number of other rates that the rule does not distinguish from it.
         twins: usize,
         /// Set if it is proved that no rate has a growing factor.
         none_rises: bool,
     },
-    /// Nothing: proved. `none_rises` holds.
+    /// It is proved that no rate continues the path, so `none_rises` holds.
     Nothing,
-    /// Not decided, and why; whether it is proved that no rate has a growing factor.
+    /// Undecided, with the reason; true if it is proved that no rate has a growing factor.
     Unknown(String, bool),
 }
 
 /// The contact points of an event.
 #[derive(Debug, Default)]
 pub struct EventPoints {
-    /// All of them.
+    /// All points.
     pub all: Vec<usize>,
-    /// Those whose slip ends.
+    /// Points whose slip ends.
     pub stopping: Vec<usize>,
-    /// Those that close.
+    /// Points that close.
     pub closing: Vec<usize>,
 }
 
-/// Finds the rate that continues a path after an event. `direction`: the sense in which the factor is to grow; `sense`: 1 if it has grown
-/// up to the event, 0 if it stood still, −1 if it fell.
+/// Finds the rate that continues a path after an event. `direction`: the sense in which the factor should grow;
+/// `sense`: 1 if it has grown up to the event, 0 if it was constant, −1 if it fell.
 pub fn rate_after_event(
     system: &mut StepSystem,
     state: &State,
@@ -150,7 +151,7 @@ pub fn rate_after_event(
     }
 }
 
-/// Products of the motions for unit gap rates and, last, of motions and factor for λ̇ = 1.
+/// Returns the products of the motions for unit gap rates and, last, of motions and factor for λ̇ = 1.
 fn metric(system: &StepSystem, responses: &[Vec<f64>]) -> DMatrix<f64> {
     let first = 2 * system.scaled.contacts;
     let n = responses.len();
@@ -158,14 +159,14 @@ fn metric(system: &StepSystem, responses: &[Vec<f64>]) -> DMatrix<f64> {
     DMatrix::from_fn(n, n, |i, j| inner(&responses[i][first..], &responses[j][first..]) + own(i, j))
 }
 
-/// The unknowns of a rate by its gap rates over the active set and λ̇ in the sense `direction`.
+/// Returns the unknowns of a rate from its gap rates over the active set and λ̇ in the sense `direction`.
 fn unknowns_of(responses: &[Vec<f64>], gaps: &[[f64; 2]], factor: f64, direction: f64) -> Vec<f64> {
     let mut x = without_factor(responses, gaps, factor);
     x.push(factor * direction);
     x
 }
 
-/// The same unknowns but λ; λ̇ = 0 stands for a held load.
+/// Returns the same unknowns without λ; λ̇ = 0 means a held load.
 pub fn without_factor(responses: &[Vec<f64>], gaps: &[[f64; 2]], factor: f64) -> Vec<f64> {
     let mut x: Vec<f64> = responses[2 * gaps.len()].iter().map(|x| factor * x).collect();
     for (by, gap) in responses.iter().zip(gaps.as_flattened()) {
@@ -174,11 +175,11 @@ pub fn without_factor(responses: &[Vec<f64>], gaps: &[[f64; 2]], factor: f64) ->
     x
 }
 
-/// Modes of all points by those of the active set.
+/// Returns the modes of all points from those of the active set.
 fn modes_of(system: &StepSystem, active: &ActiveSet, modes: Vec<ContactMode>) -> Vec<ContactMode> {
     let mut all = active.modes.clone();
     for (c, mode) in active.contacts.iter().zip(modes) {
-        // A corner has one mode, whichever two of its facets flow.
+        // // A corner has one mode for all pairs of its facets.
         let law = system.law(*c);
         all[*c] = match mode {
             ContactMode::Corner(i, j) => law.and_then(|law| law.mode_of_pair(i as usize, j as usize)).unwrap_or(mode),
@@ -188,7 +189,8 @@ fn modes_of(system: &StepSystem, active: &ActiveSet, modes: Vec<ContactMode>) ->
     all
 }
 
-/// Points that may change their modes: those with a facet without slack or at the tip of opening, and those that close.
+/// Returns the points that may change their modes: points with a facet without slack or at the tip of opening, and
+/// points that close.
 pub fn active_set(system: &StepSystem, state: &State, closing: &[usize]) -> ActiveSet {
     let mut active = ActiveSet { contacts: Vec::new(), facets: Vec::new(), modes: state.mode.clone() };
     let largest = largest_force(state);
@@ -207,8 +209,8 @@ pub fn largest_force(state: &State) -> f64 {
     state.force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()))
 }
 
-/// The facets of a contact point without slack, and its opening facet if it is open and may carry a force. `None` if it
-/// stays open without one, or has no facets.
+/// Returns the facets of a contact point without slack, and its opening facet if it is open and may carry a force.
+/// `None` if it stays open without a force, or has no facets.
 pub fn active_facets(
     system: &StepSystem,
     state: &State,
@@ -228,8 +230,8 @@ pub fn active_facets(
     Some(((0..law.facets.len()).filter(tight).collect(), open))
 }
 
-/// Rates of all unknowns but λ by a unit gap rate in each of the two directions of every point of the active set
-/// and, last, by λ̇ in the sense `direction`. `None` where linear algebra fails.
+/// Returns the rates of all unknowns except λ for a unit gap rate in each of the two directions of every point of the
+/// active set and, last, for λ̇ in the sense `direction`. `None` if linear algebra fails.
 pub fn responses_of(
     system: &StepSystem,
     state: &State,
@@ -285,7 +287,7 @@ pub fn responses_of(
     Some(x)
 }
 
-/// Rows [by force, by gap] of a contact point with a law of tractions from gaps: dr + K dg = 0, scaled.
+/// Returns the rows [by force, by gap] of a contact point with a law of tractions from gaps: dr + K dg = 0, scaled.
 fn traction_rows(system: &StepSystem, state: &State, contact: usize) -> [[f64; 4]; 2] {
     let (own, stiffness) = traction_row(system, state, contact);
     [[own[0], 0.0, stiffness[0][0], stiffness[0][1]], [0.0, own[1], stiffness[1][0], stiffness[1][1]]]

@@ -34,7 +34,7 @@ use crate::path::newton::quantities::inelastic::{block_error, update_blocks};
 use crate::path::newton::quantities::response::update_tractions;
 use std::rc::Rc;
 
-/// ‖F‖ of a state in the units of the unknowns.
+/// Returns ‖F‖ of a state in the units of the unknowns.
 fn merit(system: &mut StepSystem, start: &State, state: &State, gradient: &Gradient, control: &Control) -> f64 {
     let u = system.units();
     let mut rows = residual_of(system, start, state, gradient);
@@ -59,7 +59,7 @@ fn merit(system: &mut StepSystem, start: &State, state: &State, gradient: &Gradi
     rows.iter().map(|f| f * f).sum::<f64>().sqrt().hypot(inner)
 }
 
-/// The state a share of a step on, with blocks, gaps and tractions there.
+/// Returns the state moved by a share of a step, with its blocks, gaps and tractions.
 pub fn advanced(
     system: &mut StepSystem,
     start: &State,
@@ -76,8 +76,8 @@ pub fn advanced(
     Ok((next, gradient))
 }
 
-/// The state on a step at which the merit is low enough, else that of the least merit, and whether the step
-/// is whole. Of the step no more than `most`.
+/// Returns the state on a step with a merit that is low enough, otherwise the state of least merit, and true for the
+/// full step. The step is at most `most`.
 pub fn searched(
     system: &mut StepSystem,
     start: &State,
@@ -119,7 +119,7 @@ mod tests {
     use voussoir_core::model::geometry::Vec2;
     use voussoir_core::path::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem, PointLaw};
 
-    /// A rigid block on three compliant points of the ground with friction that dilates, pushed down and aside.
+    /// A rigid block on three compliant points of the ground with dilatant friction, pushed down and sideways.
     fn pushed() -> PathProblem {
         let body = |held, pole| PathBody {
             members: vec![0],
@@ -158,7 +158,7 @@ mod tests {
         }
     }
 
-    /// From any state the step of the modes of z lowers the merit by its whole per whole step.
+    /// From any state the step of the modes of z lowers the merit at the rate of its full value per full step.
     #[test]
     fn the_merit_falls_along_the_step() {
         let problem = pushed();
@@ -185,7 +185,7 @@ mod tests {
                 let row = control_row(&system, &control);
                 let right: Vec<f64> = rows.iter().map(|x| -x).collect();
                 let Some((step, true)) = solve_linear(&mut system, &state, &equations, &row, &right) else { continue };
-                // Where all points slide to the same side the modes hold the block by nothing.
+                // // If all points slide to the same side, the modes do not hold the block.
                 if step.iter().any(|x| x.abs() > 1e3) {
                     continue;
                 }

@@ -8,12 +8,11 @@
 //! response  r − A t(g) = 0 (see `response`)
 //! ```
 //!
-//! The matrix that is factorised is shifted by ε: compliance ε C̄ in every contact, stiffness ε / C̄
-//! in every body and in every yielding contact. That makes it quasi-definite (Vanderbei 1995, SIAM J.
-//! Optim. 5) where modes repeat a condition or leave a motion free; iterative refinement against
-//! the true matrix removes the shift from the answer. Where refinement does not converge, the
-//! modes have no solution, and the step is refused. How it is factorised: see `border` and
-//! [`condensed`](crate::linear::condensed).
+//! The factorised matrix is shifted by ε: compliance ε C̄ in every contact, stiffness ε / C̄ in every body and in every
+//! yielding contact. This makes it quasi-definite (Vanderbei 1995, SIAM J. Optim. 5) if modes repeat a condition or
+//! leave a motion free; iterative refinement with the true matrix removes the shift from the solution. If refinement
+//! does not converge, the modes have no solution, and the step is refused. The factorisation is described in `border`
+//! and [`condensed`](crate::linear::condensed).
 
 use crate::contact::facet::slack;
 use crate::contact::mode::ContactMode;
@@ -31,7 +30,7 @@ use crate::settings::SETTINGS;
 use std::cell::RefCell;
 use std::rc::Rc;
 
-/// Residual of the modes' equations in units.
+/// Returns the residual of the modes' equations in units.
 pub fn residual_of(system: &StepSystem, start: &State, state: &State, gradient: &Gradient) -> Vec<f64> {
     let u = system.units();
     let points = state.gap.len();
@@ -73,7 +72,7 @@ pub fn residual_of(system: &StepSystem, start: &State, state: &State, gradient: 
     out
 }
 
-/// Normals and flows of the laws' facets.
+/// Returns the normals and flows of the laws' facets.
 fn directions(system: &StepSystem) -> Vec<[f64; 4]> {
     let facets = system.laws.polygons.iter().flat_map(|law| &law.facets);
     facets.map(|f| [f.normal[0], f.normal[1], f.flow[0], f.flow[1]]).collect()
@@ -83,13 +82,13 @@ fn damping(system: &StepSystem) -> f64 {
     system.loads.damping.as_ref().map_or(0.0, |damping| damping.rate)
 }
 
-/// Kept factors, where modes alone make the rows of points.
+/// Returns the kept factors, if modes alone determine the rows of points.
 pub fn all_kept<'s>(system: &'s StepSystem<'_>) -> impl Iterator<Item = &'s Rc<Kept>> {
     let (damping, directions) = (damping(system), directions(system));
     system.cache.factors.held().filter(move |kept| kept.damping == damping && kept.directions == directions)
 }
 
-/// Those of them that are of these equations in the state's modes and serve a control.
+/// Returns the kept factors of these equations in the state's modes that serve a control.
 pub fn kept<'s>(
     system: &'s StepSystem,
     state: &State,
@@ -100,8 +99,8 @@ pub fn kept<'s>(
     all_kept(system).filter(same).find(|kept| serves(&kept.held))
 }
 
-/// The modes' linear equations, factorised, and whether that is done before: where modes alone make them, those of the
-/// same modes and equations are taken again.
+/// Returns the factorised linear equations of the modes, and true if they were kept: if modes alone determine them,
+/// factors of the same modes and equations are reused.
 pub fn factorised(
     system: &mut StepSystem,
     state: &State,
@@ -121,7 +120,7 @@ pub fn factorised(
         None => by_rows(system, state, equations, row, damping),
     };
     let held = Rc::new(held?);
-    // Tangents of bonds make their matrix, not modes alone.
+    // // The tangents of bonds change the matrix, so modes alone do not identify it.
     if system.laws.responses.is_empty() {
         system.cache.factors.hold(Kept {
             equations: equations.clone(),
@@ -135,14 +134,14 @@ pub fn factorised(
     Some((held, false))
 }
 
-/// The equations of a chain of elastic bodies in the modes of a state.
+/// Returns the equations of a chain of elastic bodies in the modes of a state.
 pub fn chain_rows(system: &StepSystem, state: &State, equations: &Equations) -> ChainRows {
     let points = (0..state.mode.len()).map(|c| rows_of_point(system, state, c)).collect();
     let bodies = BodyRows { rows: equations.bodies.clone(), diagonal: -damping(system), shift: -SETTINGS.admissible };
     ChainRows { gaps: equations.gaps.clone(), bodies, points }
 }
 
-/// The rows of a contact point, by its mode or by its tractions.
+/// Returns the rows of a contact point, by its mode or by its tractions.
 fn rows_of_point(system: &StepSystem, state: &State, c: usize) -> PointRows {
     if system.laws.responses.is(c) {
         let (own, stiffness) = traction_row(system, state, c);
@@ -151,7 +150,7 @@ fn rows_of_point(system: &StepSystem, state: &State, c: usize) -> PointRows {
     Equations::point_rows(system.law(c), state.mode[c])
 }
 
-/// The same row by row, whatever bodies stand beside each other.
+/// Assembles the same equations row by row, for any arrangement of bodies.
 fn by_rows(
     system: &mut StepSystem,
     state: &State,
@@ -180,8 +179,8 @@ fn by_rows(
     })
 }
 
-/// Solves the modes' linear equations for one right-hand side in units, and whether it is solved:
-/// where the equations contradict each other, what comes back is the answer of the shifted ones.
+/// Solves the modes' linear equations for one right-hand side in units, and returns true if they are solved. If the
+/// equations contradict each other, the result is the solution of the shifted equations.
 pub fn solve_linear(
     system: &mut StepSystem,
     state: &State,
@@ -194,13 +193,13 @@ pub fn solve_linear(
     if found.as_ref().is_some_and(|(_, solved)| *solved) || !again {
         return found;
     }
-    // Another unknown held may serve this control better.
+    // // With another held unknown the control may be better conditioned.
     system.cache.factors.forget();
     let (held, _) = factorised(system, state, equations, row)?;
     refined(&BorderedSystem::new(held, row)?, right)
 }
 
-/// The solution of the equations without what was added, by refinement, and whether there is one.
+/// Solves the equations without the added terms by refinement, and returns true if a solution exists.
 fn refined(bordered: &BorderedSystem<ModeEquations>, right: &[f64]) -> Option<(Vec<f64>, bool)> {
     let mut x = vec![0.0; right.len()];
     let mut rest = right.to_vec();
@@ -226,7 +225,7 @@ fn refined(bordered: &BorderedSystem<ModeEquations>, right: &[f64]) -> Option<(V
         }
         before = now;
     }
-    // What is left over is rounding of the solution's own size, or the system has no solution.
+    // // The remaining residual is rounding of the solution, or the system has no solution.
     let size = norm(&best).max(aim);
     Some((best, before <= 1e-9 * size))
 }

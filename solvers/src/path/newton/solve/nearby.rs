@@ -1,12 +1,12 @@
-//! Solutions of the modes' equations by factors of others that are near: of a few contact points with other modes
-//! (Sherman, Morrison & Woodbury), and of a place a little away, which refinement takes out.
+//! Solves the modes' equations with factors of nearby equations: a few contact points have other modes (Sherman,
+//! Morrison & Woodbury), or the state is slightly different, which refinement corrects.
 //!
 //! ```text
 //! B x_0 = f     B Y = [e_i]     (1 + D Y) w = D x_0     x = x_0 − Y w     f ← f − A x
 //! ```
 //!
-//! B: the equations that were factorised, A: those that are solved, D: what the rows i of points with other modes are in A
-//! more than in B. A residual that does not fall fast enough says that the factors are too far away.
+//! B: the factorised equations; A: the equations to solve; D: the difference A − B in the rows i of points with other
+//! modes. If the residual does not decrease fast enough, the factors are too different.
 
 use super::linearised::{all_kept, chain_rows, factorised, solve_linear};
 use crate::linear::bordered::BorderedSystem;
@@ -22,12 +22,12 @@ use nalgebra::{DMatrix, DVector, Dyn, LU};
 use std::collections::btree_map::Entry;
 use std::rc::Rc;
 
-/// Points with other modes up to which factors are near.
+/// Greatest number of points with other modes for which factors count as near.
 const MOST_CHANGED: usize = 6;
-/// Share of a residual that a refinement may leave, and how many there may be.
+/// Greatest number of refinements.
 const MOST_REFINEMENTS: usize = 8;
 
-/// Factors with the equations that are solved by them.
+/// Factors with the equations that they are used to solve.
 struct Nearby<'k> {
     kept: &'k Kept,
     factors: &'k ChainFactors,
@@ -36,24 +36,24 @@ struct Nearby<'k> {
     rows: ChainRows,
     /// Points with other modes.
     changed: Vec<usize>,
-    /// Y, by rows of the changed points.
+    /// Y, in the order of the rows of the changed points.
     responses: Vec<Vec<f64>>,
     /// 1 + D Y.
     small: Option<LU<f64, Dyn, Dyn>>,
 }
 
-/// How exactly equations are solved.
+/// The required accuracy of a solution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Accuracy {
-    /// To what Newton's method and signs of rates need.
+    /// Sufficient for Newton's method and for signs of rates.
     Rough,
-    /// To rounding, by whatever factors are near.
+    /// To rounding, with any nearby factors.
     Fine,
-    /// To rounding; by factors of the state itself where its second-order work will be asked of them.
+    /// To rounding, with factors of the state itself if its second-order work is needed later.
     Rounding,
 }
 
-/// Solves the modes' linear equations, and whether they are solved: by factors that are near if there are any.
+/// Solves the modes' linear equations, with nearby factors if there are any, and returns true if they are solved.
 pub fn solve(
     system: &mut StepSystem,
     state: &State,
@@ -69,7 +69,7 @@ pub fn solve(
     found.map(|x| (x, true)).or_else(|| solve_linear(system, state, equations, control, right))
 }
 
-/// The solution by the nearest factors. `None` where none are near enough.
+/// Solves with the nearest factors. `None` if no factors are near enough.
 fn solve_nearby(
     system: &mut StepSystem,
     state: &State,
@@ -113,7 +113,7 @@ impl<'k> Nearby<'k> {
         Some(own)
     }
 
-    /// Columns of Y for the two rows of a point.
+    /// Returns the columns of Y for the two rows of a point.
     fn respond(&self, contact: usize) -> Option<Vec<Vec<f64>>> {
         let mut known = self.kept.responses.borrow_mut();
         let mut columns = match known.entry(contact) {
@@ -136,7 +136,7 @@ impl<'k> Nearby<'k> {
         Some(columns)
     }
 
-    /// D x.
+    /// Returns D x.
     fn differences(&self, x: &[f64]) -> Vec<f64> {
         let of_point = |c: &usize| {
             let [own, before] = [self.rows.point(*c, x, true), self.factors.point(*c, x)];
@@ -145,7 +145,7 @@ impl<'k> Nearby<'k> {
         self.changed.iter().flat_map(of_point).collect()
     }
 
-    /// By the factors and D, once.
+    /// Solves once with the factors and D.
     fn apply(&self, right: &[f64]) -> Option<Vec<f64>> {
         let mut x = self.bordered.apply(right)?;
         let Some(small) = &self.small else { return Some(x) };
@@ -170,7 +170,7 @@ impl<'k> Nearby<'k> {
                 return Some(x);
             }
             if now.is_nan() || now > SETTINGS.contraction * before {
-                // What is left may be rounding of the solution's own size.
+                // // The residual may be rounding of the solution.
                 return (now.min(before) <= accuracy * norm(&x)).then_some(x);
             }
             before = now;
@@ -234,8 +234,8 @@ mod tests {
         }
     }
 
-    /// By factors of other modes at another place as by those of the equations themselves; where they are too far away
-    /// nothing is said.
+    /// Factors of other modes at another state give the solution of the equations' own factors; if they are too
+    /// different, they give no solution.
     #[test]
     fn nearby_factors_solve_as_own_ones_do() {
         let problem = between_supports();

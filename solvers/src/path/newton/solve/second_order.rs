@@ -1,5 +1,5 @@
-//! Second-order work of a converged state: the flexibility of its bodies with the contact modes held, column by
-//! column from the factorised equations.
+//! Second-order work of a converged state: the flexibility of its bodies with the contact modes held, computed column
+//! by column from the factorised equations.
 
 use super::linearised::{factorised, kept};
 use super::tangent::tangent_at;
@@ -16,7 +16,7 @@ use crate::path::stability::{SecondOrderWork, over_weak_points, work_by_response
 use crate::settings::SETTINGS;
 use nalgebra::DMatrix;
 
-/// Second-order work of a state with its modes held, loads and settlements fixed; `None` where its equations have no
+/// Returns the second-order work of a state with its modes, loads and settlements held; `None` if its equations have no
 /// factorisation.
 pub fn second_order_work(system: &mut StepSystem, state: &State) -> Option<SecondOrderWork> {
     let held = held_factor(system, state)?;
@@ -28,7 +28,7 @@ pub fn second_order_work(system: &mut StepSystem, state: &State) -> Option<Secon
     work_by_responses(motions, |wrenches| images(&held, wrenches, first, system.size()))
 }
 
-/// The equations with the factor held.
+/// Returns the equations with the factor held.
 fn held_factor(system: &mut StepSystem, state: &State) -> Option<BorderedSystem<ModeEquations>> {
     let equations = system.equations(state);
     let mut row = vec![0.0; system.size()];
@@ -40,7 +40,7 @@ fn held_factor(system: &mut StepSystem, state: &State) -> Option<BorderedSystem<
     BorderedSystem::new(held, &row)
 }
 
-/// Motions that solve the equations for some right-hand sides.
+/// Returns the motions that solve the equations for some right-hand sides.
 fn solved(held: &BorderedSystem<ModeEquations>, rights: &[Vec<f64>], first: usize) -> Option<Vec<Vec<f64>>> {
     let mut found = held.equations().motions(first, rights)?;
     if let Some((control, w, along)) = held.border() {
@@ -53,7 +53,7 @@ fn solved(held: &BorderedSystem<ModeEquations>, rights: &[Vec<f64>], first: usiz
     Some(found)
 }
 
-/// S times the columns of a matrix. Balance is −∂V/∂q: what it says of K is −K.
+/// Returns S times the columns of a matrix. Balance is −∂V/∂q, so its matrix is −K.
 fn images(
     held: &BorderedSystem<ModeEquations>,
     basis: &DMatrix<f64>,
@@ -70,19 +70,20 @@ fn images(
     Some(DMatrix::from_fn(basis.nrows(), basis.ncols(), |i, j| columns[j][i]))
 }
 
-/// Stability of a state: whether second-order work is positive with its loads and settlements held, and with the load
-/// point held. `None` where that is not decided.
+/// Stability of a state: true if second-order work is positive with its loads and settlements held, and with the load
+/// point held. `None` if that is undecided.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StateStability {
     pub under_load: Option<bool>,
     pub under_control: Option<bool>,
-    /// Whether second-order work is only sufficient: some point slides without associated flow.
+    /// True if positive second-order work is only sufficient: some point slides without associated flow.
     pub sufficient_only: bool,
 }
 
-/// Stability of a state at the end of a stage, in which a load grows or a support `settles`. At rest points that slide,
-/// or are about to, are weakly active: they may move on or stick. Second-order work must be positive on the cone of
-/// these rates: positive with all of them free suffices; negative with all of them held is instability.
+/// Returns the stability of a state at the end of a stage, in which a load grows or a support `settles`. At rest,
+/// points that slide, or are about to, are weakly active: they may continue or stick. Second-order work must be
+/// positive on the cone of these rates: positive with all of them free is sufficient; negative with all of them held is
+/// instability.
 pub fn stability(system: &mut StepSystem, state: &State, settles: bool) -> StateStability {
     let free = with_weak_points(system, state, |released, _| released);
     let held = with_weak_points(system, state, |_, held| held);
@@ -103,8 +104,8 @@ pub fn stability(system: &mut StepSystem, state: &State, settles: bool) -> State
     StateStability { under_load, under_control, sufficient_only }
 }
 
-/// The second-order work of a state that is unstable under its loads, also with the points that slide held. `None` if it is
-/// stable, or its second-order work is not known.
+/// Returns the second-order work of a state that is unstable under its loads, also with the sliding points held. `None`
+/// if it is stable, or its second-order work is not known.
 pub fn instability(system: &mut StepSystem, state: &State) -> Option<SecondOrderWork> {
     let work = second_order_work(system, state)?;
     if work.turned == 0 || work.nearest <= SETTINGS.active {
@@ -115,8 +116,7 @@ pub fn instability(system: &mut StepSystem, state: &State) -> Option<SecondOrder
     (at_rest.turned > 0).then_some(work)
 }
 
-/// The state with its weakly active points in modes of our choice among released and held: points that slide, and
-/// stuck ones without slack.
+/// Returns the state with its weakly active points released or held: points that slide, and stuck points without slack.
 fn with_weak_points(
     system: &StepSystem,
     state: &State,

@@ -7,9 +7,9 @@ use crate::path::newton::model::state::State;
 use crate::path::newton::model::system::StepSystem;
 use crate::settings::SETTINGS;
 
-/// Newton's method from a guess. Modes change all at once as long as their number falls, else one by one (block principal
-/// pivoting with its fallback: Júdice & Pires 1994, Computers & Ops. Res. 21), so that modes that flip without end are seen. If
-/// that fails, by a line search, then with one change at a time from the beginning.
+/// Solves a step by Newton's method from a guess. All modes change at once while their number decreases, otherwise one
+/// by one, which detects modes that change without end (block principal pivoting with its fallback: Júdice & Pires
+/// 1994, Computers & Ops. Res. 21). If that fails, it uses a line search, then one change at a time from the start.
 pub fn solve_step(
     system: &mut StepSystem,
     start: &State,

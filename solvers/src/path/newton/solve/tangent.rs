@@ -1,4 +1,4 @@
-//! Rates of converged states with their contact modes held, and the modes that a state asks for.
+//! Rates of converged states with their contact modes held, and the modes that a state requires.
 
 use super::nearby::{Accuracy, solve};
 use crate::contact::mode::ContactMode;
@@ -13,7 +13,7 @@ use std::rc::Rc;
 pub fn apply_step(system: &StepSystem, state: &mut State, step: &[f64], share: f64) {
     add_step(system, &mut state.force, &mut state.motion, step, share);
     if share == 1.0 {
-        // What is left of a force that the mode says is rounding.
+        // // Removes the rounding error of a force that the mode determines.
         for (c, force) in state.force.iter_mut().enumerate() {
             if let Some(corner) = system.law(c).and_then(|law| law.corner(state.mode[c])) {
                 let area = system.problem.contacts[c].area;
@@ -41,15 +41,15 @@ fn add_step(system: &StepSystem, force: &mut [[f64; 2]], motion: &mut [[f64; 3]]
     }
 }
 
-/// Differences of motions, which gaps are, beyond whose rounding a gap means nothing \[m\].
+/// Returns the rounding error of gaps, which are differences of motions \[m\].
 pub fn gap_rounding(system: &StepSystem, state: &State) -> f64 {
     let gaps = state.gap.iter().flatten().map(|g| g.abs());
     let motions = state.motion.iter().map(|q| q[0].abs().max(q[1].abs()).max(q[2].abs() * system.units().length));
     8.0 * f64::EPSILON * gaps.chain(motions).fold(0.0, f64::max)
 }
 
-/// Modes that the present forces and gaps ask for, and whether the laws hold in them: where flow is not
-/// associated the nearest mode need not be the return.
+/// Returns the modes that the present forces and gaps require, and true if the laws hold in them: if flow is not
+/// associated, the nearest mode need not be that of the return.
 pub fn wanted_modes(system: &mut StepSystem, start: &State, state: &State) -> (Vec<ContactMode>, bool) {
     system.count("law_evaluations", state.gap.len() as u64);
     let largest = state.force.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max);
@@ -62,7 +62,8 @@ pub fn wanted_modes(system: &mut StepSystem, start: &State, state: &State) -> (V
         .map(|c| match system.law(c) {
             None => ContactMode::Stick,
             Some(law) => {
-                // Any ρ > 0 asks for the same modes of a solution; one that makes forces of a gap's rounding does not.
+                // // In a solution any ρ > 0 gives the same modes, except one so large that rounding of a gap becomes a
+                // force.
                 let stiffness = system.stiffness(c);
                 let noise = rounding * stiffness[0].max(stiffness[1]);
                 let rho = stiffness.map(|k| k * (SETTINGS.mode * largest / noise).min(1.0));
@@ -79,12 +80,12 @@ pub fn wanted_modes(system: &mut StepSystem, start: &State, state: &State) -> (V
     (modes, holds)
 }
 
-/// Tangent of a converged state with its modes held, per unit of the control's gradient.
+/// Returns the tangent of a converged state with its modes held, per unit of the control's gradient.
 pub fn tangent_at(system: &mut StepSystem, state: &State, control: &Control) -> Option<Tangent> {
     tangent(system, state, control, Accuracy::Rounding)
 }
 
-/// The same by whatever factors are near.
+/// Returns the same tangent, with any nearby factors.
 pub fn tangent_nearby(system: &mut StepSystem, state: &State, control: &Control) -> Option<Tangent> {
     tangent(system, state, control, Accuracy::Fine)
 }
@@ -95,14 +96,14 @@ fn tangent(system: &mut StepSystem, state: &State, control: &Control, accuracy: 
     tangent_of_modes(system, state, &equations, &row, accuracy)
 }
 
-/// The right-hand side of a rate per unit of the last row.
+/// Returns the right-hand side of a rate per unit of the last row.
 fn per_row(system: &StepSystem) -> Vec<f64> {
     let mut right = vec![0.0; system.size()];
     right[system.size() - 1] = 1.0;
     right
 }
 
-/// Tangent of a state with its modes held, per unit of `row`.
+/// Returns the tangent of a state with its modes held, per unit of `row`.
 pub fn tangent_of_modes(
     system: &mut StepSystem,
     state: &State,
@@ -115,7 +116,7 @@ pub fn tangent_of_modes(
     Some(tangent_from(system, &x, state, equations))
 }
 
-/// Forces, motions and the factor of a solution of the linear equations, without the gaps.
+/// Returns forces, motions and the factor of a solution of the linear equations, without the gaps.
 pub fn tangent_without_gaps(system: &StepSystem, x: &[f64]) -> Tangent {
     let points = system.problem.contacts.len();
     let (mut force, mut motion) = (vec![[0.0; 2]; points], vec![[0.0; 3]; system.scaled.free.len()]);
@@ -127,7 +128,7 @@ pub fn tangent_without_gaps(system: &StepSystem, x: &[f64]) -> Tangent {
     Tangent { force, motion, factor, gap: Vec::new() }
 }
 
-/// The rate of a solution of the linear equations.
+/// Returns the rate of a solution of the linear equations.
 pub fn tangent_from(system: &StepSystem, x: &[f64], state: &State, equations: &Equations) -> Tangent {
     let along = equations.gaps.product(x);
     let gap = (0..state.gap.len()).map(|c| [along[2 * c], along[2 * c + 1]].map(|g| g * system.units().displacement));

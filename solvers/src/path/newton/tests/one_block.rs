@@ -104,7 +104,7 @@ fn renumbered_points_have_the_same_limit_points() {
     }
 }
 
-/// A load that is to fall below nothing pushes the other way: the block slides at −μ W.
+/// A negative target is a push in the other direction: the block slides at −μ W.
 #[test]
 fn a_negative_target_is_approached_from_above() {
     let mut problem = block(0.3, pushed_at(0.1));
@@ -126,7 +126,7 @@ fn a_settlement_of_a_determinate_structure_is_no_mechanism() {
     assert!((normal - 0.1f64.cos()).abs() < 1e-9, "{normal}");
 }
 
-/// A mechanism that closes a gap is no collapse: behind it the wall carries the load.
+/// A mechanism that closes a gap is not a collapse: after that the wall carries the load.
 #[test]
 fn a_mechanism_that_closes_a_gap_is_no_plateau() {
     let mut problem = block(0.3, pushed_at(0.1));
@@ -136,7 +136,7 @@ fn a_mechanism_that_closes_a_gap_is_no_plateau() {
     assert_eq!((answer.status, answer.factor), (Status::Stands, Some(2.0)), "{:?}", answer.notes);
 }
 
-/// From nothing: the weight of a block whose joints are open at first closes them.
+/// The weight of a block closes joints that are open in the unloaded state.
 #[test]
 fn a_path_begins_with_open_joints() {
     let mut problem = block(0.3, pushed_at(0.1));
@@ -150,7 +150,7 @@ fn a_path_begins_with_open_joints() {
 #[test]
 fn a_corner_that_leaves_its_face_ends_the_path() {
     let mut problem = block(0.3, pushed_at(0.1));
-    // Events within a thousandth of the size: the block slides on for less than a plateau.
+    // // Events within a thousandth of the size: the block slides less far than on a plateau.
     problem.contacts.iter_mut().for_each(|contact| contact.sliding.slip = [-5e-4, 5e-4]);
     let answer = followed(&problem, None);
     assert_eq!(answer.status, Status::Collapse, "{:?}", answer.notes);

@@ -15,7 +15,7 @@ use voussoir_core::path::{
     StageSettings, Unobserved,
 };
 
-/// Lets no path go on.
+/// Stops every path.
 struct Impatient;
 
 impl PathObserver for Impatient {
@@ -24,7 +24,7 @@ impl PathObserver for Impatient {
     }
 }
 
-/// Load control ends where a path does of which the first limit point is asked for.
+/// Load control ends at the first limit point, like a path with a request for it.
 #[test]
 fn load_control_is_a_request_for_the_first_limit_point() {
     let problem = block(0.9, pushed_at(0.8));
@@ -117,7 +117,8 @@ fn an_observer_stops_the_path() {
     assert_eq!(answer.status, Status::Stalled, "{:?}", answer.notes);
 }
 
-/// The solver refuses a scene without loads, one that does not deform, and a monitor of a joint that is not there.
+/// The solver refuses a scene without loads, a scene that does not deform, and a monitor of a joint that does not
+/// exist.
 #[test]
 fn what_the_solver_refuses() {
     let problem = block(0.3, pushed_at(0.1));

@@ -20,7 +20,7 @@ fn the_growing_load_counts_from_its_start() {
     assert_eq!([acceleration.x, acceleration.y], [6.0, -5.0]);
 }
 
-/// Settlements of all loads in force add up: 2 (0.1, 0, 0) + 3 (0, 0, 0.2).
+/// Settlements of all present loads are added: 2 (0.1, 0, 0) + 3 (0, 0, 0.2).
 #[test]
 fn settlements_add_up() {
     let (earlier, growing) = (settlement(0, [0.1, 0.0, 0.0]), settlement(0, [0.0, 0.0, 0.2]));
@@ -50,7 +50,7 @@ fn an_opening_at_a_share_is_interpolated() {
     assert_close(after, 0.2, 1e-15);
 }
 
-/// A monitor of a block or a joint that is not there is refused by its name.
+/// A monitor of a block or a joint that does not exist is refused by its name.
 #[test]
 fn an_absent_monitor_is_refused() {
     let problem = block(0.3, pushed_at(0.1));

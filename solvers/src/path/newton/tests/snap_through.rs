@@ -84,10 +84,9 @@ impl Continuation for DisplacementOfPoint {
     }
 }
 
-/// With N the force and L = √(a² + y²) the distance of crown and support, the hinge's springs lie in
-/// the bar's line (the force acts at the middle of their two ends), so L = ℓ − c N and
-/// F = 2 N y / L = (2/c)(ℓ/L − 1) y; the peak is at L³ = ℓ a². The path is that curve through the peak,
-/// the snap and beyond.
+/// With N the force and L = √(a² + y²) the distance of crown and support, the hinge's springs are in line with the bar
+/// (the force acts at the middle of their two ends), so L = ℓ − c N and F = 2 N y / L = (2/c)(ℓ/L − 1) y; the peak is
+/// at L³ = ℓ a². The path follows that curve through the peak and the snap.
 #[test]
 fn two_bars_snap_through() {
     let (a, h, c) = (1.0, 0.2, 1e-3);
@@ -107,7 +106,7 @@ fn two_bars_snap_through() {
         how.stop_displacement = Some(0.35);
         let mut states = Kept(Vec::new());
         let answer = NewtonPath {}.trace(&two_bars(a, h, c), &how, &mut states);
-        // Hanging, the bars carry more than at the peak: an answer would depend on where the path is stopped.
+        // // Hanging bars carry more than at the peak: the answer would depend on the end of the path.
         assert_eq!(answer.status, Status::Stalled, "{:?}", answer.notes);
         assert!(answer.notes.iter().any(|note| note.starts_with("still rising")), "{:?}", answer.notes);
         assert_eq!(answer.limit_points.len(), 1);

@@ -94,12 +94,12 @@ fn a_block_that_is_unloaded_comes_back() {
     problem.load_steps.push(stage(2, force(v(0.0, HEIGHT), v(-1.0, 0.0)), LoadStepEnd::Factor(0.3)));
     let answer = followed(&problem, None);
     assert_eq!(answer.status, Status::Stands, "{:?}", answer.notes);
-    // The direction of the load did not turn, and its arm did not change: nothing is left.
+    // // The direction of the load and its arm are unchanged: no force remains.
     answer.state.force.iter().for_each(|r| assert_close(r[0], 0.5, 1e-9));
     assert_close(answer.state.motion[1][2], 0.0, 1e-12);
 }
 
-/// A path that is asked to stop after a movement of the load ends that far behind its limit point.
+/// A path with a requested displacement of the load ends at that distance beyond its limit point.
 #[test]
 fn a_stop_displacement_ends_the_path_behind_its_limit_point() {
     let how = PathSettings { stop_displacement: Some(0.05), ..finite(None) };

@@ -1,4 +1,4 @@
-//! Converged states that are taken over, and paths that end with them because a joint or all contact is lost.
+//! Accepts converged states, and ends paths at which a joint or all contact is lost.
 
 use super::peak::note_peak;
 use super::tracer::{LoadStepEnding, Tracer, direction, end_path, foreseen, is_above};
@@ -11,7 +11,7 @@ use crate::settings::SETTINGS;
 use voussoir_core::limit::Status;
 use voussoir_core::path::{Contact, LimitPointEnd};
 
-/// Takes a converged state as the next one. Returns true if the path goes on.
+/// Accepts a converged state as the next one. Returns true if the path continues.
 pub fn commit(tracer: &mut Tracer, mut next: State) -> bool {
     let greatest = |force: &[[f64; 2]]| force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
     if tracer.system.finite()
@@ -26,7 +26,7 @@ pub fn commit(tracer: &mut Tracer, mut next: State) -> bool {
         return false;
     }
     tracer.system.drop_rounding(&mut next);
-    // A point that closes beyond its face presses on nothing: the path ends at the state before.
+    // // A point that closes beyond its face has no contact: the path ends at the state before.
     if let Some((apart, why)) = left_its_pairing(tracer, &next, SETTINGS.admissible) {
         end_at_lost_joint(tracer, apart, None, why);
         return false;
@@ -59,8 +59,9 @@ pub fn commit(tracer: &mut Tracer, mut next: State) -> bool {
     true
 }
 
-/// Ends a path with finite displacements at which a joint has slipped as far as its pairing holds. If its blocks have come
-/// `apart` they are no structure any longer, and a load that has grown up to here is a limit point; `rate` leads on from it.
+/// Ends a path with finite displacements at which a joint has slipped to the limit of its pairing. If its blocks have
+/// come `apart`, they are not a structure any more, and a load that has grown up to here is a limit point; `rate`
+/// continues from it.
 pub fn end_at_lost_joint(tracer: &mut Tracer, apart: bool, rate: Option<&Tangent>, why: String) -> LoadStepEnding {
     let direction = direction(tracer);
     let greatest = tracer.limit.peak.as_ref().is_none_or(|peak| is_above(direction, peak.factor, tracer.state.factor));
@@ -76,8 +77,8 @@ pub fn end_at_lost_joint(tracer: &mut Tracer, apart: bool, rate: Option<&Tangent
     end_path(tracer, status, why)
 }
 
-/// A pressed point that has slipped further than its pairing holds with finite displacements, by more than a share `beyond` of the
-/// size: true if its blocks have come apart, and a note.
+/// Checks closed points with finite displacements that have slipped beyond the limit of their pairing by more than a
+/// share `beyond` of the size. Returns true if the blocks have come apart, and a note.
 fn left_its_pairing(tracer: &Tracer, state: &State, beyond: f64) -> Option<(bool, String)> {
     if !tracer.system.finite() {
         return None;
@@ -91,7 +92,8 @@ fn left_its_pairing(tracer: &Tracer, state: &State, beyond: f64) -> Option<(bool
     Some(lost_joint(tracer, c, gap[1]))
 }
 
-/// Returns true if the blocks have come apart at a contact point that has slipped as far as its pairing holds, with a note.
+/// Returns true if the blocks have come apart at a contact point that has slipped to the limit of its pairing, with a
+/// note.
 pub fn lost_joint(tracer: &Tracer, contact: &Contact, slip: f64) -> (bool, String) {
     let (apart, why) = match contact.sliding.corners {
         [low, high] if low != high => (true, "it has lost half of its height"),

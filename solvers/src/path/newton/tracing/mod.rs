@@ -1,4 +1,4 @@
-//! The path as it is traced: states taken over, limit points, snaps to stable equilibria, energy of steps.
+//! The traced path: accepted states, limit points, snaps to stable equilibria, energy of steps.
 
 pub mod commit;
 pub mod peak;

@@ -8,8 +8,8 @@ use crate::path::newton::quantities::recorded::recorded;
 use crate::settings::SETTINGS;
 use voussoir_core::path::ProvenPeak;
 
-/// Keeps a proven peak; the path's answer has the greatest. If the path has been there before, with less load in between, it is
-/// not another one: with friction a path may run in a loop.
+/// Keeps a proven peak; the path's answer has the greatest. A peak is not counted again if the path returns to it after
+/// a lower load: with friction a path may run in a loop.
 pub fn note_proven_peak(tracer: &mut Tracer, peak: Peak, direction: f64) {
     let (factor, displacement) = (peak.factor, peak.state.displacement);
     let greatest = |known: &Peak| (factor - known.factor) * direction > 0.0;
@@ -31,7 +31,7 @@ pub fn note_proven_peak(tracer: &mut Tracer, peak: Peak, direction: f64) {
     }
 }
 
-/// A peak at a state between the last one and the next, with the rate just beyond it.
+/// Returns a peak at a state between the last one and the next, with the rate just beyond it.
 pub fn peak_at(tracer: &mut Tracer, mut state: State, beyond: &Tangent) -> Peak {
     let gradient = tracer.system.gradient(&state);
     let (energy, _) = foreseen(tracer, &state, &gradient);
@@ -53,8 +53,9 @@ pub fn note_peak(tracer: &mut Tracer, beyond: Option<&Tangent>, direction: f64) 
     }
 }
 
-/// Velocities with p·q̇ = 1; of settlements, which do no work, with 1 m of the fastest body's speed. `None` where the load does next to no work on them: rates are checked
-/// to 1e-8 of their size, so less work than a hundred times that proves nothing.
+/// Returns velocities with p·q̇ = 1; for settlements, which do no work, with a speed of 1 m of the fastest body. `None`
+/// if the load does almost no work on them: rates are checked to 1e-8 of their size, so less work than a hundred times
+/// that proves nothing.
 pub fn scaled_motion(tracer: &Tracer, state: &State, rate: &Tangent) -> Option<Vec<[f64; 3]>> {
     let u = tracer.system.units();
     let load = tracer.system.problem.load_size(tracer.system.loads.growing);

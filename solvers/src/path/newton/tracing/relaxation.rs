@@ -1,15 +1,16 @@
 //! Damped descent from an unstable equilibrium with its loads and settlements held (finite displacements, laws of
-//! facets): viscous wrenches on the bodies,
+//! facets): viscous wrenches act on the bodies,
 //!
 //! ```text
 //! Gqᵀ r + w + λ p = κ B q̇,   step by step (q − q₀) κ B,   B = 1 in the units of the motions
 //! ```
 //!
-//! Each step is an equilibrium with the stiffness κ B more, unique where κ is greater than the least eigenvalue of K is
-//! negative; friction keeps its history from step to step. The potential falls in every step by what the wrenches and
-//! friction dissipate, so the descent ends in the equilibrium to which the state would fall slowly, never in one beyond
-//! a rise of its energy; it is one when it holds without damping and has positive second-order work. The work of the
-//! viscous wrenches is the energy that a real fall sets free: what the potential has fallen by, less what friction took.
+//! Each step is an equilibrium with the additional stiffness κ B. It is unique if κ is greater than the magnitude of
+//! the least, negative eigenvalue of K; friction keeps its history from step to step. In every step the potential falls
+//! by the dissipation of the wrenches and of friction. The descent therefore ends in the equilibrium to which the state
+//! would fall slowly, never in one beyond a rise of its energy. The end counts as an equilibrium if it holds without
+//! damping and has positive second-order work. The work of the viscous wrenches is the energy that a real fall
+//! releases: the decrease of the potential minus the work of friction.
 
 use crate::path::newton::model::control::Control;
 use crate::path::newton::model::loads::Damping;
@@ -21,23 +22,23 @@ use crate::path::newton::solve::second_order::second_order_work;
 use crate::path::stability::SecondOrderWork;
 use crate::settings::SETTINGS;
 
-/// Steps of a descent.
+/// Greatest number of steps of a descent.
 const MOST_STEPS: usize = 400;
-/// Times in a row that the damping may be made greater.
+/// Greatest number of successive increases of the damping.
 const MOST_FAILURES: u32 = 12;
 
-/// Where a descent ended.
+/// The end of a descent.
 pub struct Relaxation {
     /// The last state of the descent with its history, and the equilibrium next to it.
     pub before: State,
     pub next: State,
-    /// How far it lies along the critical mode, in units.
+    /// Its distance along the critical mode, in units.
     pub side: f64,
-    /// What friction has up to `before` \[J\].
+    /// Energy dissipated by friction up to `before` \[J\].
     pub dissipated: f64,
 }
 
-/// The descents from a state along its critical mode, one in each sense, as far as they end in stable equilibria.
+/// Returns the descents from a state along its critical mode, one in each sense, that end in stable equilibria.
 pub fn relaxations(system: &mut StepSystem, state: &State, work: &SecondOrderWork) -> Vec<Relaxation> {
     if system.limits.remembers {
         return Vec::new();
@@ -47,7 +48,7 @@ pub fn relaxations(system: &mut StepSystem, state: &State, work: &SecondOrderWor
     found
 }
 
-/// A descent in one sense of the critical mode.
+/// Computes a descent in one sense of the critical mode.
 fn descent(system: &mut StepSystem, from: &State, work: &SecondOrderWork, sense: f64) -> Option<Relaxation> {
     let mode = &work.critical_mode();
     let (u, control) = (system.units(), Control::Factor(from.factor));
@@ -92,7 +93,7 @@ fn descent(system: &mut StepSystem, from: &State, work: &SecondOrderWork, sense:
         last_moved = moved;
         system.loads.damping = None;
         rate = match second_order_work(system, &state) {
-            // Each step is unique, and doubles what grows.
+            // // With this damping each step is unique, and unstable motions double in it.
             Some(work) if work.turned > 0 => 2.0 * work.curvature.abs().max(SETTINGS.same_rate()),
             _ if iterations <= 10 => (0.5 * rate).max(SETTINGS.same_rate()),
             _ => rate,
@@ -101,16 +102,17 @@ fn descent(system: &mut StepSystem, from: &State, work: &SecondOrderWork, sense:
     None
 }
 
-/// The stable equilibrium next to a state of a descent whose last step has `moved` so far with a damping of `rate`.
+/// Returns the stable equilibrium next to a state of a descent; its last step has `moved` this far with a damping of
+/// `rate`.
 fn settled(system: &mut StepSystem, state: &State, control: &Control, moved: f64, rate: f64) -> Option<State> {
     let (next, _) = iterate(system, state, state.clone(), control, 8, None).ok()?;
     let work = second_order_work(system, &next).filter(|work| work.negative == 0 || work.turned == 0)?;
-    // By the damped step's own equation: what is left to go is about κ / k of it.
+    // // By the equation of the damped step, the remaining distance is about κ / k times the step.
     let left = moved * (1.0 + rate / work.curvature.abs().max(1e-12));
     (distance(system, state, &next) <= 4.0 * left).then_some(next)
 }
 
-/// Euclidean distance of the motions of two states in their units.
+/// Returns the Euclidean distance of the motions of two states in their units.
 fn distance(system: &StepSystem, a: &State, b: &State) -> f64 {
     let units = system.units().motion();
     let free = (0..a.motion.len()).filter(|body| system.scaled.free[*body].is_some());
@@ -118,7 +120,7 @@ fn distance(system: &StepSystem, a: &State, b: &State) -> f64 {
     squares.map(|(body, k)| ((a.motion[body][k] - b.motion[body][k]) / units[k]).powi(2)).sum::<f64>().sqrt()
 }
 
-/// How far a state lies from another along a mode, in units.
+/// Returns the distance of a state from another along a mode, in units.
 fn along(system: &StepSystem, from: &State, state: &State, mode: &[f64]) -> f64 {
     let units = system.units().motion();
     let of_body = |body: usize| {
@@ -129,7 +131,7 @@ fn along(system: &StepSystem, from: &State, state: &State, mode: &[f64]) -> f64 
     (0..from.motion.len()).filter_map(of_body).sum()
 }
 
-/// Whether a body has moved so far that the structure has fallen.
+/// Returns true if a body has moved so far that the structure has fallen.
 fn fallen(system: &StepSystem, from: &State, state: &State) -> bool {
     let length = system.units().length;
     let pairs = from.motion.iter().zip(&state.motion);

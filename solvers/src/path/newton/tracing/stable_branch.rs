@@ -1,6 +1,6 @@
-//! Which branch a path takes where its state becomes unstable under fixed loads and settlements: the one to which damped
-//! descent leads, of two the one whose energy falls more. Twins, whose energies are the same, are told apart by what
-//! geometry says and numbers do not: the later loads that do more work on one of them.
+//! The branch of a path whose state becomes unstable under fixed loads and settlements. It is the state that damped
+//! descent reaches; of two, the one with the greater decrease of energy. Twins have the same energy: later loads do
+//! more work on the chosen one, so that the choice does not depend on numbering.
 
 use super::commit::commit;
 use super::relaxation::{Relaxation, relaxations};
@@ -14,18 +14,18 @@ use crate::path::twins::favoured;
 use crate::settings::SETTINGS;
 use voussoir_core::path::Branching;
 
-/// How a path goes on from an unstable state.
+/// The continuation of a path from an unstable state.
 pub enum Departure {
-    /// From a stable one.
+    /// From a stable state.
     Stable,
-    /// There is none.
+    /// No stable state is found.
     Falls,
-    /// The observer has ended it.
+    /// The observer has ended the path.
     Stopped,
 }
 
-/// Leaves an unstable state, or the last one before a limit point that it `snaps` from, for the stable one that damped
-/// descent from it reaches.
+/// Leaves an unstable state, or the last one before a limit point from which it `snaps`, for the stable state that
+/// damped descent from it reaches.
 pub fn leave_unstable(tracer: &mut Tracer, state: &State, work: &SecondOrderWork, snaps: bool) -> Departure {
     let found = relaxations(&mut tracer.system, state, work);
     let fallen = |relaxation: Relaxation| (fall(tracer, &relaxation), relaxation);
@@ -52,7 +52,7 @@ pub fn leave_unstable(tracer: &mut Tracer, state: &State, work: &SecondOrderWork
     if commit(tracer, next) { Departure::Stable } else { Departure::Stopped }
 }
 
-/// Fall of the potential of constant loads in a descent, friction of its last step taken off \[J\].
+/// Returns the decrease of the potential of constant loads in a descent, minus the friction of its last step \[J\].
 fn fall(tracer: &Tracer, relaxation: &Relaxation) -> f64 {
     let Relaxation { before, next, .. } = relaxation;
     let system = &tracer.system;
@@ -65,7 +65,7 @@ fn fall(tracer: &Tracer, relaxation: &Relaxation) -> f64 {
     work - (stored - tracer.record.state.stored) - friction
 }
 
-/// The descent on which the energy falls most, and whether the other is its twin.
+/// Returns the descent with the greatest decrease of energy, and true if the other is its twin.
 fn choose(tracer: &Tracer, mut found: Vec<(f64, Relaxation)>) -> Option<(f64, Relaxation, bool)> {
     let (b, other) = found.pop()?;
     let Some((a, one)) = found.pop() else { return Some((b, other, false)) };

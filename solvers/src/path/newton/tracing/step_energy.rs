@@ -1,4 +1,4 @@
-//! Whether a step is short enough for its energy: work is integrated by the trapezoidal rule, what is stored is a
+//! Checks the length of a step by its energy: work is integrated by the trapezoidal rule; the stored energy is a
 //! function of the state.
 
 use super::tracer::{Tracer, foreseen};
@@ -6,15 +6,15 @@ use crate::path::newton::model::state::State;
 use crate::path::newton::quantities::recorded::recorded;
 use crate::settings::SETTINGS;
 
-/// How well a step keeps the energy of its stage.
+/// The energy error of a step, relative to its stage.
 pub struct StepEnergy {
-    /// By how much the next step may grow (below 1: must shrink).
+    /// Factor on the length of the next step (below 1 it must shrink).
     pub growth: f64,
-    /// Whether the step may stand.
+    /// True if the step is accepted.
     pub holds: bool,
 }
 
-/// Of a step that converged.
+/// Evaluates a converged step.
 pub fn step_energy(tracer: &mut Tracer, next: &State) -> StepEnergy {
     let gradient = tracer.system.gradient(next);
     let (energy, _) = foreseen(tracer, next, &gradient);

@@ -1,4 +1,4 @@
-//! The state of a trace: the last converged state, what is recorded of the path, and how it ended.
+//! The state of a trace: the last converged state, the record of the path, and its ending.
 
 use crate::path::energy::{EnergyBalance, StageBalance, WorkState};
 use crate::path::newton::model::derivatives::Gradient;
@@ -13,11 +13,11 @@ use voussoir_core::path::{
     StageStability, Witness,
 };
 
-/// How a load step ended.
+/// The ending of a load step.
 pub enum LoadStepEnding {
-    /// At its factor.
+    /// The load step has reached its factor.
     Reached,
-    /// The path ends here.
+    /// The path ends in this load step.
     Ended,
 }
 
@@ -28,14 +28,14 @@ pub struct Peak {
     pub motion: Option<Vec<[f64; 3]>>,
 }
 
-/// What is written down of a path.
+/// The record of a path.
 pub struct Record {
     pub energy: EnergyBalance,
     /// The balance of the present stage.
     pub balance: StageBalance,
-    /// The last converged state as the work of the next step needs it.
+    /// Data of the last converged state for the work of the next step.
     pub work: WorkState,
-    /// The last converged state as others read it.
+    /// The last converged state for results.
     pub state: PathState,
     pub events: Vec<PathEvent>,
     pub notes: Vec<String>,
@@ -44,22 +44,22 @@ pub struct Record {
     pub witnesses: Vec<Witness>,
 }
 
-/// How a path ends.
+/// The end of a path.
 pub struct Ending {
     pub status: Status,
     pub motion: Option<Vec<[f64; 3]>>,
     pub ray: Option<Vec<[f64; 2]>>,
-    /// Why it ends at a limit point, if the question does not give the reason.
+    /// The reason of an end at a limit point, if the question does not give it.
     pub limit_point_end: Option<LimitPointEnd>,
 }
 
-/// The greatest limit point, with small displacements the first, and what is known of it.
+/// The greatest limit point (with small displacements the first) and its proof.
 #[derive(Default)]
 pub struct LimitPoint {
     pub peak: Option<Peak>,
-    /// Proven peaks of finite displacements in order.
+    /// Proven peaks with finite displacements, in order.
     pub proven_peaks: Vec<ProvenPeak>,
-    /// Why it is not proven to be one.
+    /// The reason if it is not proven.
     pub unproven: Option<String>,
     /// Factor at which it is proven that no rate has growing λ.
     pub proven: Option<f64>,
@@ -67,7 +67,7 @@ pub struct LimitPoint {
     pub trough: Option<Peak>,
 }
 
-/// The load step that is followed.
+/// The present load step.
 pub struct InForce {
     pub load_step: usize,
     pub strategy: Arc<dyn Continuation>,
@@ -86,7 +86,7 @@ pub struct Tracer<'a, 'o> {
     pub limit: LimitPoint,
 }
 
-/// Energies at the end of a step from the last state, and what the next one needs of it.
+/// Returns the energies at the end of a step from the last state, and the data for the next step.
 pub fn foreseen(tracer: &Tracer, state: &State, gradient: &Gradient) -> (EnergyBalance, WorkState) {
     let work = work_state(&tracer.system, state, gradient);
     let start = (&tracer.state, &tracer.record.work);
@@ -102,12 +102,12 @@ pub fn end_path(tracer: &mut Tracer, status: Status, note: String) -> LoadStepEn
     LoadStepEnding::Ended
 }
 
-/// Whether the load is above the peak, by more than rounding.
+/// Returns true if the load is above the peak by more than rounding.
 pub fn is_above(direction: f64, peak: f64, load: f64) -> bool {
     (load - peak) * direction > SETTINGS.admissible * peak.abs()
 }
 
-/// Sense in which the factor of the present load step is to grow.
+/// Returns the sense in which the factor of the present load step should grow.
 pub fn direction(tracer: &Tracer) -> f64 {
     let load_step = &tracer.system.problem.load_steps[tracer.in_force.load_step];
     let (LoadStepEnd::Factor(target) | LoadStepEnd::Collapse(target)) = load_step.end;

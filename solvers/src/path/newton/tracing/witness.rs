@@ -8,8 +8,9 @@ use crate::path::system::System;
 use crate::rate::problem::RateProblem;
 use voussoir_core::path::{FarkasVector, ModeTree, PathRate, PathState, RateClaim, Witness};
 
-/// Proofs that no rate raises the load at a state that an observer has `seen`: by the rate along which the load stands still, which
-/// is a dual vector if flow is associated, and by a search over the modes. If laws have a history, the rate just beyond the state.
+/// Returns proofs that no rate raises the load at a state that an observer has `seen`: by the rate with a constant
+/// load, which is a dual vector if flow is associated, and by a search over the modes. For laws with a history, returns
+/// the rate just beyond the state.
 pub fn none_rises(
     system: &mut StepSystem,
     (state, seen): (&State, &PathState),
@@ -23,13 +24,13 @@ pub fn none_rises(
     trees.map(|tree| Witness { state: seen.clone(), claim: RateClaim::NoneRises(tree) }).collect()
 }
 
-/// The rate just beyond a limit point: if laws have a history the proof is about its loading set.
+/// Returns the rate just beyond a limit point: for laws with a history the proof is about its loading set.
 pub fn beyond(seen: &PathState, rate: &Tangent) -> Witness {
     let Tangent { factor, force, gap, motion } = rate.clone();
     Witness { state: seen.clone(), claim: RateClaim::Rate(PathRate { factor, force, gap, motion }) }
 }
 
-/// The negative rate as multipliers.
+/// Returns the negative rate as multipliers.
 fn by_rate(rate: &Tangent) -> ModeTree {
     ModeTree::Leaf(FarkasVector {
         equilibrium: rate.motion.iter().map(|own| own.map(|v| -v)).collect(),
@@ -44,13 +45,13 @@ fn by_search(system: &mut StepSystem, state: &State, direction: f64) -> Option<M
     })
 }
 
-/// The proof that no rate continues the path from a state that an observer has `seen`.
+/// Returns the proof that no rate continues the path from a state that an observer has `seen`.
 pub fn none_continues(system: &mut StepSystem, (state, seen): (&State, &PathState), direction: f64) -> Option<Witness> {
     let trees = search(system, state, direction, dual_vector::none_continues)?;
     Some(Witness { state: seen.clone(), claim: RateClaim::NoneContinues(trees) })
 }
 
-/// A proof at a state by a search over the modes of the active points, which are given with λ for a unit of the load.
+/// Searches a proof at a state over the modes of the active points, which are given with λ for a unit of the load.
 fn search<T>(
     system: &mut StepSystem,
     state: &State,

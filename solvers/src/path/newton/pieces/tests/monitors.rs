@@ -51,7 +51,7 @@ fn each_mode_has_its_monitors() {
     assert_eq!(of(ContactMode::Facet(0)), [What::Opening, What::Slack(1), What::Slack(2)]);
 }
 
-/// A point that slides watches both ends of its face if they are near, and a point that sticks does not.
+/// A point that slides has monitors for both ends of its face if they are near; a point that sticks has none.
 #[test]
 fn a_sliding_point_watches_the_ends_of_its_face() {
     let mut problem = block(FRICTION, pushed_at(HEIGHT));

@@ -74,7 +74,7 @@ fn a_step_ends_at_its_target() {
     assert_close(end.state.factor, 0.123, 1e-14);
 }
 
-/// A state at a length is found whatever its monitors read: beyond the first slip the slack is negative.
+/// A state at a length is found whatever the readings of its monitors: beyond the first slip the slack is negative.
 #[test]
 fn a_state_beyond_an_event_violates_its_monitor() {
     let problem = block(FRICTION, pushed_at(HEIGHT));
