@@ -1,4 +1,4 @@
-//! The law `keyed` keeps what it promises.
+//! Conformance checks of the law `keyed`.
 
 use my_law as _;
 use voussoir::conformance::{Options, conform};

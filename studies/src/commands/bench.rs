@@ -12,23 +12,23 @@ use crate::figures::plot::svg::as_file;
 use crate::study::{HELD, Study};
 use std::path::{Path, PathBuf};
 
-/// What is asked of `bench`.
+/// The options of `voussoir bench`.
 pub struct BenchArguments {
-    /// Where results go.
+    /// The folder for the results.
     pub out: Option<PathBuf>,
     /// Overrides of the study's keys.
     pub set: Vec<String>,
-    /// Runs of each contestant.
+    /// Number of runs of each solver.
     pub runs: usize,
-    /// A contestant's name, or a load factor.
+    /// The reference: the name of a solver or variant, or a load factor.
     pub reference: Option<String>,
-    /// Error within which a problem counts as answered in the performance profile.
+    /// Greatest error of a solved problem in the performance profile.
     pub within: f64,
     /// Print nothing but errors.
     pub quiet: bool,
 }
 
-/// Measures a study's variants, or all solvers that can answer it, side by side.
+/// Measures the variants of a study, or all solvers that support it, and compares them.
 pub fn measure(path: &Path, arguments: &BenchArguments) -> Outcome {
     let loaded = files::study(path, &files::overrides(&arguments.set)?)?;
     let Some(study) = loaded.with_cases().filter(|study| !study.cases.is_empty()) else {
@@ -68,7 +68,7 @@ pub fn measure(path: &Path, arguments: &BenchArguments) -> Outcome {
     Ok(Verdict::of((0..found.problems.len()).all(answered)))
 }
 
-/// A load factor, or the name of somebody who takes part.
+/// Reads the reference: a load factor, or the name of a solver or variant.
 fn reference(study: &Study, word: &str) -> Result<Reference, CliError> {
     if let Some(factor) = word.parse().ok().filter(|factor: &f64| factor.is_finite()) {
         return Ok(Reference::Known(factor));
@@ -85,7 +85,7 @@ fn reference(study: &Study, word: &str) -> Result<Reference, CliError> {
     )))
 }
 
-/// Where errors are measured from, once for all problems that share it.
+/// Describes the references of the errors, each once for all problems that share it.
 fn references(found: &Bench) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for problem in &found.problems {

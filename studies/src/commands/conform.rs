@@ -16,7 +16,8 @@ const KINDS: [PluginKind; 5] = [
     PluginKind::Continuation,
 ];
 
-/// Checks plug-ins of these tags, or all laws; failures of laws become studies in a folder.
+/// Checks plug-ins with these tags, or all laws. For failures of laws, studies that reproduce them are written to a
+/// folder.
 pub fn conform_tags(tags: &[String], out: Option<&Path>) -> Outcome {
     let cards: Vec<_> = KINDS.into_iter().flat_map(cards_of).collect();
     let names: Vec<&str> = cards.iter().map(|card| card.tag).collect();
@@ -28,7 +29,7 @@ pub fn conform_tags(tags: &[String], out: Option<&Path>) -> Outcome {
     if !diagnostics.is_empty() {
         return Err(CliError::of_lines(ErrorKind::WrongInput, diagnostics));
     }
-    // Panics of a plug-in are findings; dishonest solvers panic too.
+    // Panics of a plug-in are findings. The deliberately wrong solvers of the checks panic too.
     let said = std::panic::take_hook();
     std::panic::set_hook(Box::new(|_| ()));
     let options = Options::default();
@@ -57,7 +58,7 @@ pub fn conform_tags(tags: &[String], out: Option<&Path>) -> Outcome {
     joined(outcomes)
 }
 
-/// Writes the studies that show what was found.
+/// Writes the studies that reproduce the findings.
 fn write(report: &Report, dir: &Path) -> Outcome {
     let studies = report.findings.iter().filter_map(|finding| Some((finding.check, finding.study.as_ref()?)));
     for (index, (check, study)) in studies.enumerate() {

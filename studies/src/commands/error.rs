@@ -1,4 +1,4 @@
-//! The errors of the command line: values that a command returns and that `main` prints.
+//! The errors of the command line. A command returns them as values, and `main` prints them.
 
 use crate::config::characters::escape;
 use crate::config::diagnostic::LocatedDiagnostic;
@@ -9,21 +9,22 @@ use std::fmt::{self, Display};
 use std::io::IsTerminal;
 use std::path::Path;
 
-/// The kind of an error, which decides the exit code of the program.
+/// The kind of an error. It decides the exit code of the program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ErrorKind {
     /// The arguments, a study file or a results folder are wrong.
     WrongInput,
-    /// A file cannot be read or written, or the program itself is at fault.
+    /// A file cannot be read or written, or the program has a defect.
     NoAccess,
 }
 
-/// The reasons why a command could not do its work.
+/// The reasons why a command failed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CliError {
     /// Decides the exit code.
     pub kind: ErrorKind,
-    /// Lines for the reader, in order. Their invisible characters are escaped; only colours for a terminal are in them.
+    /// Messages, one per line, in order. Invisible characters of the input are escaped; the only escape sequences are
+    /// colours for a terminal.
     pub diagnostics: Vec<String>,
 }
 
@@ -43,22 +44,22 @@ impl CliError {
         CliError { kind, diagnostics: lines.into_iter().map(|line| escape(&line).into_owned()).collect() }
     }
 
-    /// A file that cannot be used.
+    /// An error about a file that cannot be used.
     pub fn of_file(path: &Path, why: impl Display) -> Self {
         Self::no_access(format_args!("voussoir: {}: {why}", path.display()))
     }
 
-    /// An error of a file that names the file.
+    /// An error of reading or writing whose text names the file.
     pub fn of_io(error: std::io::Error) -> Self {
         Self::no_access(format_args!("voussoir: {error}"))
     }
 
-    /// A file that cannot be written.
+    /// An error about a file that cannot be written.
     pub fn unwritten(path: &Path, why: impl Display) -> Self {
         Self::no_access(format_args!("voussoir: cannot write {}: {why}", path.display()))
     }
 
-    /// The mistakes in the study file with this text, each with its line, and their number.
+    /// The mistakes in a study file, each with its line in this text, and their number.
     pub fn of_study(path: &Path, text: &str, mistakes: &StudyError) -> Self {
         let mistakes: &[LocatedDiagnostic] = mistakes.mistakes();
         let (count, own, colour) = (mistakes.len(), path.display().to_string(), has_colours());
@@ -100,17 +101,17 @@ fn has_colours() -> bool {
     std::io::stderr().is_terminal() && !refused && std::env::var_os("TERM").is_none_or(|term| term != "dumb")
 }
 
-/// The verdict of a command that did its work.
+/// The verdict of a command that was completed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
-    /// All cases are answered and certified.
+    /// All cases are solved and certified.
     Proved,
     /// Some case is open, stalled, not certified or not confirmed.
     NotProved,
 }
 
 impl Verdict {
-    /// [`Verdict::Proved`] if the condition holds.
+    /// Returns [`Verdict::Proved`] if the condition is true.
     pub fn of(proved: bool) -> Self {
         if proved { Verdict::Proved } else { Verdict::NotProved }
     }
@@ -124,10 +125,10 @@ impl Verdict {
     }
 }
 
-/// The end of a command.
+/// The outcome of a command.
 pub type Outcome = Result<Verdict, CliError>;
 
-/// The outcomes of commands that were done one after another: the worst verdict, or all errors.
+/// Joins the outcomes of several commands: the worst verdict, or all errors.
 pub fn joined(outcomes: impl IntoIterator<Item = Outcome>) -> Outcome {
     let mut all = Ok(Verdict::Proved);
     for outcome in outcomes {

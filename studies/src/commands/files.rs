@@ -1,4 +1,4 @@
-//! Reading files and studies.
+//! Reads files and studies.
 
 use super::error::CliError;
 use crate::kinds::{LoadedStudy, read_source_beside};
@@ -6,11 +6,12 @@ use crate::serve::Session;
 use crate::study::{StudySource, beside, read_bounded};
 use std::path::Path;
 
-/// Reads a file of text.
+/// Reads a text file.
 pub fn read(path: &Path) -> Result<String, CliError> {
     let bytes = read_bounded(path)
         .map_err(|error| CliError::no_access(format_args!("voussoir: cannot read {}: {error}", path.display())))?;
-    // UTF-16 without a mark at its beginning is UTF-8 to the letter, with a zero beside each.
+    // UTF-16 without a byte order mark: ASCII letters in it are the same bytes as in UTF-8, each with a zero byte
+    // beside it.
     if bytes.contains(&0) {
         return Err(CliError::wrong_input(format_args!(
             "{}:1:1: this file holds zero bytes; save it as UTF-8, as TOML asks for (it may be in UTF-16)",
@@ -44,7 +45,7 @@ pub fn overrides(sets: &[String]) -> Result<Vec<(String, String)>, CliError> {
 /// Reads a study of any kind.
 ///
 /// # Errors
-/// Every mistake in it.
+/// All mistakes in the study.
 pub fn study(path: &Path, sets: &[(String, String)]) -> Result<Box<dyn LoadedStudy>, CliError> {
     let text = read(path)?;
     let source = StudySource::parse_with(&text, &path.display().to_string(), sets, &beside(path));
@@ -52,10 +53,10 @@ pub fn study(path: &Path, sets: &[(String, String)]) -> Result<Box<dyn LoadedStu
     study.map_err(|mistakes| CliError::of_study(path, &text, &mistakes))
 }
 
-/// Reads a study to be looked at.
+/// Reads a study for interactive use.
 ///
 /// # Errors
-/// Every mistake in its first case.
+/// All mistakes in its first case.
 pub fn session(path: &Path, sets: &[(String, String)]) -> Result<Session, CliError> {
     let text = read(path)?;
     let source = StudySource::parse_with(&text, &path.display().to_string(), sets, &beside(path));

@@ -1,4 +1,4 @@
-//! The one way to print a line.
+//! Functions that print. All other code prints through them.
 
 use super::error::{CliError, Outcome, Verdict};
 use crate::config::characters::escape;
@@ -6,7 +6,7 @@ use std::fmt::Display;
 use std::io::{ErrorKind, Write};
 use std::sync::Mutex;
 
-/// Why standard output could not be written; `None` if it could.
+/// The error of writing to standard output; `None` if there was none.
 static UNWRITTEN: Mutex<Option<std::io::Error>> = Mutex::new(None);
 
 /// Prints a line on standard output, with its invisible characters escaped.
@@ -14,7 +14,7 @@ pub fn say(text: impl Display) {
     say_data(&escape(&text.to_string()));
 }
 
-/// Prints a line that a program reads, unchanged.
+/// Prints a line for other programs on standard output, unchanged.
 pub fn say_data(line: &str) {
     keep(writeln!(std::io::stdout(), "{line}"));
 }
@@ -24,13 +24,13 @@ pub fn print(bytes: &[u8]) {
     keep(std::io::stdout().write_all(bytes));
 }
 
-/// Prints a line on standard error, with its invisible characters escaped. The exit code tells as much: an error here is
-/// ignored.
+/// Prints a line on standard error, with its invisible characters escaped. An error of writing is ignored, because the
+/// exit code has the same information.
 pub fn complain(text: impl Display) {
     let _ = writeln!(std::io::stderr(), "{}", escape(&text.to_string()));
 }
 
-/// A reader that has gone away (`| head`) is no error: the command goes on in silence. Any other error is kept.
+/// Stores an error of writing. A reader that has closed the pipe (`| head`) is not an error: the command continues.
 pub fn keep(written: std::io::Result<()>) {
     if let Err(error) = written
         && error.kind() != ErrorKind::BrokenPipe
@@ -40,8 +40,7 @@ pub fn keep(written: std::io::Result<()>) {
     }
 }
 
-/// The exit code of a command with this outcome, whose error is printed here. An error of standard output is an error of
-/// the command.
+/// Prints the error of an outcome and returns the exit code. An error of standard output is an error of the command.
 pub fn ended(outcome: Outcome) -> u8 {
     let lines = |error: &CliError| error.diagnostics.iter().for_each(|line| _ = writeln!(std::io::stderr(), "{line}"));
     let code = outcome.map_or_else(

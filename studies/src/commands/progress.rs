@@ -18,7 +18,7 @@ use std::time::Instant;
 /// The progress display of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shown {
-    /// Nothing but errors.
+    /// Shows errors only.
     Nothing,
     /// A progress bar on a terminal.
     Bar,

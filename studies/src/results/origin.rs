@@ -1,4 +1,4 @@
-//! The program, the processor and the plug-ins that results come from.
+//! The origin of results: program, processor and plug-ins.
 
 use crate::fnv::Fnv64;
 use serde::{Deserialize, Serialize};
@@ -23,7 +23,7 @@ pub fn head(study: (&str, &toml::Value), version: &str, files: &[String]) -> Map
     head
 }
 
-/// Entries of a results.json without its origin.
+/// Removes the origin from the entries of a results.json.
 pub fn without_origin(mut results: Json) -> Json {
     if let Some(map) = results.as_object_mut() {
         HEAD.iter().for_each(|key| drop(map.shift_remove(*key)));
@@ -31,40 +31,41 @@ pub fn without_origin(mut results: Json) -> Json {
     results
 }
 
-/// A crate that brings plug-ins.
+/// A crate with plug-ins.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PluginCrate {
-    /// Its name.
+    /// Name of the crate.
     #[serde(rename = "crate")]
     pub name: String,
-    /// Its version.
+    /// Version of the crate.
     pub version: String,
-    /// Tags of its plug-ins that the study names, sorted.
+    /// Tags of its plug-ins that the study uses, sorted.
     pub tags: Vec<String>,
 }
 
-/// Where results come from. Two programs of equal origin give equal bits.
+/// The origin of results. Two programs with the same origin give the same bits.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Origin {
-    /// The version of the format, [`FORMAT`]; 0 in results that are older than this entry.
+    /// The version of the format, [`FORMAT`]; 0 if the results have no such entry.
     pub format: u32,
     /// The commit of the program; `unknown` without git.
     pub commit: String,
-    /// A hash of its sources, which tells changes that were not committed; `unknown` outside the workspace.
+    /// A hash of its sources, which also detects changes that were not committed; `unknown` outside the workspace.
     pub sources: String,
-    /// The target triple that it was compiled for.
+    /// The target triple of the compiled program.
     pub platform: String,
-    /// Features of the processor that libraries select their code by.
+    /// Processor features by which libraries choose their code.
     pub processor_features: Vec<String>,
-    /// A hash of sines, logarithms and powers: mathematical libraries differ in last digits.
+    /// A hash of sines, logarithms and powers, because mathematical libraries differ in the last digits.
     pub mathematics: String,
-    /// All crates of the program that bring plug-ins, sorted by name.
+    /// All crates of the program with plug-ins, sorted by name.
     pub plugins: Vec<PluginCrate>,
 }
 
 impl Origin {
-    /// This program on this processor; `named` are the words of a study, among which are the tags of its plug-ins.
+    /// Returns the origin of results of this program on this processor. `named` contains the words of a study,
+    /// including the tags of its plug-ins.
     pub fn here(named: &BTreeSet<String>) -> Origin {
         let mut origin = HERE.clone();
         for (package, tags) in TAGS.iter() {
@@ -77,24 +78,24 @@ impl Origin {
         origin
     }
 
-    /// Returns true if results of both origins must agree to the last bit.
+    /// Returns true if results of both origins must agree bit by bit.
     pub fn agrees(&self, other: &Origin) -> bool {
         self == other && self.format == FORMAT && self.sources != UNKNOWN
     }
 
-    /// Commit, sources and crates: the part that is in the hash of a case.
+    /// Returns commit, sources and crates: the part that is included in the hash of a case.
     pub fn program(&self) -> (&str, &str, Vec<(&str, &str)>) {
         let crates = self.plugins.iter().map(|own| (own.name.as_str(), own.version.as_str()));
         (&self.commit, &self.sources, crates.collect())
     }
 }
 
-/// This program and this processor.
+/// Returns the origin for this program and this processor, without tags.
 pub fn this_program() -> &'static Origin {
     &HERE
 }
 
-/// All words in a study file.
+/// Returns all words in a study file.
 pub fn words(study: &toml::Value) -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     let mut left = vec![study];
@@ -132,7 +133,7 @@ static HERE: LazyLock<Origin> = LazyLock::new(|| Origin {
         .collect(),
 });
 
-/// Features that matrix kernels and mathematical libraries select their code by.
+/// Features by which matrix kernels and mathematical libraries choose their code.
 #[cfg(target_arch = "x86_64")]
 fn processor_features() -> Vec<String> {
     let known = [
@@ -145,7 +146,7 @@ fn processor_features() -> Vec<String> {
     known.into_iter().filter(|(_, there)| *there).map(|(name, _)| name.into()).collect()
 }
 
-/// Features that matrix kernels and mathematical libraries select their code by.
+/// Features by which matrix kernels and mathematical libraries choose their code.
 #[cfg(target_arch = "aarch64")]
 fn processor_features() -> Vec<String> {
     let known = [
@@ -157,13 +158,13 @@ fn processor_features() -> Vec<String> {
     known.into_iter().filter(|(_, there)| *there).map(|(name, _)| name.into()).collect()
 }
 
-/// None is known of other processors.
+/// For other processors, no features are known.
 #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
 fn processor_features() -> Vec<String> {
     Vec::new()
 }
 
-/// FNV-1a of the bits of functions whose last digit the system's library decides.
+/// FNV-1a of the bits of functions whose last digits depend on the system's library.
 fn mathematics() -> String {
     let functions: [fn(f64) -> f64; 8] =
         [f64::sin, f64::cos, f64::tan, f64::atan, f64::exp, f64::ln, f64::cbrt, |x| x.powf(1.3)];

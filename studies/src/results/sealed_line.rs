@@ -1,5 +1,6 @@
-//! Finished cases as lines of a journal or a part: `{"checksum":"0123456789abcdef","case":{…}}`. The checksum is FNV-1a with
-//! 64 bits (Fowler, Noll and Vo) of the case's text. It finds damage; forgery is found by the proof of the case.
+//! Finished cases as lines of a journal or a part: `{"checksum":"0123456789abcdef","case":{…}}`. The checksum is FNV-1a
+//! with 64 bits (Fowler, Noll and Vo) of the case's text. It detects damage; forgery is detected by the proof of the
+//! case.
 
 use crate::fnv::Fnv64;
 use serde::Serialize;
@@ -7,21 +8,21 @@ use std::ops::Range;
 
 const BEFORE: &[u8] = b"{\"checksum\":\"";
 const BETWEEN: &[u8] = b"\",\"case\":";
-/// Digits of a checksum.
+/// Number of digits of a checksum.
 const DIGITS: usize = 16;
 /// Index of the first byte of a case in its line.
 const CASE: usize = BEFORE.len() + DIGITS + BETWEEN.len();
 
-/// 64 bits of FNV-1a in hexadecimal.
+/// Returns 64 bits of FNV-1a in hexadecimal.
 pub fn checksum(bytes: &[u8]) -> String {
     let mut hash = Fnv64::new();
     hash.add(bytes);
     hash.text()
 }
 
-/// The line of a case, with a line end before and after it: it is whole even after a line that was cut short.
+/// Returns the line of a case, with a line end before and after it, so that it is complete even after a truncated line.
 pub fn sealed(case: &impl Serialize) -> serde_json::Result<Vec<u8>> {
-    // An arch of a dozen voussoirs fits; a case of a million blocks has half a gigabyte and is not copied.
+    // Large enough for an arch of a dozen voussoirs. A case of a million blocks has half a gigabyte and is not copied.
     let mut line = Vec::with_capacity(1 << 13);
     line.push(b'\n');
     line.extend_from_slice(BEFORE);
@@ -34,12 +35,12 @@ pub fn sealed(case: &impl Serialize) -> serde_json::Result<Vec<u8>> {
     Ok(line)
 }
 
-/// The same of a text that is a case.
+/// Returns the line of a case that is already text.
 pub fn sealed_text(case: &[u8]) -> Vec<u8> {
     [BEFORE, checksum(case).as_bytes(), BETWEEN, case, b"}\n"].concat()
 }
 
-/// The range of the case in a line; `None` if its checksum is wrong.
+/// Returns the range of the case in a line; `None` if its checksum is wrong.
 pub fn case_in(line: &[u8]) -> Option<Range<usize>> {
     let end = line.trim_ascii_end().len().checked_sub(1)?;
     let (head, case) = (line.get(..CASE)?, line.get(CASE..end)?);

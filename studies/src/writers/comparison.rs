@@ -1,4 +1,4 @@
-//! `comparison.csv` and the figures of comparisons and maps: the cases beside each other.
+//! `comparison.csv` and the figures of comparisons and maps.
 
 use super::columns::swept_text;
 use super::csv_table::csv_table;
@@ -32,7 +32,7 @@ impl Writer for ComparisonFiles {
     }
 }
 
-/// The figure of a comparison with its name: that of a map where it is one.
+/// Returns the figure of a comparison or of a map, with its name.
 pub fn figure(study: &StudyOutput, comparison: &Comparison) -> Option<(&'static str, String)> {
     match comparison.map {
         Some(_) => Some(("map", map_svg(study.name, comparison)?)),
@@ -83,8 +83,8 @@ pub fn comparison_csv(comparison: &Comparison, meanings: &SweptKeys) -> String {
     csv_table(header, rows)
 }
 
-/// A load factor with what must be said of it: `0.6389818`, `0.3558174 (≥ 0.351)`, `0.61 (limit point)`,
-/// `carries 23.1; snaps from 1.37`.
+/// A load factor with its qualification: `0.6389818`, `0.3558174 (≥ 0.351)`, `0.61 (limit point)`, `carries 23.1; snaps
+/// from 1.37`.
 fn factor(cell: &ComparisonCell) -> String {
     let words = remark(cell);
     let Some(factor) = cell.load_factor else { return words };
@@ -95,7 +95,7 @@ fn factor(cell: &ComparisonCell) -> String {
     if said.is_empty() { number } else { format!("{number} ({})", said.join(", ")) }
 }
 
-/// Header and rows: factors of all variants, then ratios of all but the reference.
+/// Header and rows: factors of all variants, then ratios of all variants except the reference.
 pub fn comparison_rows(comparison: &Comparison, keys: &SweptKeys) -> (Vec<String>, Vec<Vec<String>>) {
     let mut header = vec![if comparison.rows.iter().any(|row| row.scene.is_some()) { "scene" } else { "" }.to_string()];
     header.extend(comparison.variants.iter().cloned());
@@ -112,7 +112,7 @@ pub fn comparison_rows(comparison: &Comparison, keys: &SweptKeys) -> (Vec<String
     (header, rows)
 }
 
-/// The table on the terminal.
+/// The table that is printed on the terminal.
 pub fn comparison_table(comparison: &Comparison, keys: &SweptKeys) -> String {
     let (header, rows) = comparison_rows(comparison, keys);
     let mut table = Table::new();

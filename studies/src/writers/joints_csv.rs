@@ -12,9 +12,9 @@ use maud::{Markup, html};
 use serde_json::Value as Json;
 use std::io::{self, Write};
 
-/// Joints of a case in the report; all are in the file.
+/// Greatest number of joints of a case in the report; the file contains all.
 const ROWS: usize = 400;
-/// Cases whose joints are in the report.
+/// Greatest number of cases whose joints are in the report.
 const CASES: usize = 10;
 
 /// Writes `joints.csv`.
@@ -27,7 +27,7 @@ impl Writer for Joints {
     }
 }
 
-/// One row per joint of each case.
+/// One row for each joint of each case.
 struct Rows;
 
 impl CaseTable for Rows {
@@ -119,8 +119,8 @@ fn permissible_words(check: &PermissibleEntry) -> String {
     )
 }
 
-/// A load that is carried in sentences: reserve, permissible limit state, the joints with the greatest stress and the least
-/// sliding reserve.
+/// Describes a load that is carried: reserve, permissible limit state, the joints with the greatest stress and with the
+/// least sliding reserve.
 pub(super) fn carried_lines(case: &CaseResult) -> Vec<String> {
     let carried = &case.carried;
     let mut lines: Vec<String> = carried.reserve.iter().map(reserve_words).collect();
@@ -141,7 +141,7 @@ fn format_stress(pascals: f64) -> String {
     format!("{} kPa", format_number(pascals / 1e3, 4))
 }
 
-/// The report's section; empty if no case has a load that is carried.
+/// The section of the report; empty if no case has a load that is carried.
 pub(super) fn section(study: &StudyOutput) -> Markup {
     let carried: Vec<&CaseResult> = study.results.cases.iter().filter(|case| !case.carried.is_empty()).collect();
     html! {
@@ -172,7 +172,7 @@ fn joints(entries: &[JointEntry]) -> Markup {
     header.extend(if crushes { &["block length", "block stress", "of strength"][..] } else { &[] });
     header.push("sliding reserve");
     header.extend(zones.then_some("zone of thrust"));
-    // One unit for all, so that columns can be compared.
+    // One unit for all values, so that columns can be compared.
     let metres = |x: f64| format!("{} m", format_number(x, 3));
     let length = |x: Option<f64>| x.map_or("–".into(), metres);
     let stress = |x: Option<f64>| x.map_or("–".into(), format_stress);

@@ -1,4 +1,5 @@
-//! The limit points of a path as a table of the page: how far the load falls beyond each, and what a dead load would do.
+//! The limit points of a path as a table of the page: the fall of the load after each limit point, and the behaviour
+//! under a dead load.
 
 use super::page;
 use crate::figures::format::{format_energy, format_length, format_number, format_short};

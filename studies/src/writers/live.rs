@@ -1,4 +1,4 @@
-//! What the page's script draws of a case: its blocks, how they move, and the states of its path.
+//! The data of a case for the drawing script of a page: its blocks, their motions, and the states of its path.
 
 use crate::figures::displaced::Placement;
 use crate::figures::hinges::{DrawnHinge, drawn_hinges};
@@ -8,10 +8,10 @@ use serde_json::{Value as Json, json};
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::model::{Assembly, Bond};
 
-/// Scenes of more bodies are not drawn by the script.
+/// Scenes with more bodies are not drawn by the script.
 const BODIES: usize = 400;
 
-/// The data of a case with small or `finite` displacements; `None` if there is too much of it.
+/// The data of a case with small or `finite` displacements; `None` if the scene is too large.
 pub(crate) fn case_data(assembly: &Assembly, result: &CaseResult, finite: bool) -> Option<Json> {
     if assembly.bodies.len() > BODIES {
         return None;
@@ -56,18 +56,18 @@ pub(crate) fn case_data(assembly: &Assembly, result: &CaseResult, finite: bool) 
     Some(data)
 }
 
-/// Nine digits, so that blocks that move as one do so in the drawing.
+/// Rounds to nine digits, so that blocks that move together stay together in the drawing.
 fn fine(x: f64) -> f64 {
     format!("{x:.8e}").parse().unwrap_or(x)
 }
 
-/// Four digits.
+/// Rounds to four digits.
 fn digits(x: f64) -> f64 {
     format!("{x:.3e}").parse().unwrap_or(x)
 }
 
-/// The twist that leads a body to its displacement in unit time. Magnified it goes on in the same way, so that blocks that
-/// move as one stay one. Small displacements are velocities already.
+/// The twist that moves a body to its displacement in unit time. If it is magnified, the motion continues in the same
+/// way, so that blocks that move together stay together. Small displacements are velocities already.
 fn twist(centre: Vec2, displacement: [f64; 3], finite: bool) -> [f64; 3] {
     if finite { Placement::of_displacement(centre, displacement).twist() } else { displacement }
 }
@@ -89,7 +89,7 @@ fn add_states(data: &mut Json, assembly: &Assembly, result: &CaseResult, finite:
             stress[contact.joint].push((share(contact.joint, contact.point), *pressure));
         }
         let thrust = assembly.joints.iter().zip(&mut stress).map(|(joint, points)| {
-            // What is bonded neither opens nor presses as a joint does.
+            // Bonded joints neither open nor transmit contact pressure as other joints do.
             if matches!(joint.bond, Bond::Bonded) {
                 points.clear();
             }
@@ -118,6 +118,6 @@ fn add_states(data: &mut Json, assembly: &Assembly, result: &CaseResult, finite:
         (0..states.len()).filter(|i| live(&states[*i])).max_by(|a, b| states[*a].factor.total_cmp(&states[*b].factor));
     data["states"] = states.iter().map(entry).collect();
     data["peak"] = json!(peak);
-    // So that the greatest displacement is about a twentieth of the scene.
+    // Magnified so that the greatest displacement is about a twentieth of the scene.
     data["magnify"] = json!((0.05 * assembly.size() / farthest.max(1e-300)).clamp(1.0, 1000.0).round());
 }

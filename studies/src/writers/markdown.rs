@@ -1,11 +1,12 @@
-//! Markdown as HTML for pages: no raw HTML passes, few kinds of links do, and the page draws every image itself.
+//! Converts Markdown to HTML for pages. Raw HTML is removed, only few kinds of links are allowed, and the page draws
+//! every image itself.
 
 use super::links::is_allowed;
 use super::page::figure;
 use maud::{Markup, PreEscaped, html};
 use pulldown_cmark::{Alignment, CowStr, Event, LinkType, Options, Parser, Tag, TagEnd, html as events};
 
-/// Places of images in a text, in order.
+/// Addresses of the images in a text, in order.
 pub fn images(text: &str) -> Vec<String> {
     let image = |event: Event| match event {
         Event::Start(Tag::Image { dest_url, .. }) => Some(dest_url.to_string()),
@@ -18,24 +19,24 @@ fn options() -> Options {
     Options::ENABLE_TABLES | Options::ENABLE_FOOTNOTES | Options::ENABLE_SUPERSCRIPT | Options::ENABLE_SUBSCRIPT
 }
 
-/// A text as HTML. `draw` returns the drawing for the place of an image; without one the place is named. A link that is
-/// not allowed becomes its text with the address behind it.
+/// Converts a text to HTML. `draw` returns the drawing for the address of an image; without a drawing the address is
+/// shown. A link that is not allowed is replaced by its text and address.
 pub fn markdown(text: &str, draw: &dyn Fn(&str) -> Option<String>) -> Markup {
     let mut page = Page { draw, events: Vec::new(), image: None, links: Vec::new(), table: Table::default() };
     Parser::new_ext(text, options()).for_each(|event| page.add(event));
     let mut out = String::new();
     events::push_html(&mut out, page.events.into_iter());
-    // A figure stands by itself, not in a paragraph.
+    // A figure must not be inside a paragraph.
     PreEscaped(out.replace("<p><figure>", "<figure>").replace("</figure></p>", "</figure>"))
 }
 
-/// The events of a text as they are written.
+/// Converts the events of the parser.
 struct Page<'a> {
     draw: &'a dyn Fn(&str) -> Option<String>,
     events: Vec<Event<'a>>,
-    /// Place and words of the image that is being read.
+    /// Address and text of the image that is being read.
     image: Option<(String, String)>,
-    /// The address of each open link that is not allowed; `None` for one that is.
+    /// The address of each open link that is not allowed; `None` for an allowed link.
     links: Vec<Option<String>>,
     table: Table,
 }
@@ -79,7 +80,7 @@ impl<'a> Page<'a> {
     fn start(&mut self, tag: Tag<'a>) {
         match tag {
             Tag::Link { link_type, dest_url, title, id } => {
-                // The address of a bare e-mail is written with its scheme.
+                // For a plain e-mail address, the scheme is added when it is written.
                 let allowed = link_type == LinkType::Email || is_allowed(&dest_url);
                 self.links.push((!allowed).then(|| dest_url.to_string()));
                 if allowed {
@@ -135,7 +136,7 @@ mod tests {
         assert_eq!(images("a ![b](c:d) e ![f](g)"), ["c:d", "g"]);
     }
 
-    /// Every spelling of Markdown by which a script could become an address, an element or an attribute.
+    /// All spellings of Markdown by which a script could enter an address, an element or an attribute.
     #[test]
     fn no_spelling_makes_a_script() {
         let hostile = [
@@ -181,7 +182,7 @@ mod tests {
             for tag in html.split('<').skip(1).map(|rest| &rest[..rest.find('>').expect("an end")]) {
                 let (name, attributes) = tag.split_once(' ').unwrap_or((tag, ""));
                 assert!(!["script", "style", "base", "img", "svg", "b", "iframe"].contains(&name), "{text}: {html}");
-                // Without the values in quotes.
+                // The attributes without their quoted values.
                 let bare: String = attributes.split('"').step_by(2).collect();
                 assert!(!bare.contains("on") && !bare.contains("style") && !bare.contains("src"), "{text}: {html}");
                 if let Some((_, address)) = attributes.split_once("href=\"") {

@@ -1,4 +1,4 @@
-//! Pieces of every page: head, style, scripts and tables.
+//! Parts of every page: head, style, scripts and tables.
 
 mod sha256;
 #[cfg(test)]
@@ -9,34 +9,34 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde_json::Value as Json;
 use std::sync::LazyLock;
 
-/// The page's style sheet: its own rules, then the colours of figures on dark screens.
+/// The style sheet of the page: its own rules, then the colours of figures on dark screens.
 static STYLE: LazyLock<String> =
     LazyLock::new(|| unix(include_str!("page/style.css")) + &dark_rules("figure svg", |_| true) + "\n");
-/// How the script draws a case.
+/// The script that draws a case.
 const DRAW: &str = include_str!("page/draw.js");
-/// What makes the page answer: sorting, filtering, values under the pointer, drawings that move.
+/// The script of interactive pages: sorting, filtering, values under the pointer, moving drawings.
 const SCRIPT: &str = include_str!("page/script.js");
-/// What makes a page that is served follow its sliders.
+/// The script of a served page, which follows its sliders.
 const LIVE: &str = include_str!("page/live.js");
 
-/// A whole page: its title for the browser, its body, and the cases that the script draws.
+/// Creates a complete page from its title, its body, and the cases that the script draws.
 pub(crate) fn whole(title: &str, body: &Markup, cases: &[Json]) -> String {
     page((title, None), body, cases, SCRIPT, &policy(&[SCRIPT], &[]))
 }
 
-/// A page that asks its server for what it draws.
+/// Creates a page that requests its drawings from the server.
 pub(crate) fn served(title: &str, body: &Markup) -> String {
-    // So that no browser asks the server for one.
+    // An empty icon, so that browsers do not request one from the server.
     page((title, Some("data:,")), body, &[], LIVE, &served_policy())
 }
 
-/// The Content-Security-Policy of a served page. The report that it opens is a `blob:`, which inherits this policy, so
-/// the script of reports is allowed as well.
+/// The Content-Security-Policy of a served page. The report that it opens is a `blob:`, which inherits this policy. The
+/// script of reports is therefore allowed as well.
 pub(crate) fn served_policy() -> String {
     policy(&[LIVE, SCRIPT], &["connect-src 'self'", "img-src data:"])
 }
 
-/// A policy that allows these scripts and the page's style sheet by their hashes, and nothing from elsewhere.
+/// A policy that allows these scripts and the page's style sheet by their hashes, and no external sources.
 fn policy(scripts: &[&str], more: &[&str]) -> String {
     let hashes: Vec<String> = scripts.iter().map(|script| sha256::source(&element(script))).collect();
     let own = [format!("script-src {}", hashes.join(" ")), format!("style-src {}", sha256::source(&STYLE))];
@@ -50,13 +50,13 @@ fn element(script: &str) -> String {
     unix(&format!("'use strict';\n{{\n{DRAW}\n{script}}}"))
 }
 
-/// A text with the line ends that browsers hash.
+/// Converts line ends to the form that browsers hash.
 fn unix(text: &str) -> String {
     text.replace("\r\n", "\n")
 }
 
 fn page((title, icon): (&str, Option<&str>), body: &Markup, cases: &[Json], script: &str, policy: &str) -> String {
-    // Nothing in the data can end the script's element.
+    // The data cannot contain the end of the script element.
     let data = Json::from_iter(cases.iter().cloned()).to_string().replace('<', "\\u003c");
     let page = html! {
         (DOCTYPE)
@@ -79,12 +79,12 @@ fn page((title, icon): (&str, Option<&str>), body: &Markup, cases: &[Json], scri
     page.into_string() + "\n"
 }
 
-/// Returns true if a cell is a number, with its unit or without.
+/// Returns true if a cell is a number, with or without unit.
 fn is_number(cell: &str) -> bool {
     cell.split(' ').next().is_some_and(|word| word.parse::<f64>().is_ok()) && !cell.contains(',')
 }
 
-/// A table; columns of numbers are aligned right.
+/// A table. Columns of numbers are aligned right.
 pub(crate) fn table(header: &[String], rows: impl Iterator<Item = Vec<String>>) -> Markup {
     let rows: Vec<Vec<String>> = rows.collect();
     let number = |column: usize| {

@@ -9,10 +9,10 @@ use maud::{Markup, html};
 use serde_json::Value as Json;
 use std::collections::HashSet;
 
-/// Longest list of numbers that is written out.
+/// Greatest length of a list of numbers that is shown completely.
 const LISTED: usize = 8;
 
-/// Headings of the record with the tables of a study file that stand under them.
+/// Headings of the record, with the tables of a study file that belong to each.
 const SECTIONS: [(&str, &str); 7] = [
     ("Geometry", "scene"),
     ("Materials", "materials"),
@@ -23,8 +23,8 @@ const SECTIONS: [(&str, &str); 7] = [
     ("Solver", "solver"),
 ];
 
-/// The calculation record of a study: what its first case was given, defaults included, in SI units, then what varies
-/// from case to case.
+/// The calculation record of a study: the inputs of its first case in SI units, including defaults, then the values
+/// that differ between cases.
 pub fn record(study: &Study) -> Markup {
     html! {
         @if let Some(case) = study.case(0) {
@@ -44,7 +44,7 @@ pub fn record(study: &Study) -> Markup {
     }
 }
 
-/// One table of words and values under a heading; nothing if it has no rows.
+/// A table of words and values under a heading; empty if it has no rows.
 pub fn section(heading: &str, rows: &[(String, String)]) -> Markup {
     html! {
         @if !rows.is_empty() {
@@ -67,11 +67,11 @@ fn rows_of(table: &str, value: &Json, case: &Case) -> Vec<(String, String)> {
     rows
 }
 
-/// Rows of everything below a value.
+/// Adds rows for all keys below a value.
 fn gather(rows: &mut Vec<(String, String)>, key: &str, value: &Json, case: &Case) {
     match value {
         Json::Object(map) => {
-            // The name of a table is in the words of its other keys.
+            // The descriptions of the other keys contain the name of the table.
             let below = map.iter().filter(|(name, value)| *name != "name" || !value.is_string());
             below.for_each(|(name, inner)| gather(rows, &join(key, name), inner, case));
         }
@@ -83,7 +83,7 @@ fn gather(rows: &mut Vec<(String, String)>, key: &str, value: &Json, case: &Case
         Json::Array(items) if items.is_empty() => {}
         value => {
             let meaning = meaning_in(&case.resolved, key);
-            // The kind of a load is in the words of its other keys.
+            // The descriptions of the other keys contain the kind of the load.
             if meaning.as_ref().is_some_and(|meaning| is_in_place(meaning, value)) {
                 return;
             }
@@ -99,13 +99,13 @@ fn is_in_place(meaning: &KeyMeaning, value: &Json) -> bool {
     meaning.tag && name.is_some_and(|(name, word)| name.split(' ').next() == Some(word))
 }
 
-/// A value with its unit.
+/// Formats a value with its unit.
 fn shown(key: &str, value: &Json, case: &Case) -> String {
     let unit = meaning_in(&case.resolved, key).and_then(|meaning| meaning.unit()).unwrap_or_default();
     match value {
         Json::Number(_) => format_quantity(value.as_f64().unwrap_or(f64::NAN), unit),
         Json::Array(items) => {
-            // Entries show their units if the list has no common one.
+            // If the list has no common unit, each entry shows its unit.
             let entry = |(index, item): (usize, &Json)| match unit {
                 "" => shown(&join(key, &index.to_string()), item, case),
                 _ => plain(item),
@@ -119,7 +119,7 @@ fn shown(key: &str, value: &Json, case: &Case) -> String {
     }
 }
 
-/// A value without a unit.
+/// Formats a value without a unit.
 fn plain(value: &Json) -> String {
     match value {
         Json::Array(items) => {
@@ -133,7 +133,7 @@ fn plain(value: &Json) -> String {
     }
 }
 
-/// Axes of the sweep with their values, and the variants.
+/// The axes of the sweep with their values, and the variants.
 fn varied(study: &Study) -> Vec<(String, String)> {
     let (mut rows, keys) = (Vec::new(), study.swept_keys());
     for key in study.outline.axes.iter().flat_map(|(keys, _)| keys) {

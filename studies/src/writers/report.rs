@@ -1,5 +1,5 @@
-//! `report.html`: one self-contained page for reading and printing. The answer comes first, then its picture and the
-//! critical numbers, charts, cases and paths; inputs, assumptions, sources and certificates are at the end.
+//! `report.html`: one self-contained page for reading and printing. It begins with the result, its picture and the
+//! critical numbers. Charts, cases and paths follow; inputs, assumptions, sources and certificates are at the end.
 
 mod answer;
 mod cases;
@@ -42,7 +42,7 @@ impl Writer for Report {
     }
 }
 
-/// The whole page; at most `drawn` cases are drawn.
+/// Creates the page; at most `drawn` cases are drawn.
 pub fn report_html(study: &StudyOutput, drawn: usize) -> String {
     let worst = answer::worst(study);
     let figures = study.output.figures.anything();
@@ -83,7 +83,7 @@ pub fn report_html(study: &StudyOutput, drawn: usize) -> String {
     page::whole(study.name, &body, &live(study, worst, drawn))
 }
 
-/// Charts of a sweep and of a load that moves.
+/// The charts of a sweep and of a moving load.
 fn charts(study: &StudyOutput) -> Markup {
     html! {
         @if let Some(chart) = study_chart(study) {
@@ -102,10 +102,10 @@ fn charts(study: &StudyOutput) -> Markup {
     }
 }
 
-/// Rows of a comparison in the page; the others are in its CSV file.
+/// Greatest number of rows of a comparison in the page; its CSV file contains all.
 const ROWS: usize = 60;
 
-/// Variants beside each other, if the study compares them.
+/// The comparison of variants, if the study compares them.
 fn comparison(study: &StudyOutput) -> Markup {
     let Some(comparison) = &study.results.comparison else { return html! {} };
     let drawn = study.output.figures.anything().then(|| comparison_figure(study, comparison)).flatten();
@@ -130,7 +130,7 @@ fn comparison(study: &StudyOutput) -> Markup {
     }
 }
 
-/// Data for the script: the cases in pictures and in the chart.
+/// The data for the script: the cases in pictures and in the chart.
 fn live(study: &StudyOutput, worst: Option<usize>, drawn: usize) -> Vec<Json> {
     if !study.output.figures.anything() || drawn == 0 {
         return Vec::new();

@@ -13,7 +13,7 @@ use maud::{Markup, html};
 use serde_json::Value as Json;
 use std::io::{self, Write};
 
-/// Rows of the report's table.
+/// Greatest number of rows in the report's table.
 const ROWS: usize = 400;
 
 /// Writes `sensitivities.csv`.
@@ -27,7 +27,7 @@ impl Writer for Sensitivities {
     }
 }
 
-/// The study, by which keys have units.
+/// The study, which defines the units of keys.
 struct Rows<'a>(&'a Study);
 
 impl CaseTable for Rows<'_> {
@@ -49,7 +49,7 @@ impl CaseTable for Rows<'_> {
     }
 }
 
-/// A derivative with its case and the meaning of its key there.
+/// A derivative with its case and the meaning of its key in this case.
 struct Entry<'a> {
     case: &'a CaseResult,
     own: &'a SensitivityEntry,
@@ -78,7 +78,7 @@ fn row(Entry { case, own: entry, meaning }: &Entry) -> Vec<String> {
     ]
 }
 
-/// The report's table; empty if no case has derivatives.
+/// The table of the report; empty if no case has derivatives.
 pub(super) fn table(study: &StudyOutput) -> Markup {
     let count = study.results.cases.iter().map(|case| case.sensitivities.len()).sum::<usize>();
     if count == 0 {

@@ -1,4 +1,4 @@
-//! What writers are given: the results and what they were computed from.
+//! The input of writers: the results, and the study that they were computed from.
 
 use super::columns::Labels;
 use crate::results::{CaseResult, StudyResults, Totals, least_of};
@@ -14,21 +14,21 @@ use voussoir_core::model::{Assembly, Stage};
 pub struct StudyOutput<'a> {
     /// Name of the study.
     pub name: &'a str,
-    /// Results; of very many cases only those that readers are shown.
+    /// Results; if there are very many cases, only those that readers are shown.
     pub results: &'a StudyResults,
     /// Counts over all cases.
     pub totals: &'a Totals,
-    /// Where each case comes from, in the order of the results.
+    /// The scene of each case, in the order of the results.
     pub scenes: Vec<SceneOutput<'a>>,
     /// Swept keys, outermost first.
     pub sweep_keys: Vec<String>,
-    /// Units and words of the swept keys, and of those that the study kind varies.
+    /// Units and descriptions of the swept keys, and of the keys that the study kind varies.
     pub keys: SweptKeys,
-    /// What is wanted besides the results.
+    /// The outputs that the study requests in addition to the results.
     pub output: Output,
-    /// Ids of the cases that are drawn, where not all are.
+    /// Ids of the cases that are drawn; `None` if all are drawn.
     pub drawn: Option<BTreeSet<usize>>,
-    /// The study whose inputs a page lists.
+    /// The study whose inputs are listed in pages.
     pub inputs: Option<&'a Study>,
 }
 
@@ -39,15 +39,15 @@ pub struct SceneOutput<'a> {
     pub assembly: &'a Assembly,
     /// Stages in order.
     pub stages: &'a [Stage],
-    /// Whether displacements are finite.
+    /// True if displacements are finite.
     pub finite: bool,
-    /// The case's own study file.
+    /// The study file of this single case.
     pub resolved: &'a Resolved,
 }
 
 impl<'a> StudyOutput<'a> {
-    /// A study with the results that readers are shown; `cases` are those of the results, in their order, and `totals`
-    /// the counts over all cases.
+    /// Creates the input of writers. `cases` are the cases of the results, in the same order; `totals` are the counts
+    /// over all cases.
     pub fn new(study: &'a Study, results: &'a StudyResults, totals: &'a Totals, cases: &'a [Cow<'a, Case>]) -> Self {
         let scene = |case: &'a Cow<'a, Case>| SceneOutput {
             assembly: &case.assembly,
@@ -57,7 +57,7 @@ impl<'a> StudyOutput<'a> {
         };
         let mut keys = study.swept_keys();
         keys.add_keys_of(cases.iter().map(Cow::as_ref));
-        // Cases that a kind makes have more keys than the other cases.
+        // Cases that a study kind creates have more keys than the other cases.
         let swept = results.cases.iter().map(|case| &case.label.parameters).max_by_key(|own| own.len());
         StudyOutput {
             name: &study.name,
@@ -72,12 +72,12 @@ impl<'a> StudyOutput<'a> {
         }
     }
 
-    /// The columns of files that tell cases apart.
+    /// The columns that identify cases in files.
     pub fn file_labels(&self) -> Labels<'_> {
         Labels { variants: true, ..self.page_labels() }
     }
 
-    /// The columns of pages that tell cases apart.
+    /// The columns that identify cases in pages.
     pub fn page_labels(&self) -> Labels<'_> {
         let any = |given: fn(&CaseResult) -> bool| self.results.cases.iter().any(given);
         Labels {
@@ -97,19 +97,19 @@ impl<'a> StudyOutput<'a> {
         parts.join(", ")
     }
 
-    /// Whether a case is drawn.
+    /// Returns true if a case is drawn.
     pub fn drawn(&self, id: usize) -> bool {
         self.drawn.as_ref().is_none_or(|drawn| drawn.contains(&id))
     }
 
-    /// Assembly and stages of the case at this place in the list; `None` where they are missing.
+    /// Assembly and stages of the case with this index; `None` if they are missing.
     pub fn scene(&self, place: usize) -> Option<(&'a Assembly, &'a [Stage])> {
         self.scenes.get(place).map(|scene| (scene.assembly, scene.stages))
     }
 }
 
-/// The cases that are drawn, where not all are: of kinds that search those they found, else the least load factor of
-/// each variant and its first case without an answer.
+/// The cases that are drawn; `None` if all are drawn. For kinds that search: the cases that were found. Otherwise: the
+/// least load factor of each variant, and its first case without a result.
 pub(crate) fn drawn(figures: Drawn, results: &StudyResults) -> Option<BTreeSet<usize>> {
     for found in ["worsts", "optima"] {
         let Some(entries) = results.own.get(found).and_then(Json::as_array) else { continue };

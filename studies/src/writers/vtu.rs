@@ -1,4 +1,4 @@
-//! `vtu/`: blocks at the end of each path for ParaView, as VTK's XML files of unstructured grids.
+//! `vtu/`: the blocks at the end of each path, for ParaView, as VTK XML files of unstructured grids.
 
 use super::register::register;
 use super::study_output::StudyOutput;
@@ -62,7 +62,7 @@ fn array(text: &mut String, name: &str, kind: &str, components: usize, rows: imp
     text.push_str("        </DataArray>\n");
 }
 
-/// VTK's number of a cell: quadrilaterals of order 1, 2, 3; a polygon for a rigid block.
+/// The VTK cell type: quadrilaterals of order 1, 2, 3; a polygon for a rigid block.
 fn cell_type(order: usize) -> u8 {
     match order {
         0 => 7,
@@ -76,7 +76,7 @@ fn tensor([xx, yy, zz, xy]: &[f64; 4]) -> String {
     format!("{xx:e} {yy:e} {zz:e} {xy:e} 0 0")
 }
 
-/// One file: all blocks as one piece, at a factor of the last loads.
+/// Creates a file with all blocks as one piece, at a factor of the last loads.
 pub fn vtu_text(blocks: &[DisplacedBlock], factor: f64) -> String {
     let points: usize = blocks.iter().map(|b| b.nodes.len()).sum();
     let cells: usize = blocks.iter().map(|b| b.cells.len()).sum();

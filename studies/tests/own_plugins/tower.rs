@@ -1,4 +1,4 @@
-//! A scene, a kind of load, a limit solver and a continuation strategy of one's own.
+//! A user-defined scene, kind of load, limit solver and continuation strategy.
 
 use serde_json::json;
 use voussoir::core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver};

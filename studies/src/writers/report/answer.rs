@@ -1,4 +1,4 @@
-//! The answer of a study in a sentence with its proof, and the critical numbers.
+//! The result of a study in one sentence with its proof, and the critical numbers.
 
 use super::cases::hinges;
 use crate::figures::format::{
@@ -14,7 +14,7 @@ use maud::{Markup, html};
 use serde_json::Value as Json;
 use voussoir_core::limit::Status;
 
-/// Order of statuses in the answer.
+/// Order of statuses in the sentence.
 const STATUSES: [Status; 7] = [
     Status::Collapse,
     Status::Stands,
@@ -25,8 +25,8 @@ const STATUSES: [Status; 7] = [
     Status::Stalled,
 ];
 
-/// The place in the list of the case that decides: the only one, the one that a search has found, or the one with the least
-/// load factor. `None` if scenes are compared: their load factors cannot be.
+/// Index of the critical case: the only case, the case that a search has found, or the case with the least load factor.
+/// `None` if the study compares scenes, because their load factors cannot be compared.
 pub(super) fn worst(study: &StudyOutput) -> Option<usize> {
     let cases = &study.results.cases;
     let place = |id: usize| cases.iter().position(|case| case.label.id == id);
@@ -44,12 +44,12 @@ pub(super) fn worst(study: &StudyOutput) -> Option<usize> {
     least_of(cases.iter()).and_then(|case| place(case.label.id))
 }
 
-/// The entries that a search has found.
+/// The entries that a search has added to the results.
 fn found<'a>(study: &'a StudyOutput, name: &str) -> Option<&'a Vec<Json>> {
     study.results.own.get(name).and_then(Json::as_array).filter(|entries| !entries.is_empty())
 }
 
-/// The answer in plain words, then its proof.
+/// The result in plain words, then its proof.
 pub(super) fn answer(study: &StudyOutput) -> Markup {
     html! {
         p class="summary" { strong { (sentence(study)) } @if study.totals.cases > 1 { " " (counts(study)) } }
@@ -81,7 +81,7 @@ fn sentence(study: &StudyOutput) -> String {
     }
 }
 
-/// A place of an envelope with its vehicle and direction: `10.55 m (bogie, forward)`.
+/// A position of an envelope with its vehicle and direction: `10.55 m (bogie, forward)`.
 fn position(study: &StudyOutput, entry: &Json) -> String {
     let unit = entry["parameter"]
         .as_str()
@@ -94,7 +94,7 @@ fn position(study: &StudyOutput, entry: &Json) -> String {
     if words.is_empty() { format!("{value}{unit}") } else { format!("{value}{unit} ({})", words.join(", ")) }
 }
 
-/// The first letter as a capital.
+/// Capitalises the first letter.
 fn capital(text: &str) -> String {
     let mut characters = text.chars();
     characters.next().map_or(String::new(), |first| first.to_uppercase().chain(characters).collect())
@@ -146,14 +146,14 @@ fn counts(study: &StudyOutput) -> Markup {
     }
 }
 
-/// The proof in words.
+/// Describes the proof.
 fn proof(study: &StudyOutput) -> Markup {
     let cases = &study.results.cases;
     let of = |verdict: &str| -> Vec<usize> {
         cases.iter().filter(|case| certificate_verdict(case) == verdict).map(|case| case.label.id).collect()
     };
     let (open, failed) = (of("bounds"), of("failed"));
-    // Of very many cases their number.
+    // If there are very many cases, only their number is shown.
     let named = |ids: &[usize], count: usize| match study.totals.all_shown() {
         true => id_list(ids, cases.len()),
         false => format!("{count} cases"),
@@ -171,7 +171,7 @@ fn proof(study: &StudyOutput) -> Markup {
     }
 }
 
-/// The checks of the certificates of these cases.
+/// Describes the checks in the certificates of these cases.
 fn checked(cases: &[CaseResult]) -> String {
     let followed = |case: &&CaseResult| case.path.displacements.is_some();
     let (paths, limits) = (cases.iter().any(|case| followed(&case)), cases.iter().any(|case| !followed(&case)));
@@ -191,7 +191,7 @@ fn checked(cases: &[CaseResult]) -> String {
     words.join(" ")
 }
 
-/// The numbers of the case that decides.
+/// The numbers of the critical case.
 pub(super) fn critical_numbers(study: &StudyOutput) -> Markup {
     let Some(place) = worst(study) else { return html! {} };
     let case = &study.results.cases[place];

@@ -1,4 +1,4 @@
-//! Tables of cases: those with the least load factors first, notes, certificates.
+//! Tables of cases, with the least load factors first; notes and certificates.
 
 use crate::figures::format::{
     certificate_verdict, format_force, format_number, format_seconds, format_short, format_value, hinge_list,
@@ -10,10 +10,11 @@ use crate::writers::page;
 use crate::writers::table::{distinct_notes, id_list};
 use maud::{Markup, html};
 
-/// Rows of a table in the page; the others are in the CSV file.
+/// Greatest number of rows of a table in the page; the CSV file contains all.
 const ROWS: usize = 60;
 
-/// Places of the cases: without a valid certificate first, then by growing load factor; without an answer last.
+/// Indices of the cases: first those without a valid certificate, then by increasing load factor, and last those
+/// without a result.
 fn worst_first(cases: &[CaseResult]) -> Vec<usize> {
     let mut places: Vec<usize> = (0..cases.len()).collect();
     let rank = |place: usize| {
@@ -28,7 +29,7 @@ fn worst_first(cases: &[CaseResult]) -> Vec<usize> {
     places
 }
 
-/// A column: its heading, and the cell of the case at a place.
+/// A column: its heading, and a function that returns the cell of a case by its index.
 type Column<'a> = (String, Box<dyn Fn(usize) -> String + 'a>);
 
 /// The table of cases.
@@ -87,7 +88,7 @@ fn factor(case: &CaseResult) -> String {
     })
 }
 
-/// The load of a case; `unit` is that at factor 1 \[N\].
+/// The load of a case; `unit` is the load at factor 1 \[N\].
 fn force(case: &CaseResult, unit: f64) -> String {
     let force = |factor: f64| format_force(factor * unit);
     let snaps = snap_words(case.load_factor, case.path.first_limit_point, force);
@@ -101,7 +102,7 @@ fn mechanism(case: &CaseResult) -> String {
     case.mechanism.as_ref().map_or(String::new(), words)
 }
 
-/// The joints of the hinges, or their number if they are many.
+/// The joints of the hinges, or only their number if there are many.
 pub(super) fn hinges(case: &CaseResult) -> String {
     let joints = case.mechanism.as_ref().map(hinge_list).unwrap_or_default();
     if joints.len() > 12 { format!("{} joints", joints.len()) } else { joints.join(", ") }

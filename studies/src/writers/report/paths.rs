@@ -1,4 +1,4 @@
-//! Paths: joints that open and slide in their order, limit points, and the work done.
+//! Paths: the order in which joints open and slide, limit points, and the energies.
 
 use super::pictures::CURVE;
 use crate::figures::curve_charts;
@@ -53,7 +53,7 @@ fn path(case: &CaseResult, assembly: &Assembly) -> Markup {
     }
 }
 
-/// A change of a joint in words.
+/// Describes a change of a joint.
 fn what(assembly: &Assembly, event: &JointEvent) -> String {
     let end = |end: usize| match (&assembly.arch, end) {
         (Some(_), 0) => "at the intrados".to_string(),

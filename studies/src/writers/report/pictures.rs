@@ -1,4 +1,4 @@
-//! Pictures of cases: one that moves for each, and its load-displacement curve.
+//! Pictures of cases: an animated drawing of each case, and its load-displacement curve.
 
 use crate::figures::format::headline;
 use crate::figures::plot::svg::own_ids;
@@ -17,8 +17,8 @@ arch without tension can stand; at a face of a block a hinge can form. A hinge i
 opens on the other side. In walls a bar at each joint shows where its force acts, its direction and its size. A strut is a set \
 of forces that balances the load alone, without weight: a scene with a strut carries any load.";
 
-/// The picture of the case at a place in the list. The script lets it move; without the script, and in print, the mechanism
-/// is a second drawing.
+/// The picture of the case with this index. The script animates it. Without the script, and in print, the mechanism is
+/// a second drawing.
 pub(super) fn of_case(study: &StudyOutput, place: usize) -> Markup {
     let Some((assembly, stages)) = study.scene(place) else { return html! {} };
     let case = &study.results.cases[place];
@@ -43,7 +43,7 @@ pub(super) fn of_case(study: &StudyOutput, place: usize) -> Markup {
     }
 }
 
-/// The cases that are drawn besides the one at the place `worst`, closed.
+/// The pictures of the other cases, collapsed; `worst` is the case that is already shown.
 pub(super) fn others(study: &StudyOutput, worst: Option<usize>, drawn: usize) -> Markup {
     let cases = &study.results.cases;
     let chosen: Vec<usize> =
