@@ -1,11 +1,11 @@
-"""Five joint laws on one arch, one of them written here."""
+"""Compares five joint laws on one arch. One of them is defined here."""
 
 import voussoir
 
 
 @voussoir.law("worn")
 class Worn:
-    """Friction that is half used up, without dilatancy."""
+    """Half of the friction coefficient, without dilatancy."""
 
     def facets(self):
         sides = [voussoir.Facet("sliding", [-0.3, sense], 0.0, flow=[0.0, sense]) for sense in (1, -1)]

@@ -1,4 +1,4 @@
-"""Sweeps on a Dask cluster: the same numbers, also when a worker is killed in the middle."""
+"""Sweeps on a Dask cluster give the same numbers, also if a worker is killed during the sweep."""
 
 import os
 import signal

@@ -1,4 +1,4 @@
-"""The Python package as a user meets it."""
+"""Tests of the public interface of the Python package."""
 
 import json
 import signal
@@ -43,7 +43,7 @@ def with_(**keys):
 
 
 def elastic(**joint):
-    """The arch with elastic blocks and compliant joints: a path."""
+    """The arch with elastic blocks and compliant joints, which needs a path."""
     scene = {**ARCH["scene"], "voussoirs": 5, "mesh": {"elements": [2, 2]}, "ends": "jointed"}
     stone = {"law": "elastic", "young_modulus": "5 GPa", "poisson_ratio": 0.3, "density": 2200.0}
     return with_(scene=scene, materials={"stone": stone}, joints={"dry": joint})
@@ -51,7 +51,7 @@ def elastic(**joint):
 
 def test_a_dictionary_a_text_and_a_file_are_the_same(tmp_path):
     results = voussoir.run(ARCH)
-    # Strathmashie, 2.99 m: the value of the README, and of its doctest.
+    # Strathmashie, rise 2.99 m: the value in the README and in its doctest.
     assert results[0].status == "collapse" and abs(results[0].load_factor - 698.0227) < 1e-4
     assert results.certified and results[0].certified and results[0].mechanism["kind"] == "four_hinge"
     path = tmp_path / "arch.toml"
@@ -70,7 +70,7 @@ def test_arrays():
     assert motion["velocity"].shape == (len(motion["body"]), 3)
     assert case.bounds.shape == (2,) and abs(case.bounds[0] - case.load_factor) < 1e-6 * case.load_factor
     assert case.thrust_line.shape[1] == 2
-    # Vertical equilibrium of the field with what it carries: the springings' forces balance weights and load.
+    # Joints are in compression.
     assert np.all(field["force"][:, 0] >= -1e-6)
     path = voussoir.run({**elastic(law="unilateral", tangential="stuck"), "output": {"curve": True, "figures": False}})[0]
     assert path.curve.ndim == 2 and path.curve.shape[1] == 2 and len(path.curve) > 2
@@ -119,7 +119,7 @@ def test_figures_and_tables_show_themselves(tmp_path):
 
 
 def same(one, other):
-    """Two tables are the same, bit for bit but for the time that cases took."""
+    """Checks that two tables are equal bit by bit, except the running times of cases."""
     assert list(one) == list(other)
     for name in one:
         if name != "seconds":
@@ -151,7 +151,7 @@ def test_tables_of_the_command_line_are_read_back_from_parquet(tmp_path):
     duckdb, polars = pytest.importorskip("duckdb"), pytest.importorskip("polars")
     run = lambda *words: subprocess.run([sys.executable, "-m", "voussoir", *words], cwd=tmp_path).returncode
     assert run("new", "arch") == 0
-    # Held, and so many that they are streamed in several groups of rows.
+    # A table that is held in memory, and one that is written in several groups of rows.
     for count in (5, 5200):
         rises = f'sweep={{"scene.profile.rise"={{from=2.0, to=4.0, count={count}}}}}'
         sets = ["--set", rises, "--set", 'output.writers=["results_parquet"]', "--set", "output.figures=false"]
@@ -214,7 +214,7 @@ def test_ctrl_c_works_and_other_threads_go_on():
             time.sleep(0.001)
 
     thread = threading.Thread(target=count)
-    # What is started in the background of a shell ignores Ctrl-C.
+    # A process that a shell starts in the background ignores Ctrl-C.
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     thread.start()
     threading.Timer(1.0, lambda: signal.raise_signal(signal.SIGINT)).start()
@@ -245,7 +245,7 @@ class Friction:
 
 @voussoir.law("test_unilateral")
 class Unilateral:
-    """No tension, elastic shear without bound: t_n = k <-g_n>, t_t = -k g_t."""
+    """No tension, unlimited elastic shear: t_n = k <-g_n>, t_t = -k g_t."""
 
     stiffness = [1e11, 1e11]
 
@@ -258,7 +258,7 @@ class Unilateral:
 
 @voussoir.law("test_limp")
 class Limp(Unilateral):
-    """Nothing at the untouched state: a path cannot begin."""
+    """No stiffness at the untouched state, so that a path cannot begin."""
 
     def respond(self, gap, state):
         return np.zeros_like(gap), state
@@ -268,7 +268,7 @@ def test_laws_written_in_python_are_those_of_the_tree():
     table = {"law": "python_facets", "class": "test_friction", "parameters": {"friction": 0.6}}
     own = voussoir.run(with_(joints={"dry": table}))[0]
     assert own.certified and own.load_factor == voussoir.run(ARCH)[0].load_factor
-    # Along a path too, from event to event.
+    # The same on a path from event to event.
     stiff = {"normal_stiffness": 1e10, "shear_stiffness": 1e10}
     table["parameters"]["stiffness"] = [1e10, 1e10]
     theirs = voussoir.run(elastic(law="coulomb_associated", friction=0.6, **stiff))[0]
@@ -277,7 +277,7 @@ def test_laws_written_in_python_are_those_of_the_tree():
 
 def test_a_response_in_python_ends_at_the_limit_load():
     own = voussoir.run(elastic(law="python_response", **{"class": "test_unilateral"}))[0]
-    # Elastic shear carries any tangential force, so the path ends at the load of rigid blocks that cannot slide.
+    # Shear is elastic without limit, so the path ends at the collapse load of rigid blocks that cannot slide.
     rigid = voussoir.run(with_(scene=elastic()["scene"], joints={"dry": {"law": "unilateral", "tangential": "stuck"}}))[0]
     assert own.solver == "newton_path" and rigid.solver == "limit_chain"
     assert own.load_factor == pytest.approx(rigid.load_factor, rel=1e-6), own.notes

@@ -19,7 +19,7 @@ const MAX_FILE_BYTES: u64 = 1 << 40;
 
 /// Number of cases that each thread reads at once.
 const AT_ONCE: usize = 64;
-/// Number of bytes after which no more lines are read at once.
+/// Size of a batch of long cases in bytes.
 const BYTES_AT_ONCE: usize = 4 << 20;
 
 /// The keys of a line that are needed to sort it.
@@ -160,7 +160,7 @@ impl FinishedCases for CaseLines {
     }
 }
 
-/// The first and the last line of a part.
+/// Returns true for the first and the last line of a part.
 fn frames_a_part(line: &[u8]) -> bool {
     line.starts_with(b"{\"study\":") || line.starts_with(b"{\"cases_in_part\":")
 }

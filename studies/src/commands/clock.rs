@@ -5,7 +5,7 @@ use std::time::Instant;
 
 static START: LazyLock<Instant> = LazyLock::new(Instant::now);
 
-/// Processor time of this thread \[s\] on Linux; elapsed time on other systems.
+/// Processor time of this thread \[s\] on Linux; time since the start of the program on other systems.
 pub fn processor_time() -> f64 {
     let counted = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
     let spent = counted.and_then(|text| text.split_whitespace().next()?.parse::<f64>().ok());

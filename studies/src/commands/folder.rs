@@ -93,7 +93,7 @@ fn is_same(_: &File, place: &Path) -> bool {
 }
 
 /// The files that the results.json of a folder names: relative paths below the folder, without the files of every run.
-/// `None` if results.json is missing beside the study of an earlier run.
+/// `None` if the folder has a resolved study but no results.json.
 fn listed(path: &Path) -> Option<BTreeSet<String>> {
     let head = open_regular(&path.join("results.json"), MAX_BYTES).map(read_head).unwrap_or_default();
     if !head.contains_key("files") && path.join("resolved.toml").exists() {
@@ -191,7 +191,7 @@ impl ResultFolder {
 
     /// Prepares the folder for the files of a run: removes the files that the previous run wrote and this run does not
     /// write.
-    /// A file that results.json does not name belongs to the user. Without results.json the two cannot be told apart,
+    /// A file that results.json does not name belongs to the user. Without results.json the two cannot be distinguished,
     /// and nothing is removed.
     ///
     /// # Errors

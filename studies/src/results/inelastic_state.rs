@@ -96,7 +96,7 @@ pub fn crushing(assembly: &Assembly, problem: &PathProblem, yielded: &[Option<Yi
 }
 
 /// Returns the mechanism of a path, with the joints next to which blocks have crushed. If blocks yield, their
-/// deformation makes their rigid motions overlap; then only laws with crushing add crushed joints.
+/// deformation makes their rigid motions overlap. Such an overlap counts as crushing only if the law of the joint crushes.
 pub fn with_crushing(
     mut mechanism: Mechanism,
     assembly: &Assembly,

@@ -69,7 +69,7 @@ pub struct StoredWitness {
     pub claim: StoredClaim,
 }
 
-/// What a witness states.
+/// The statement of a witness.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StoredClaim {
