@@ -58,7 +58,7 @@ impl<'a> PathProofLines<'a> {
         lines
     }
 
-    /// The line of a case. Cases must be asked for in order of id.
+    /// Returns the line of a case. Cases must be requested in order of id.
     pub fn of(&mut self, id: usize) -> Option<NumberedLine> {
         while let Some(next) = self.next.take() {
             if next.line.id > id {
@@ -75,20 +75,20 @@ impl<'a> PathProofLines<'a> {
         None
     }
 
-    /// A case with its stored path, if there is a line for it. Cases must be asked for in order of id.
+    /// Returns a case with its stored path, if it has a line. Cases must be requested in order of id.
     pub fn attached_to(&mut self, mut case: CaseResult) -> CaseResult {
         let line = self.of(case.label.id).filter(|own| own.line.case_hash == case.label.case_hash);
         case.stored_path = line.map(|own| Arc::new(own.line.path));
         case
     }
 
-    /// The findings of all lines that belong to no case.
+    /// Returns the findings of all lines that belong to no case.
     pub fn finish(mut self) -> Vec<String> {
         drop(self.of(usize::MAX));
         self.findings
     }
 
-    /// The next line that is whole and in its order.
+    /// Reads the next line that is complete and in order.
     fn read(&mut self) -> Option<NumberedLine> {
         loop {
             let mut text = Vec::new();
@@ -155,7 +155,7 @@ impl NumberedLine {
     }
 }
 
-/// Returns true if a case asks for numbers that only solving again can give.
+/// Returns true if a case requests numbers that only solving again can give.
 fn asks_for_more(case: &Case) -> bool {
     !case.output_sensitivities.is_empty() || case.output_accuracy
 }
@@ -184,8 +184,8 @@ pub fn check_stored_path(case: &Case, result: &CaseResult, path: &StoredPath) ->
     }
 }
 
-/// Copies the parts of a stored result that no states prove: events, branches, stability, the uniqueness of a mechanism, and the rate behind
-/// a limit point of finite displacements.
+/// Copies the parts of a stored result that no states prove: events, branches, stability, the uniqueness of a
+/// mechanism, and the rate at a limit point of finite displacements.
 fn take_unproved(again: &mut CaseResult, stored: &CaseResult, finite: bool) {
     again.counters.clone_from(&stored.counters);
     again.path.events.clone_from(&stored.path.events);
