@@ -282,8 +282,7 @@ impl DrivenPoint {
         self.solve_from(controls, &self.response.tangent.clone())
     }
 
-    /// Returns the tangent for unloading: the initial tangent for materials; for joints the tangent of the law slightly
-    /// before the present gap.
+    /// Returns the tangent for unloading: for materials the initial one; for joints that slightly before the gap.
     fn unloading_tangent(&mut self) -> Result<[[f64; COMPONENTS]; COMPONENTS], Stop> {
         if !matches!(self.law, PointLaw::Joint(_)) {
             return Ok(self.elastic);

@@ -22,8 +22,7 @@ pub struct Settings {
     /// Share below which two effects can be distinguished only with refinement, such as a mechanism and a soft
     /// structure; also the energy error that a step may have.
     pub fine: f64,
-    /// Change of the factor in a step with plastic flow of blocks, relative to its motion. In an elastic step it is
-    /// about 1.
+    /// Change of the factor in a step with flowing blocks, relative to its motion (elastic step: about 1).
     pub flat: f64,
     /// Accepted energy error of a stage, relative to its energy: half of the tolerance of a certificate.
     pub energy_of_stage: f64,
@@ -31,8 +30,7 @@ pub struct Settings {
     pub visible: f64,
     /// Motion, relative to the size of the scene, after which a structure counts as fallen.
     pub fallen: f64,
-    /// Greatest movement in a step with finite displacements if the strategy sets no bound, relative to the size of the
-    /// scene.
+    /// Greatest movement in a step with finite displacements if the strategy sets no bound, relative to the scene.
     pub largest_finite_step: f64,
     /// Load, relative to its unit, at which the modes of the start of a path are determined.
     pub first_load: f64,
@@ -57,8 +55,7 @@ pub struct Settings {
     /// Residual of the rates of a chain, relative to one that needs no refinement, above which the next correction is
     /// examined too.
     pub calm: f64,
-    /// Decrease of the rates of a chain by a change of modes after which they are summed again, because rounding errors
-    /// would remain in them.
+    /// Decrease of the rates of a chain by a change of modes after which they are summed again, without old rounding.
     pub cancels: f64,
     /// Stiffness of the spring of a weak joint of a chain, relative to the joint with all points stuck.
     pub spring: f64,

@@ -77,8 +77,7 @@ impl ContactMode {
         })
     }
 
-    /// Returns the opening above the dilated surface per unit gap of a point that flows or is open. Open points slip in
-    /// a `sense`, −1 or 1.
+    /// Returns the opening above the dilated surface per unit gap. Open points slip in a `sense`, −1 or 1.
     pub fn opening(self, facets: &[Facet], sense: f64) -> [f64; 2] {
         let by_corner = |i: u8, j: u8, which: usize| {
             let of = |gap| multipliers(facets[i as usize].flow, facets[j as usize].flow, gap)[which];

@@ -114,7 +114,7 @@ impl YieldPolygon {
     }
 
     /// Returns the pair of facets of a corner with the least negative multipliers for Δg, and these multipliers. `None`
-    /// if the mode is not a corner.
+    /// without a corner.
     pub fn pair(&self, mode: ContactMode, gap: [f64; 2]) -> Option<([usize; 2], [f64; 2])> {
         self.at(mode).map(|corner| self.pair_of(corner, gap))
     }

@@ -61,8 +61,7 @@ pub trait Engine {
     /// Can `fixed + λ varying` be carried for some λ of either sign?
     fn possible(&mut self, fixed: &Wrenches, varying: &Wrenches) -> Equilibrium;
 
-    /// The greatest λ ≤ `cap` (may be ∞) for which `fixed + λ varying` can be carried, given that
-    /// some λ can.
+    /// The greatest λ ≤ `cap` (may be ∞) for which `fixed + λ varying` can be carried, if some λ can.
     fn greatest(&mut self, fixed: &Wrenches, varying: &Wrenches, cap: f64) -> Greatest;
 
     /// Returns the greatest factor and a field of the fixed loads if they are carried. `None` if they are not, or if

@@ -28,8 +28,7 @@ impl ForceVariables {
         ForceVariables { joints: joints.collect(), count }
     }
 
-    /// Returns the rows of equilibrium, three for each group; moments about the pole are divided by the problem's
-    /// length.
+    /// Returns the rows of equilibrium, three for each group; moments are divided by the length.
     pub fn equilibrium(&self, problem: &LimitProblem) -> Vec<Row> {
         let mut rows = vec![Row::new(); 3 * problem.groups];
         for (joint, &(first, own)) in problem.joints.iter().zip(&self.joints) {
@@ -58,8 +57,7 @@ impl ForceVariables {
     }
 }
 
-/// Returns the greatest error of a field relative to the loads: unbalanced force of a group, or violation of a row or
-/// stress block.
+/// Returns the greatest error of a field relative to the loads: unbalanced force or violated strength.
 pub fn field_error(problem: &LimitProblem, loads: &Wrenches, forces: &[JointForce]) -> f64 {
     field_violation(problem, loads, forces) / problem.magnitude(loads).max(f64::MIN_POSITIVE)
 }

@@ -1,5 +1,4 @@
-//! Groups of blocks without a chain of joints to the ground. Their rigid motion needs no work, so that they cannot
-//! carry loads with a resultant.
+//! Groups of blocks without a chain of joints to the ground. They cannot carry loads with a resultant.
 
 use crate::limit::settings::SETTINGS;
 use crate::linear::inner;

@@ -56,8 +56,7 @@ impl Systems {
         Some((z, violation))
     }
 
-    /// Returns the force variables and θ in equilibrium with these slacks s_i of all pairs, and the greatest residual
-    /// or violation.
+    /// Returns the force variables and θ in equilibrium with these slacks s_i, and the greatest residual or violation.
     pub fn field_with(&self, slacks: &[f64]) -> Option<(Vec<f64>, f64)> {
         let mut rows: Vec<Row> = self.equilibrium.clone();
         rows.iter_mut().zip(&self.varying).for_each(|(row, &p)| row.push((self.forces, p)));

@@ -11,8 +11,7 @@ pub fn force_unit(problem: &LimitProblem, wrenches: &Wrenches) -> f64 {
     }
 }
 
-/// Returns the force scale of a program: the scale of the fixed loads, or of the varying loads if there are no fixed
-/// ones.
+/// Returns the force scale of a program: the scale of the fixed loads, if any, or of the varying ones.
 pub fn force_scale(problem: &LimitProblem, fixed: &Wrenches, varying: &Wrenches) -> f64 {
     force_unit(problem, if problem.magnitude(fixed) > 0.0 { fixed } else { varying })
 }

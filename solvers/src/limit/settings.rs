@@ -124,8 +124,7 @@ impl LimitSettings {
         }
     }
 
-    /// Refuses numbers that are not positive and finite, and bounds that contradict each other. The error is the name
-    /// of the tolerance.
+    /// Refuses numbers that are not positive and finite, and inconsistent bounds. The error is the tolerance's name.
     pub const fn validated(self) -> Result<Self, &'static str> {
         let shares = [
             ("rounding", self.rounding),

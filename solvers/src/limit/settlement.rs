@@ -25,8 +25,7 @@ const PROGRAMS: usize = 60;
 /// Number of first programs that start from the forces of the previous one; later programs move half of the way.
 const FULL: usize = 24;
 
-/// Solves the settlement for any limit solver with this flow; with the laws' own flow if no motion exists with
-/// associated flow.
+/// Solves the settlement with this flow, or with the laws' own flow if no motion exists with associated flow.
 pub fn settle(problem: &LimitProblem, loads: &Wrenches, openings: &[[f64; 3]], flow: FlowRule) -> SettlementAnswer {
     settled(problem, loads, openings, flow).unwrap_or_else(SettlementAnswer::Refused)
 }
@@ -102,8 +101,7 @@ fn follows(
     })
 }
 
-/// Replaces non-associated pairs by associated ones through the yield point at the forces of `reference`: d·r ≤ b + (d
-/// − a)·r̄.
+/// Makes non-associated pairs associated, through the yield point at the forces of `reference`: d·r ≤ b + (d − a)·r̄.
 fn fictitious(systems: &Systems, reference: &[f64]) -> Systems {
     let mut replaced = systems.clone();
     for pair in replaced.pairs.iter_mut().filter(|pair| pair.non_associated()) {
@@ -171,8 +169,7 @@ fn onto_yield(systems: &Systems, program: &Systems, force: &[f64]) -> Option<Vec
     systems.pairs.iter().all(|pair| excess(pair) <= SETTINGS.balanced * size).then_some(moved)
 }
 
-/// Returns the field on which the supports do most work against the blocks, in units of force; `None` if this work has
-/// no bound.
+/// Returns the field of most work of the supports against the blocks, in units of force; `None` without a bound.
 fn field(systems: &Systems, driven: &[f64]) -> Result<Option<Vec<f64>>, String> {
     let (free, pairs) = (systems.forces, systems.pairs.len());
     // s_i of all pairs, then the two parts of r·g_s.

@@ -24,8 +24,7 @@ pub struct Pattern {
 }
 
 impl Pattern {
-    /// Creates a pattern from the group of each contact point; groups are numbered in order. `pairs` lists coupled
-    /// groups, in both directions.
+    /// Creates a pattern from the group of each contact point. `pairs` lists coupled groups, in both directions.
     pub fn new(group: Vec<usize>, pairs: impl IntoIterator<Item = (usize, usize)>) -> Self {
         let groups = group.last().map_or(0, |last| last + 1);
         let mut start = vec![0; groups + 1];
@@ -111,8 +110,7 @@ impl BlockMatrix {
         self.values.iter_mut().chain(&mut self.diagonal).for_each(|v| *v *= by);
     }
 
-    /// Adds the 2 × 2 entries between two points, row by row. If their groups have no block, only diagonal entries are
-    /// allowed.
+    /// Adds the 2 × 2 entries between two points, row by row. Without a block only diagonal entries are allowed.
     pub fn add(&mut self, row: usize, column: usize, entries: [[f64; 2]; 2]) {
         let pattern = &*self.pattern;
         let (a, b) = (pattern.group[row], pattern.group[column]);
@@ -148,8 +146,7 @@ impl BlockMatrix {
             let (x, y) = c.as_slice()[2 * slot * slots..][..2 * slots].split_at(slots);
             let target = &mut block[2 * (point - pattern.start[b]) * height..][..2 * height];
             let (normal, tangent) = target.split_at_mut(height);
-            // // Written out, because the compiler does not inline closures over pairs; this loop is most of the
-            // assembly.
+            // // Written out for speed: the compiler does not inline closures over pairs here.
             let [n00, n10, n01, n11] = [n[(0, 0)], n[(1, 0)], n[(0, 1)], n[(1, 1)]];
             for (point, slot, m) in rows {
                 let (k, s) = (2 * point - own.start, 2 * slot);

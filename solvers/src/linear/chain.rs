@@ -18,8 +18,7 @@ use crate::settings::SETTINGS;
 use std::rc::Rc;
 use voussoir_core::linear::{FrontRows, FrontalLu};
 
-/// Coefficients of the two rows of a contact point for its forces and gaps, with the terms that are added for the
-/// factorisation.
+/// Coefficients of the two rows of a contact point for its forces and gaps, and the added terms.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct PointRows {
     /// P.
@@ -53,7 +52,6 @@ pub struct ChainRows {
     pub points: Vec<PointRows>,
 }
 
-/// The equations.
 struct Equations {
     above: ChainRows,
     /// The last row.

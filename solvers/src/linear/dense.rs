@@ -120,8 +120,7 @@ fn add_matrix<S: Simd>(simd: S, out: &mut DMatrix<f64>, a: &DMatrix<f64>, column
     }
 }
 
-/// Returns rows times A. Rows are stored as columns, and so is the result; only as many rows of A are used as `rows`
-/// has entries.
+/// Returns rows times A. Both are stored as columns; only as many rows of A are used as `rows` has entries.
 pub fn row_product(rows: &DMatrix<f64>, a: &DMatrix<f64>) -> DMatrix<f64> {
     let mut all = DMatrix::zeros(a.ncols(), rows.ncols());
     if all.is_empty() || rows.is_empty() {

@@ -1,5 +1,4 @@
-//! Sparse rows, rows in blocks, factorisations that follow changes of few rows, small dense products, equations with a
-//! control row.
+//! Sparse rows, rows in blocks, factorisations with changes of few rows, dense products, equations with a control row.
 
 pub(crate) mod blocks;
 pub(crate) mod bordered;

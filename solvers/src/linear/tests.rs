@@ -62,8 +62,7 @@ fn distance(x: &[f64], y: &DVector<f64>) -> f64 {
     x.iter().zip(y.iter()).fold(0.0, |worst, (x, y)| worst.max((x - y).abs()))
 }
 
-/// Points that depend only on their own forces are condensed out; others are kept. The solution is that of dense
-/// elimination.
+/// Points that depend only on their own forces are condensed out; the solution is that of dense elimination.
 #[test]
 fn condensed_equations_have_the_solution_of_all_equations() {
     let (entries, right) = (entries(), right());
@@ -130,8 +129,7 @@ fn singular_equations_are_refused() {
     assert!(solution.is_none_or(|x| largest(&x) > 1e12));
 }
 
-/// After a change of the two rows of a point, the responses to their right-hand sides give the solution of the changed
-/// equations.
+/// After a change of the two rows of a point, the responses to their right-hand sides give the changed solution.
 #[test]
 fn a_few_changed_rows_are_followed_without_a_factorisation() {
     let entries = entries();
@@ -205,8 +203,7 @@ fn a_control_beside_the_equations_serves_at_a_limit_point() {
     assert!(distance(&x, &solved(with_last_row(&singular, &control), &right())) < 1e-11);
 }
 
-/// Factors with a control of few unknowns serve only this control; factors that hold an unknown serve all dense
-/// controls.
+/// Factors with a control of few unknowns serve only it; factors that hold an unknown serve all dense controls.
 #[test]
 fn factors_say_which_controls_they_serve() {
     let above: Entries = entries().into_iter().filter(|e| e.0 + 1 < SIZE).collect();

@@ -1,5 +1,4 @@
-//! Optimisation methods without knowledge of masonry: dense linear programs, linear complementarity problems, random
-//! numbers.
+//! Optimisation methods: dense linear programs, linear complementarity problems, random numbers.
 
 pub(crate) mod dense_simplex;
 pub(crate) mod lcg;

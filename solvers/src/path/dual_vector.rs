@@ -14,8 +14,7 @@ use voussoir_core::path::{FarkasVector, ModeTree, NoneContinues};
 /// Greatest number of facets of the active set for which the search is tried: its program is dense.
 pub(super) const MOST_FACETS: usize = 160;
 
-/// Function that returns all unknowns for gap rates of the active points and a rate of the load; the points stick apart
-/// from these gap rates.
+/// Returns all unknowns for gap rates of the active points, which stick otherwise, and a rate of the load.
 pub(super) type Response<'a> = &'a dyn Fn(&[[f64; 2]], f64) -> Option<Vec<f64>>;
 
 /// Returns the multipliers that complete `alpha`, the gap rates of the active points, and `work`. They come from the

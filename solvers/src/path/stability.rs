@@ -42,8 +42,7 @@ pub(super) fn regains_limit_point(limit_points: &[ProvenPeak], load_step: usize,
 pub(super) struct SecondOrderWork {
     /// Number of directions of negative second-order work.
     pub negative: usize,
-    /// Number of negative real eigenvalues of K. With the sense of the factor, it distinguishes limit points from other
-    /// branches.
+    /// Number of negative real eigenvalues of K. With the sense of λ, it identifies limit points.
     pub turned: usize,
     /// True if K is symmetric.
     pub symmetric: bool,
@@ -56,8 +55,7 @@ pub(super) struct SecondOrderWork {
     basis: Option<DMatrix<f64>>,
 }
 
-/// Returns the second-order work of a state with `motions` unknown motions, from the motions caused by wrenches, column
-/// by column.
+/// Returns the second-order work of a state with `motions` unknown motions, from their responses to wrenches.
 pub(super) fn work_by_responses(
     motions: usize,
     respond: impl Fn(&DMatrix<f64>) -> Option<DMatrix<f64>>,
@@ -148,8 +146,7 @@ mod tests {
         assert!(found.stable_under_control(-1.0) && !found.stable_under_control(1.0));
     }
 
-    /// Coupling as by a follower load: eigenvalues of K are ±i, second-order work is zero, no real eigenvalue changes
-    /// its sign.
+    /// A follower-like coupling: eigenvalues of K are ±i, second-order work is zero, no real eigenvalue turns.
     #[test]
     fn eigenvalues_that_are_not_real_turn_no_path() {
         let flexibility = DMatrix::from_row_slice(2, 2, &[1.0, 5.0, -5.0, 1.0]);

@@ -176,8 +176,7 @@ impl Method<'_> {
         }
     }
 
-    /// Returns the error of the state itself: the gap in units of θ, the error of equilibrium and the resistance of
-    /// joints.
+    /// Returns the error of the state itself: the gap in units of θ, the equilibrium error and the resistance.
     fn error(&self, statics: f64) -> f64 {
         let moved = greatest(self.residuals.flow.as_flattened());
         let largest = greatest(self.state.multipliers.as_flattened()).max(f64::MIN_POSITIVE);

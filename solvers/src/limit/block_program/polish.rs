@@ -141,8 +141,7 @@ impl Polish<'_> {
         rows.map(|(row, normal)| (row, *normal)).collect()
     }
 
-    /// Finds the forces on the carrying rows in equilibrium that are nearest to the present ones. Returns the number of
-    /// corrections.
+    /// Finds the nearest forces on the carrying rows in equilibrium. Returns the number of corrections.
     fn statics(&mut self, stiffness: &mut Stiffness, v: &[f64]) -> u64 {
         if let Some(cap) = self.program.cap.filter(|_| self.capped) {
             self.state.theta = cap;
@@ -202,8 +201,7 @@ impl Polish<'_> {
         }
     }
 
-    /// Finds the velocities without resistance that are nearest to the present ones, and their multipliers. Returns the
-    /// number of corrections.
+    /// Finds the nearest velocities without resistance, and their multipliers. Returns the number of corrections.
     fn kinematics(&mut self, stiffness: &mut Stiffness, v: &[f64]) -> u64 {
         let program = self.program;
         let normalise = |q: &mut Vec<f64>, capped: bool| {
@@ -318,8 +316,7 @@ impl Polish<'_> {
         self.state.multipliers.iter().flatten().fold(f64::MIN_POSITIVE, |m, z| m.max(z.abs())).max(1.0)
     }
 
-    /// Returns true if no other motion is possible with the same yielding rows. Inverse iteration looks for a second
-    /// motion that no joint resists.
+    /// Returns true if no other motion is possible with the same yielding rows. Inverse iteration seeks a second one.
     fn unique(&self, stiffness: &mut Stiffness) -> Option<bool> {
         let scale = self.greatest_multiplier();
         let joints = self.program.members.iter().zip(&self.state.multipliers);

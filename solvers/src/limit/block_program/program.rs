@@ -76,8 +76,7 @@ fn poles(problem: &LimitProblem) -> Vec<Vec2> {
 }
 
 impl Program {
-    /// Creates the program of a problem. `None` if a joint has more than four rows or crushes: such programs are not
-    /// supported.
+    /// Creates the program of a problem. `None` if a joint has more than four rows or crushes.
     pub fn new(problem: &LimitProblem, loads: Loads) -> Option<Self> {
         if problem.groups == 0 || problem.joints.iter().any(|joint| joint.strength.block.is_some()) {
             return None;

@@ -12,8 +12,7 @@ pub struct Stiffness {
     cholesky: BlockCholesky,
     /// Start of the diagonal block of each body, and the distance between its columns.
     diagonals: Vec<(usize, usize)>,
-    /// For each joint between two bodies: the side that comes first, and start and column distance of the coupling
-    /// block.
+    /// For each joint between two bodies: its first side, and start and column distance of the block.
     couplings: Vec<Option<(usize, (usize, usize))>>,
     /// Factorisations done.
     pub factorisations: u64,
@@ -41,8 +40,7 @@ impl Stiffness {
         Some(Stiffness { cholesky, diagonals, couplings, factorisations: 0 })
     }
 
-    /// Factorises the matrix of these roots. `shift` and the share `relative` of each diagonal entry are added to the
-    /// diagonal.
+    /// Factorises the matrix of these roots. The diagonal is increased by `shift` and the share `relative`.
     pub fn factorise<'a>(
         &mut self,
         program: &Program,

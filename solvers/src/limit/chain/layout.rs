@@ -99,8 +99,7 @@ impl Touching {
     }
 }
 
-/// (N_0, N_1, T) of every joint as functions of the redundants, three for each closing joint. They do not depend on the
-/// loads.
+/// (N_0, N_1, T) of every joint as functions of the redundants, three for each closing joint.
 #[derive(Debug, Clone)]
 pub struct Redundants {
     /// Number of redundants.

@@ -10,8 +10,7 @@ use std::cmp::Ordering;
 use voussoir_core::law::{ForceRow, StressBlock};
 use voussoir_core::limit::{JointForce, LimitProblem, Velocity};
 
-/// Violations of stress blocks below which Newton's method is tried, in order; after the last one the tangents
-/// themselves give the answer.
+/// Violations of stress blocks below which Newton's method is tried, in order; then the tangents give the answer.
 const BLOCK_TOLERANCES: [f64; 4] = [SETTINGS.shift, SETTINGS.negligible, SETTINGS.balanced, SETTINGS.rounding];
 const MAX_PIVOTS: u64 = 5000;
 
@@ -65,8 +64,7 @@ pub enum Outcome {
     Optimal(Solved),
     /// A direction with objective 1 that no row bounds.
     Unbounded(Vec<f64>),
-    /// No point satisfies all rows: columns with Σ y_i a_i = 0 and β·y < 0, y ≥ 0, a motion that refutes
-    /// equilibrium.
+    /// No point satisfies all rows: columns with Σ y_i a_i = 0, β·y < 0, y ≥ 0: a refuting motion.
     Infeasible(Vec<(Column, f64)>),
     Failed(String),
 }

@@ -1,5 +1,4 @@
-//! L U factors of small dense matrices with partial pivoting: one factorisation solves A x = b and Aᵀ x = b without
-//! allocation.
+//! L U factors of small dense matrices with partial pivoting, for A x = b and Aᵀ x = b, without allocation.
 
 use crate::linear::inner;
 

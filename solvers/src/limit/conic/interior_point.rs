@@ -28,8 +28,7 @@ pub enum Word {
     Other(String, u64),
 }
 
-/// Solves a system. If blocks are far from the loads, they are first represented by planes; by cones if θ has no bound
-/// then.
+/// Solves a system. If blocks are far from the loads, planes replace them, unless θ has no bound then.
 pub fn solve(system: &System) -> Word {
     match solve_with(system, SETTINGS.flat) {
         Word::Pair(pair, iterations) => Word::Pair(pair, iterations),

@@ -160,8 +160,7 @@ impl ConicEngine<'_> {
         self.count("newton_iterations", solved.corrections);
     }
 
-    /// Returns true if the field of a block program is admissible in the scene: in the program's units errors may
-    /// appear too small.
+    /// Returns true if the field of a block program is admissible in the scene's own units.
     fn holds(&self, fixed: &Wrenches, varying: &Wrenches, solution: &Solution) -> bool {
         let loads = combined(fixed, varying, solution.factor);
         field_error(self.problem, &loads, &solution.forces) <= SETTINGS.admissible
@@ -348,8 +347,7 @@ impl Engine for ConicEngine<'_> {
         if let Some((_, greatest)) = tried.best {
             return greatest;
         }
-        // // Unbounded or not solved: a ray decides. A pair without polish is used only if no other result contradicts
-        // it.
+        // // Unbounded or not solved: a ray decides. A pair without polish is the last resort.
         match self.share(varying, None, false) {
             Equilibrium::Field(ray) => Greatest::Unbounded(ray),
             _ => tried.unsettled.unwrap_or(Greatest::Failed(tried.failed)),

@@ -186,8 +186,7 @@ impl System {
 mod tests {
     use super::*;
 
-    /// The gradient of φ is its difference quotient; φ = 0 if the whole compressed part of the joint is its stress
-    /// block.
+    /// The gradient of φ is its difference quotient; φ = 0 if the stress block fills the compressed part.
     #[test]
     fn the_gradient_of_a_block_is_its_slope() {
         for end in [0, 1] {

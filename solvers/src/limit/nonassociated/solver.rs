@@ -96,8 +96,7 @@ struct Least<'a> {
 }
 
 impl Least<'_> {
-    /// Returns an error unless the dense systems can be built: the scene is small enough and every joint has linear
-    /// rows.
+    /// Returns an error unless the dense systems can be built: a small scene and linear rows only.
     fn searchable(&self) -> Result<(), String> {
         let s = &self.systems;
         if self.problem.joints.iter().any(|joint| joint.strength.block.is_some()) {
@@ -377,7 +376,6 @@ impl Least<'_> {
 /// The proved lower end and its proof.
 struct Lower {
     theta: f64,
-    /// The bound by products.
     products: Option<Bound>,
     /// The bound by search.
     searched: f64,

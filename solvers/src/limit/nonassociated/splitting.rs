@@ -34,8 +34,7 @@ const SUPPORTS: usize = 10;
 const CORRECTIONS: usize = 4;
 /// Least distance of a trial bound above the proved one, relative to the range.
 const LEAST: f64 = 0.02;
-/// Multipliers below this multiple of the greatest residual, and below the second value, change in proportion to their
-/// size.
+/// Multipliers below this multiple of the greatest residual, and below the second value, change in proportion.
 const FREE: [f64; 2] = [100.0, 1e-4];
 /// Over-relaxation factor.
 const RELAXATION: f64 = 1.7;
@@ -359,8 +358,7 @@ impl Products {
         Step { raw: self.range[0] + bound, range: self.range, multipliers: kinds }
     }
 
-    /// Returns the greatest bound proved with this work. `raised` is called with each improved bound and the work up to
-    /// it.
+    /// Returns the greatest bound proved with this work. Calls `raised` with each better bound and its work.
     fn greatest(&mut self, limit: u64, raised: &mut dyn FnMut(u64, f64)) -> Option<Step> {
         let before = self.work;
         let once = self.objective.clone();
@@ -369,8 +367,7 @@ impl Products {
         let iterations = |share: f64| ((share * limit as f64 / cost) as usize).max(FEWEST);
         let width = self.range[1] - self.range[0];
         let (mut near, estimate) = self.split(iterations(SPLITTING));
-        // // The estimate is not a bound and may be inaccurate at first: failed values are tried again after a lower
-        // bound is proved.
+        // // The estimate may be inaccurate at first: failed values are tried again after a lower bound is proved.
         let high = if estimate > 0.0 { estimate.min(width) } else { width };
         let (mut low, mut best, mut bound) = (0.0, None, FIRST_SHARE * high);
         while high - low > CLOSE * width && bound > low + LEAST * width.min(high - low) && self.work < limit {

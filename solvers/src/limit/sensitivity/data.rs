@@ -5,8 +5,7 @@ use voussoir_core::limit::{LimitJoint, LimitProblem};
 use voussoir_core::model::Wrenches;
 use voussoir_core::model::geometry::Vec2;
 
-/// Derivatives of the data of a problem with respect to a parameter θ, on one side of its value; the pole of wrenches
-/// is that of the problem itself.
+/// Derivatives of the data of a problem with respect to a parameter θ, on one side. Wrenches have the problem's pole.
 #[derive(Debug, Clone)]
 pub struct DataRate {
     /// Derivatives of the wrenches of each joint's N_0, N_1, T.
@@ -21,8 +20,7 @@ pub struct DataRate {
     pub varying: Wrenches,
 }
 
-/// Returns all data of a problem about a pole, each with its kind (0 directions and coefficients, 1 lengths, 2 forces,
-/// 3 moments).
+/// Returns all data of a problem about a pole, each with its kind (0 coefficients, 1 lengths, 2 forces, 3 moments).
 fn data(problem: &LimitProblem, pole: Vec2) -> Vec<(f64, usize)> {
     let mut out = Vec::new();
     for joint in &problem.joints {
@@ -126,7 +124,6 @@ mod tests {
         assert!(rate.fixed.iter().chain(&rate.varying).flatten().all(|x| x.abs() < 1e-12));
     }
 
-    /// Data that jump have no rate.
     #[test]
     fn data_that_jump_have_no_rate() {
         let [at, near, far] = [0.5, 0.9, 0.5].map(with_friction);

@@ -51,8 +51,7 @@ fn fictitious(problem: &LimitProblem, reference: &[JointForce]) -> LimitProblem 
     replaced
 }
 
-/// Returns the greatest factor of associated flow by the conic engine, with a field in the middle of all optimal
-/// fields.
+/// Returns the greatest factor of associated flow by the conic engine, with a central optimal field.
 fn by_engine(problem: &LimitProblem, base: &Wrenches, counters: &mut Counters) -> Greatest {
     let mut engine = conic::engine(problem);
     let greatest = engine.greatest(base, &problem.varying, f64::INFINITY);

@@ -19,8 +19,7 @@ pub struct Vertices {
 }
 
 impl Vertices {
-    /// Creates the programs with the bounds of the laws. `None` if the scene is too large for dense dictionaries or a
-    /// joint crushes.
+    /// Creates the programs with the bounds of the laws. `None` if the scene is too large or a joint crushes.
     pub fn new(problem: &LimitProblem, systems: &Systems) -> Option<Self> {
         if systems.entries() > LARGEST || problem.joints.iter().any(|joint| joint.strength.block.is_some()) {
             return None;

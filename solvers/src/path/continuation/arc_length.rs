@@ -25,7 +25,6 @@ impl Default for ArcLength {
     }
 }
 
-/// The spherical constraint.
 pub(super) fn sphere(increment: &Increment, psi: f64) -> Constraint {
     let value = increment.motion.hypot(psi * increment.factor);
     let over = |x: f64| if value > 0.0 { x / value } else { 0.0 };

@@ -19,8 +19,7 @@ use voussoir_core::path::{
     LimitPointEnd, LoadStepEnd, PathAnswer, PathObserver, PathProblem, PathSettings, PathState, ProvenPeak, Witness,
 };
 
-/// Number of first events of a chain that are all recorded; later the same number is recorded each time the number of
-/// events grows e-fold.
+/// Number of events of a chain that are recorded first, and then each time their number grows e-fold.
 const RECORDED: u64 = 512;
 
 /// The end of a path.
@@ -77,8 +76,7 @@ impl Unrecorded {
         let dot = |own: &mut dyn Iterator<Item = &f64>, rates: &[f64]| -> f64 {
             own.zip(rates).map(|(own, rate)| own * rate).sum()
         };
-        // // By reciprocity of the blocks: the work of contact forces on the gaps of the load gives the displacement at
-        // the load.
+        // // Reciprocity: the work of contact forces on the gaps of the load gives its displacement.
         let rate = dot(&mut load.wrench.iter().flatten(), &direction.x[forces..])
             + dot(&mut load.gap.iter().flatten(), &direction.x[..forces]);
         let moved = sense * rate * step;
@@ -187,7 +185,6 @@ pub fn follow(problem: &PathProblem, settings: &PathSettings, observer: &mut dyn
     finish(follower, End::Stands, 1.0)
 }
 
-/// Begins a load step.
 fn begin(follower: &mut Follower, load_step: usize) -> Run {
     let trace = &mut follower.trace;
     let present = &trace.problem.load_steps[load_step];
@@ -336,7 +333,6 @@ fn direction(follower: &mut Follower, run: &mut Run) -> Result<(Direction, Optio
     }
 }
 
-/// Returns the answer for an end.
 fn finish(mut follower: Follower, end: End, sense: f64) -> PathAnswer {
     let outcome = match end {
         End::Stands => Outcome::at(Status::Stands, Some(follower.trace.state.factor)),
@@ -351,8 +347,7 @@ fn finish(mut follower: Follower, end: End, sense: f64) -> PathAnswer {
     answer(follower, outcome)
 }
 
-/// Returns the outcome of a direction without an end: a mechanism if λ is constant, otherwise a ray that carries any
-/// load.
+/// Returns the outcome of a direction without an end: a mechanism if λ is constant, otherwise a ray.
 fn ray_outcome(follower: &mut Follower, Ray { direction, load, proof }: &Ray, sense: f64) -> Outcome {
     let trace = &mut follower.trace;
     let (contacts, force_unit) = (trace.system.contacts, trace.system.units.force);

@@ -27,8 +27,7 @@ pub(super) fn is_piecewise_linear(problem: &PathProblem, settings: &PathSettings
     obstacle(problem, settings).is_none()
 }
 
-/// Returns the reason why the path does not consist of linear pieces. It does with small displacements, facet laws and
-/// linear blocks.
+/// Returns the obstacle to linear pieces, which need small displacements, facet laws and linear blocks.
 fn obstacle(problem: &PathProblem, settings: &PathSettings) -> Option<&'static str> {
     if settings.finite {
         return Some("it follows small displacements only; newton_path follows finite ones");

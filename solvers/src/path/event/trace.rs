@@ -1,5 +1,4 @@
-//! The data of a path: the problem in its units, the present state, the factorisation that is used for many events, and
-//! the records.
+//! The data of a path: the problem in its units, the present state, the factorisation for many events, and the records.
 
 use super::energy::{Deformation, work_state};
 use super::joint_chain::{JointChain, Question, by_joint_chain};

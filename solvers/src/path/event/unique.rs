@@ -134,8 +134,7 @@ fn by_signs(system: &System, points: &[Point], all: &DMatrix<f64>, power: &[f64]
     Some(true)
 }
 
-/// Returns rows over the motions that keep the gap rate of a point in the span of some flows; no rows for `None`: the
-/// point is free.
+/// Returns rows over the motions that keep the gap rate of a point in the span of some flows; `None`: a free point.
 fn constraints(system: &System, c: usize, flows: Option<Vec<[f64; 2]>>) -> Vec<Vec<f64>> {
     let Some(flows) = flows else { return Vec::new() };
     let row = |n: [f64; 2]| {

@@ -111,7 +111,6 @@ fn a_balance_adds_up_what_steps_leave() {
     assert_close(second.scale(4.0), 13.0, 1e-14);
 }
 
-/// A new stage begins a new balance.
 #[test]
 fn a_new_stage_begins_a_new_balance() {
     let problem = problem();

@@ -15,7 +15,6 @@ fn no_change_is_no_event() {
     ALL.iter().for_each(|status| assert_eq!(transition(*status, *status), None));
 }
 
-/// Every change is an event.
 #[test]
 fn every_change_is_an_event() {
     for before in ALL {

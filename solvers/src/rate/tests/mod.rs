@@ -22,7 +22,6 @@ use voussoir_core::law::Facet;
 const SLIP: ContactMode = ContactMode::Facet(1);
 const BACK: ContactMode = ContactMode::Facet(2);
 
-/// Dry friction.
 fn dry(friction: f64, dilatancy: f64) -> Vec<Facet> {
     [vec![Facet::opening(0.0)], Facet::friction(friction, 0.0, dilatancy).to_vec()].concat()
 }

@@ -26,12 +26,10 @@ fn some() -> Increment {
     Increment { factor: 0.3, displacement: -0.7, motion: 0.4, dissipation: 0.2, monitored: [0.25, -0.1, 0.0, 0.0] }
 }
 
-/// The entries of an increment.
 fn entries(i: &Increment) -> Vec<f64> {
     [i.factor, i.displacement, i.motion, i.dissipation].into_iter().chain(i.monitored).collect()
 }
 
-/// An increment of entries.
 fn of_entries(e: &[f64]) -> Increment {
     Increment { factor: e[0], displacement: e[1], motion: e[2], dissipation: e[3], monitored: [e[4], e[5], e[6], e[7]] }
 }

@@ -1,5 +1,4 @@
-//! The rate problem over a few points, with one factorisation for many events: the points next to the arrival, or the
-//! whole active set.
+//! The rate problem over a few points, with one factorisation for many events.
 
 use super::continued::{Continued, Next};
 use crate::contact::mode::ContactMode;
@@ -18,8 +17,7 @@ use voussoir_core::path::{Branching, PathProblem};
 
 /// Greatest number of points whose mode differs from the factorised one; with more, the matrix is factorised again.
 const UPDATES: usize = 40;
-/// Greatest number of points whose responses are computed for one rate problem; with more, the matrix is factorised
-/// again.
+/// Greatest number of points with computed responses in one rate problem; with more, it is factorised again.
 const AT_ONCE: usize = 8;
 /// Greatest size of the active set that is solved next to the arrival; larger sets are solved for all points at once.
 pub const MANY: usize = 24;
@@ -71,8 +69,7 @@ fn refresh_for(trace: &mut Trace, open: &[usize], modes: &[ContactMode]) -> bool
         (!factors.refine_columns && refine_columns)
             || factors.responses() > UPDATES.max(2 * open.len())
             || changed(factors) > 2 * UPDATES
-            // // Another part of the solver followed the last events: a factorisation costs less than this number of
-            // responses.
+            // // Other methods solved the last events: a factorisation costs less than this number of responses.
             || changed(factors) > factors.responses() + AT_ONCE
     };
     if !trace.factors.present.as_ref().is_none_or(stale) {
@@ -179,8 +176,7 @@ fn by_newcomers(trace: &mut Trace, load: &Load, active: &[usize], open: &[usize]
     (!new.is_empty()).then_some(Newcomers::Move(new))
 }
 
-/// Returns the refined rates of all unknowns of a solution over the open points and writes their modes into the list of
-/// all modes.
+/// Returns the refined rates of all unknowns of a solution over the open points and stores their modes.
 fn rates_of(
     local: &SchurComplement,
     base: &mut FactorisedModes,
@@ -272,8 +268,7 @@ fn favoured_twin(
     Some(rates.swap_remove(chosen))
 }
 
-/// Refines rates with all equations in the modes found. The responses of single points are not refined, and they cancel
-/// close to a collapse.
+/// Refines rates with all equations in the modes found. Unrefined responses of points cancel close to a collapse.
 fn refined(
     local: &SchurComplement,
     base: &FactorisedModes,

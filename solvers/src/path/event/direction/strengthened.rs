@@ -103,8 +103,7 @@ fn with_strength(system: &System, points: &[Point]) -> System {
     System { facets: system.facets.iter().zip(points).map(strong).collect(), ..system.clone() }
 }
 
-/// Returns a point of the structure with strength before any load. A point without a choice keeps its mode, and an open
-/// one stays open.
+/// Returns a point of the structure with strength before any load. Points without a choice keep their modes.
 fn at_rest(point: &Point) -> Point {
     let opening = if point.open() { f64::INFINITY } else { 0.0 };
     let rests = Point { opening, arrived_from: None, noted: true, ..point.clone() };

@@ -33,7 +33,6 @@ pub struct JointChain {
     updates: Updates,
 }
 
-/// The statics of a load.
 #[derive(Default)]
 struct LoadStatics {
     /// R about the centre of every joint as functions of (X, s).
@@ -396,7 +395,6 @@ fn given(statics: &Matrix3xX<f64>, i: usize, share: &DVector<f64>) -> f64 {
     (0..statics.ncols()).map(|j| statics[(i, j)] * share[j]).sum()
 }
 
-/// Returns one column.
 fn column(columns: &DMatrix<f64>, j: usize) -> &[f64] {
     &columns.as_slice()[columns.nrows() * j..columns.nrows() * (j + 1)]
 }

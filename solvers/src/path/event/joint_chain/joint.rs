@@ -1,5 +1,4 @@
-//! A joint of the chain: its points, and the flexibilities that couple them with each other and with the neighbouring
-//! joints.
+//! A joint of the chain: its points, and the flexibilities that couple them and the neighbouring joints.
 
 use super::sections::{Section, Sections};
 use crate::contact::mode::ContactMode;

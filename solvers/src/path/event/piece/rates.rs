@@ -76,8 +76,7 @@ pub fn leaving(
     Some(changes)
 }
 
-/// Returns the worst residual of rates relative to the forces and gaps, and the residuals of the equations: the rows of
-/// the modes, then equilibrium.
+/// Returns the worst residual of rates relative to the forces and gaps, and all residuals: modes, then equilibrium.
 pub fn residual(system: &System, rates: &Rates, load: &Load, modes: &[ContactMode]) -> (f64, Vec<f64>) {
     let nc = system.contacts;
     let x = &rates.x;

@@ -34,8 +34,7 @@ pub struct Equations {
 type Open<'r> = &'r mut Vec<(usize, f64)>;
 
 impl Equations {
-    /// Creates the equations of linear blocks with small displacements under the growing `load`; `pattern` of the
-    /// joints.
+    /// Creates the equations of linear blocks with small displacements under the growing `load`.
     pub fn linear(system: &System, load: &Load, pattern: Arc<Pattern>) -> Self {
         let (points, last, unit) = (2 * system.contacts, system.size(), system.units.factor);
         let driven = load.gap.as_flattened().iter().chain(load.wrench.as_flattened());

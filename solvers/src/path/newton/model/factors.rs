@@ -19,8 +19,7 @@ pub enum ModeEquations {
 }
 
 impl ModeEquations {
-    /// Returns the unknowns from `first`, the first that is not a force, for right-hand sides that are zero in the rows
-    /// of contact points.
+    /// Returns the unknowns from `first`, after the forces, for right-hand sides that are zero at contact points.
     pub fn motions(&self, first: usize, rights: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
         match self {
             ModeEquations::Chain(factors) => factors.motions(rights),
@@ -65,8 +64,7 @@ pub struct Kept {
     /// Rate of viscous wrenches.
     pub damping: f64,
     pub held: Rc<BorderedFactors<ModeEquations>>,
-    /// Responses to unit right-hand sides of the two rows of contact points, with an unknown held in the control's
-    /// place.
+    /// Responses to unit right-hand sides of the rows of contact points, with an unknown held.
     pub responses: RefCell<BTreeMap<usize, [Vec<f64>; 2]>>,
 }
 

@@ -62,8 +62,7 @@ impl Turn {
     }
 }
 
-/// Frames of contact points in order. The points of a joint have the same rotations, whose sines and cosines are
-/// computed once.
+/// Frames of contact points in order. Sines and cosines of a joint are computed once.
 pub struct Frames<'m> {
     geometry: &'m Geometry<'m>,
     motion: &'m [[f64; 3]],
@@ -73,8 +72,7 @@ pub struct Frames<'m> {
 }
 
 impl Frames<'_> {
-    /// Returns the rotation by an angle, reused if the previous angle is the same; the identity with small
-    /// displacements.
+    /// Returns the rotation by an angle, reused for equal angles; the identity with small displacements.
     fn turn(&mut self, which: usize, angle: f64) -> Matrix2<f64> {
         if self.last[which].0 != angle {
             self.last[which] = (angle, self.geometry.turn(angle));
@@ -159,8 +157,7 @@ impl<'a> Geometry<'a> {
 
     fn displaced(&self, body: usize, point: Vec2, [x, y, _]: [f64; 3], turn: &Turn) -> Vec2 {
         let arm = point - self.problem.bodies[body].pole;
-        // // R a − a without subtraction of numbers of the size of the arm: rounding of gaps is relative to the
-        // motions, not to the scene.
+        // // R a − a without subtraction: rounding of gaps is relative to the motions, not to the scene.
         let swing = if self.finite {
             turned(arm) * turn.rotation[(1, 0)] - arm * (2.0 * turn.half * turn.half)
         } else {
@@ -253,8 +250,7 @@ mod tests {
     use voussoir_core::limit::Counters;
     use voussoir_core::path::PathBody;
 
-    /// Small rotations move points by angle times arm, with rounding relative to that product; large rotations by R a −
-    /// a.
+    /// Small rotations move points by angle times arm, to relative rounding; large rotations by R a − a.
     #[test]
     fn a_small_turn_moves_a_point_to_relative_rounding() {
         let body = PathBody {

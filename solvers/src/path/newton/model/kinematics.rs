@@ -92,8 +92,7 @@ fn both(add: &mut impl FnMut(usize, usize, f64), i: usize, j: usize, value: f64)
     add(j, i, value);
 }
 
-/// Returns the derivatives of e·(x⁺ − x⁻) by the motions of plus and minus, whose columns begin `at`; e turns with a
-/// share β.
+/// Returns the derivatives of e·(x⁺ − x⁻) by both motions, whose columns begin `at`; e turns with a share β.
 fn by_motion(frame: &Frame, at: [usize; 2], e: Vec2, share: f64, finite: bool) -> [(usize, f64); 6] {
     let turning = if finite { turned(e).dot(&frame.jump) } else { 0.0 };
     let [plus, minus] = [(1.0, share), (-1.0, 1.0 - share)];

@@ -27,8 +27,7 @@ pub struct Iterations {
 pub struct Limits {
     /// True if rates depend on the history: points that yield have other tangents than points that unload.
     pub remembers: bool,
-    /// True if equations and factors of a state may be used at nearby states: chains of elastic blocks with laws of
-    /// facets.
+    /// True if equations and factors of a state may be used at nearby states: elastic chains with facets.
     pub nearby: bool,
     /// True if one piece may carry any load.
     pub carries_any_load: bool,
@@ -37,8 +36,7 @@ pub struct Limits {
     pub rounding: f64,
     /// Distance from the predictor, relative to the step, beyond which a state is on another branch of a law.
     pub branch: f64,
-    /// Size to which rounding of positions is relative \[m\]; zero with small displacements, which round by their own
-    /// size.
+    /// Size to which rounding of positions is relative \[m\]; zero with small displacements.
     pub place: f64,
     /// Accuracy of positions in Newton's method, relative to the displacements.
     pub position: f64,

@@ -162,8 +162,7 @@ impl<'a> StepSystem<'a> {
         self.problem.load_size(self.loads.growing) == 0.0
     }
 
-    /// Sets forces and a factor within rounding of the loads to zero, with small displacements. Forces of bonds are not
-    /// changed.
+    /// With small displacements, sets forces and a factor within rounding to zero. Forces of bonds stay.
     pub fn drop_rounding(&self, state: &mut State) {
         let (u, start) = (self.scaled.units, self.loads.start);
         let largest = state.force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));

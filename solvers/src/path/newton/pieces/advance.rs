@@ -255,8 +255,7 @@ fn locate(step: &mut Step, mut low: Trial, mut high: Trial) -> Advance {
             high = middle;
             continue;
         }
-        // // A monitor that stays at zero is violated beyond a corner of the path: only the bracket gives the position
-        // of the corner.
+        // // A monitor that stays at zero is violated beyond a corner of the path: only the bracket locates it.
         let arrives = |i: usize| {
             let here = &middle.readings[i];
             let falls =
@@ -269,8 +268,7 @@ fn locate(step: &mut Step, mut low: Trial, mut high: Trial) -> Advance {
             return ended(low, &high);
         }
     }
-    // // Slacks and openings are continuous along a path: if one jumps over the bracket, the states beyond are on
-    // another branch.
+    // // Slacks and openings are continuous along a path: a jump over the bracket leads to another branch.
     let jumps = |(a, b): (&Reading, &Reading)| a.rate.is_some() && !a.is_active() && b.is_violated();
     let far = SETTINGS.cancels * (high.end.length - low.end.length) + length_ahead(step.system, step.start);
     match step.distance(&low, &high) > far || low.readings.iter().zip(&high.readings).any(jumps) {
@@ -343,8 +341,7 @@ fn cubic_root(of: [f64; 4]) -> Option<f64> {
     Some(0.5 * (low + high))
 }
 
-/// Returns the share of a step at which a monitor that is positive at both ends may be negative, or the factor may turn
-/// if that is `watched`.
+/// Returns the share of a step at which a monitor positive at both ends may be negative, or a `watched` factor turn.
 fn hidden_root(low: &Trial, high: &Trial, watched: bool) -> Option<f64> {
     let width = high.end.length;
     let hidden = |(a, b): (&Reading, &Reading)| {

@@ -9,8 +9,7 @@ use crate::path::newton::model::state::{State, Tangent, moved};
 use crate::path::newton::model::system::StepSystem;
 use crate::path::newton::quantities::inelastic::update_blocks;
 
-/// Returns the length along a rate, up to `most`, at which the first point of a block begins or ceases to yield. `None`
-/// if no point does.
+/// Returns the length along a rate, up to `most`, at which a point of a block first begins or ceases to yield.
 pub(super) fn corner(system: &mut StepSystem, state: &State, rate: &Tangent, most: f64) -> Option<f64> {
     let mut yielding = |length: f64| -> Option<Vec<usize>> {
         let mut there = moved(state, rate, length);

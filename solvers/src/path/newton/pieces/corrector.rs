@@ -21,8 +21,7 @@ use crate::settings::SETTINGS;
 /// Number of iterations after which a shorter step is cheaper.
 const MOST: u32 = 12;
 
-/// Computes the state on the piece that starts at `start`, from a guess with its modes. Returns `None` if the
-/// iterations do not converge.
+/// Computes the state on the piece that starts at `start`, from a guess with its modes. `None` without convergence.
 pub(super) fn correct(system: &mut StepSystem, start: &State, guess: State, control: &Control) -> Option<State> {
     let first = first_state(system, start, guess, control);
     let (mut state, mut gradient) = first.map_err(|why| system.report.failure = Some(why)).ok()?;

@@ -42,7 +42,6 @@ const ACROSS: [f64; 4] = [1e-4, 1e-3, 1e-5, 1e-6];
 /// Greatest number of successive pieces of almost zero length.
 const MOST_SHORT_PIECES: u32 = 50;
 
-/// The ending of the load step if a step ends it.
 type Ending = Option<LoadStepEnding>;
 
 /// A load step that is followed.
@@ -126,8 +125,7 @@ fn greatest_step(tracer: &Tracer) -> f64 {
     let u = tracer.system.units();
     let most = match tracer.in_force.strategy.largest_step() {
         step if step.is_finite() => step,
-        // // The flow of friction turns with the blocks: its error accumulates over a path, and the error of one step
-        // does not show it.
+        // // The flow of friction turns with the blocks: its error accumulates over the steps of a path.
         _ => SETTINGS.largest_finite_step,
     };
     most * u.length / u.displacement
@@ -231,8 +229,7 @@ impl<'d> Run<'d> {
             return self.go_on(tracer, found, modes, None);
         }
         if tracer.system.limits.remembers && !self.crowded() {
-            // // The rate of an event may be rounding if many points are at their bounds: the piece of the arrival
-            // continues the path.
+            // // The rate of an event may be rounding if many points are at their bounds: the arrival continues.
             let arrival = self.cluster.arrival.as_ref().map(|(modes, piece, _)| (modes.clone(), piece.clone()));
             let own = (tracer.state.mode.clone(), self.piece.clone());
             for (modes, piece) in std::iter::once(own).chain(arrival) {
@@ -247,8 +244,7 @@ impl<'d> Run<'d> {
         Some(end_path(tracer, Status::Stalled, why))
     }
 
-    /// Returns the rate that continues from a state at which blocks or bonds begin to yield and the piece has no
-    /// further states.
+    /// Returns the rate that continues if the piece ends because blocks or bonds begin to yield.
     fn around_corner(&mut self, tracer: &mut Tracer) -> Option<LoadingRate> {
         if !tracer.system.limits.remembers || self.crowded() {
             return None;
@@ -385,8 +381,7 @@ impl<'d> Run<'d> {
     fn turn(&mut self, tracer: &mut Tracer, end: StepEnd) -> Option<LoadStepEnding> {
         let was = self.rises;
         let length = end.length;
-        // // At the turn other rates may be singular too, such as the tilt of a softening block. The chord is not
-        // singular.
+        // // At the turn other rates may be singular too, such as the tilt of a softening block; the chord is not.
         let chord = (length > SETTINGS.distinct() * self.length.first).then(|| chord(&tracer.state, &end.state));
         if let Err(ending) = self.take(tracer, end) {
             return ending;
@@ -420,8 +415,7 @@ impl<'d> Run<'d> {
         self.after(tracer)
     }
 
-    /// Removes the last limit point if the load has been constant since then and rises again: a mechanism may have
-    /// closed a gap.
+    /// Removes the last limit point if the load has been constant since then: a mechanism may have closed a gap.
     fn forget_still_peak(&self, tracer: &mut Tracer) {
         let own = |peak: &&ProvenPeak| peak.load_step == tracer.in_force.load_step;
         let Some(last) = tracer.limit.proven_peaks.last().filter(own) else { return };
@@ -548,8 +542,7 @@ impl<'d> Run<'d> {
     fn event(&mut self, tracer: &mut Tracer, mut end: StepEnd, hits: Vec<Monitor>) -> Option<LoadStepEnding> {
         tracer.system.count("events", 1);
         if hits.iter().any(|hit| matches!(hit.what, What::Branch(_))) {
-            // // Next to the end of a branch a tangent by differences mixes both sides, so that its rate does not
-            // describe any change.
+            // // Next to the end of a branch a tangent by differences mixes both sides: its rate is unusable.
             end.unexplained = 0.0;
         }
         let moved = end.length > 1e-9 * self.length.first;

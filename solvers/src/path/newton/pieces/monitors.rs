@@ -71,8 +71,7 @@ impl Reading {
         self.value < -self.tolerance
     }
 
-    /// Returns true if the mode is at its end: points of a symmetric scene end their modes within the rounding of its
-    /// mesh.
+    /// Returns true if the mode is at its end: symmetric points end theirs within the rounding of a mesh.
     pub fn is_active(&self) -> bool {
         let share = if self.rate.is_some() { SETTINGS.together } else { 1.0 };
         self.value <= share * self.tolerance

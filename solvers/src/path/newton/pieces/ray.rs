@@ -8,8 +8,7 @@ use crate::path::newton::tracing::tracer::{LoadStepEnding, Tracer, end_path};
 use crate::settings::SETTINGS;
 use voussoir_core::limit::Status;
 
-/// Returns the ending of a path on which the load grows without bound along a piece with small displacements, if it
-/// does.
+/// Returns the ending of a path on which the load grows without bound along a piece, if it does.
 pub(super) fn ray(tracer: &mut Tracer, piece: &Piece, direction: f64) -> Option<LoadStepEnding> {
     let (u, rate) = (tracer.system.units(), &piece.tangent);
     if !tracer.system.limits.carries_any_load {

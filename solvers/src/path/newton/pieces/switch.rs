@@ -28,8 +28,7 @@ pub(super) enum NextPiece {
         /// If it is not decided that no rate has a growing factor: the reason.
         open: Option<String>,
     },
-    /// No continuation: the reason, true if no rate has a growing factor, and true if it is proved that no rate
-    /// continues.
+    /// No continuation: the reason, if no rate has a growing factor, and if it is proved that none continues.
     Nothing { why: String, none_rises: bool, proved: bool },
 }
 
@@ -79,8 +78,7 @@ fn add_entering(
     }
 }
 
-/// Returns the rate with some modes, in the sense in which points with changed modes enter them. `None` if there is
-/// none.
+/// Returns the rate with some modes, in the sense in which points enter them. `None` if there is none.
 fn entering_rate(
     system: &mut StepSystem,
     state: &State,

@@ -6,8 +6,7 @@ use crate::path::newton::model::state::{State, Tangent, moved};
 use crate::path::newton::model::system::StepSystem;
 use crate::settings::SETTINGS;
 
-/// Returns the length along a rate of size 1 at which the tangents of a state are computed: beyond the rounding of its
-/// motions.
+/// Returns the length along a rate of size 1 for the tangents of a state: beyond the rounding of its motions.
 pub fn length_ahead(system: &StepSystem, state: &State) -> f64 {
     SETTINGS.distinct() * (fastest(system, &state.motion) / system.units().displacement).max(1.0)
 }

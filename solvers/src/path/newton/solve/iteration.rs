@@ -97,8 +97,7 @@ pub fn iterate(
     Err("the modes of contact points keep changing".into())
 }
 
-/// The state at which the equations of an iteration are linearised. They are reused at nearby states as long as they
-/// reduce residuals.
+/// The state at which the equations of an iteration are linearised. They are reused nearby while residuals fall.
 pub struct LinearisedAt {
     /// That state; `None` if the equations are always those of the present state.
     place: Option<State>,

@@ -189,8 +189,7 @@ fn modes_of(system: &StepSystem, active: &ActiveSet, modes: Vec<ContactMode>) ->
     all
 }
 
-/// Returns the points that may change their modes: points with a facet without slack or at the tip of opening, and
-/// points that close.
+/// Returns the points that may change their modes: without slack, at the tip of opening, or closing.
 pub fn active_set(system: &StepSystem, state: &State, closing: &[usize]) -> ActiveSet {
     let mut active = ActiveSet { contacts: Vec::new(), facets: Vec::new(), modes: state.mode.clone() };
     let largest = largest_force(state);

@@ -28,7 +28,6 @@ pub fn second_order_work(system: &mut StepSystem, state: &State) -> Option<Secon
     work_by_responses(motions, |wrenches| images(&held, wrenches, first, system.size()))
 }
 
-/// Returns the equations with the factor held.
 fn held_factor(system: &mut StepSystem, state: &State) -> Option<BorderedSystem<ModeEquations>> {
     let equations = system.equations(state);
     let mut row = vec![0.0; system.size()];

@@ -62,8 +62,7 @@ pub fn wanted_modes(system: &mut StepSystem, start: &State, state: &State) -> (V
         .map(|c| match system.law(c) {
             None => ContactMode::Stick,
             Some(law) => {
-                // // In a solution any ρ > 0 gives the same modes, except one so large that rounding of a gap becomes a
-                // force.
+                // // In a solution any ρ > 0 gives the same modes, unless rounding of a gap becomes a force.
                 let stiffness = system.stiffness(c);
                 let noise = rounding * stiffness[0].max(stiffness[1]);
                 let rho = stiffness.map(|k| k * (SETTINGS.mode * largest / noise).min(1.0));

@@ -117,8 +117,7 @@ fn an_observer_stops_the_path() {
     assert_eq!(answer.status, Status::Stalled, "{:?}", answer.notes);
 }
 
-/// The solver refuses a scene without loads, a scene that does not deform, and a monitor of a joint that does not
-/// exist.
+/// The solver refuses a scene without loads, a scene that does not deform, and a monitor of an absent joint.
 #[test]
 fn what_the_solver_refuses() {
     let problem = block(0.3, pushed_at(0.1));

@@ -92,8 +92,7 @@ fn left_its_pairing(tracer: &Tracer, state: &State, beyond: f64) -> Option<(bool
     Some(lost_joint(tracer, c, gap[1]))
 }
 
-/// Returns true if the blocks have come apart at a contact point that has slipped to the limit of its pairing, with a
-/// note.
+/// Returns true, with a note, if the blocks have come apart at a point at the limit of its pairing.
 pub fn lost_joint(tracer: &Tracer, contact: &Contact, slip: f64) -> (bool, String) {
     let (apart, why) = match contact.sliding.corners {
         [low, high] if low != high => (true, "it has lost half of its height"),

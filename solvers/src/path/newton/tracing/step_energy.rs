@@ -1,5 +1,4 @@
-//! Checks the length of a step by its energy: work is integrated by the trapezoidal rule; the stored energy is a
-//! function of the state.
+//! Checks the length of a step by its energy balance: work is integrated by the trapezoidal rule.
 
 use super::tracer::{Tracer, foreseen};
 use crate::path::newton::model::state::State;
