@@ -1,10 +1,10 @@
-//! The answer to a rate problem: the rate along which a path goes on, or a proof that none does, or open.
+//! The answer to a rate problem: the rate that continues a path, a proof that no rate does, or undecided.
 //!
 //! The order of the search is fixed, and one rule ([`choice`](super::choice)) chooses among several rates:
 //!
 //! 1. rates in the cells next to the arrival ([`neighbours`](super::neighbours));
-//! 2. on a path that does not fall, if none of them rises, all rates with λ̇ > 0. If there is one, the path goes on with
-//!    it, since the structure is in equilibrium under a growing load. A limit point needs a proof that no such rate exists;
+//! 2. on a path that does not fall, if none of them rises, all rates with λ̇ > 0. If there is one, it continues the
+//!    path, since the structure is in equilibrium under a growing load. A limit point needs a proof that no such rate exists;
 //! 3. if none rises, all rates with λ̇ = 0 on which the load does work; if neither such a rate nor a neighbour continues, all
 //!    with λ̇ < 0. A neighbour with λ̇ = 0 on which the load does negative work continues the path if a point of the event
 //!    enters a new mode: other loads drive it.
@@ -95,8 +95,8 @@ pub fn answer(problem: &RateProblem, arrival: &Arrival, budget: &Budget, counts:
     RateAnswer { continuation, none_rises: found.none_rises.map(proof) }
 }
 
-/// The answer if it needs neither a proof nor a choice: the only rate in the cells next to the arrival along which the
-/// path goes on, rising if it does not fall.
+/// Returns the only rate in the cells next to the arrival that continues the path, if it needs neither a proof nor a
+/// choice; it rises if the path does not fall.
 pub fn only_neighbour(problem: &RateProblem, arrival: &Arrival, budget: &Budget, trials: &mut u64) -> Neighbour {
     let (rates, complete) = neighbours(problem, arrival, budget.combinations, trials);
     let goes_on = |rate: &Rate| {

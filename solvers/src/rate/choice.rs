@@ -1,6 +1,6 @@
 //! The one rule that chooses if several rates continue.
 //!
-//! 1. The present modes, if they go on and are stable under control.
+//! 1. The present modes, if they continue and are stable under control.
 //! 2. Otherwise the rate with the greatest dissipation per unit step, if any dissipates.
 //! 3. Otherwise the rate with the least second-order energy per unit step.
 //!
@@ -29,7 +29,7 @@ pub fn choose(problem: &RateProblem, arrival: &Arrival, rates: Vec<Rate>) -> Opt
     if let Some(rate) = present.iter().find_map(goes_on) {
         return Some((rate.clone(), Vec::new()));
     }
-    // The present modes are unstable: another rate leads on, if there is one.
+    // // The present modes are unstable: another rate continues, if there is one.
     let (own, others): (Vec<Rate>, Vec<Rate>) = rates.into_iter().partition(|rate| present.contains(&rate.modes));
     let rates = if others.is_empty() { own } else { others };
     let dissipation: Vec<f64> = rates.iter().map(|rate| dissipation_share(problem, arrival, rate)).collect();

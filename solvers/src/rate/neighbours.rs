@@ -12,8 +12,8 @@ use crate::settings::SETTINGS;
 /// Rounds of the active set in which all points may change at once.
 const ROUNDS: usize = 12;
 
-/// The modes in which the path goes on by itself: the modes of the arrival, with each point of the event in the mode that
-/// mends its violation there.
+/// The modes in which the path continues without a choice: the modes of the arrival, with each point of the event in
+/// the mode that repairs its violation there.
 pub fn forward_modes(problem: &RateProblem, arrival: &Arrival) -> Vec<ContactMode> {
     let mut modes = arrival.modes();
     let hit = |k: usize| arrival.points[k].hit;

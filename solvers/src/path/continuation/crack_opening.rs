@@ -27,7 +27,7 @@ pub struct CrackOpening {
 }
 
 impl CrackOpening {
-    /// Of a joint, with all else by default.
+    /// Creates the strategy for a joint, with defaults.
     pub fn of(joint: usize) -> Self {
         CrackOpening {
             joint,

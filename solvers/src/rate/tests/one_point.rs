@@ -97,7 +97,7 @@ fn a_slipping_point_comes_to_rest() {
     assert_eq!((rate.factor, rate.modes), (1.0, vec![ContactMode::Stick]));
 }
 
-/// The present modes of a point that is no point of the event go on.
+/// A point that is not in the event keeps its present modes.
 #[test]
 fn present_modes_go_on() {
     let laws = dry(0.5, 0.0);
@@ -117,7 +117,7 @@ fn a_falling_path_does_not_go_back() {
     assert_eq!((rate.factor, rate.modes), (-1.0, vec![SLIP]));
 }
 
-/// A rate without any active point goes on in the sense of the arrival.
+/// A rate without any active point continues in the sense of the arrival.
 #[test]
 fn nothing_active_goes_on_in_the_same_sense() {
     let rising = Case::new(&[], &[], &[], &[]);
@@ -125,7 +125,7 @@ fn nothing_active_goes_on_in_the_same_sense() {
     assert_eq!(rising.falling().goes().0.factor, -1.0);
 }
 
-/// A support moves a determinate structure at constant forces: λ goes on, that is no mechanism.
+/// A support moves a determinate structure at constant forces: λ continues, so this is not a mechanism.
 #[test]
 fn a_moving_support_at_constant_forces_goes_on() {
     let laws = dry(0.5, 0.0);

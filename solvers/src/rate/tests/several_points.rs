@@ -7,7 +7,7 @@ fn pair(cross: f64) -> Vec<f64> {
     tangential(2, 0.0, |i, j| if i == j { 1.0 } else { cross })
 }
 
-/// Two points of a symmetric structure are hit at once; the symmetric mode is stable and goes on.
+/// An event contains two points of a symmetric structure; the symmetric mode is stable and continues.
 #[test]
 fn a_stable_symmetric_mode_goes_on() {
     let laws = dry(0.5, 0.0);

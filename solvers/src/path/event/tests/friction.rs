@@ -100,7 +100,7 @@ fn the_displacement_with_one_corner_slipping() {
     assert_close(answer.state.displacement, right, 1e-12 * right);
 }
 
-/// After the load is taken away, the corner that slipped keeps a force: t = μ (W/2 − λ h) − λ/2, the other one the opposite.
+/// After unloading, the corner that slipped keeps a force: t = μ (W/2 − λ h) − λ/2, the other one the opposite.
 #[test]
 fn a_slip_leaves_forces_behind() {
     let (height, factor) = (0.4, 0.28);
@@ -124,7 +124,7 @@ fn a_falling_load_slides_the_block_back() {
     assert_close(answer.factor.expect("a factor"), -FRICTION, 1e-12);
 }
 
-/// A second stage goes on from the first: pushed by λ₁, the block slides at λ₂ = μ W − λ₁.
+/// A second stage continues from the first: pushed by λ₁, the block slides at λ₂ = μ W − λ₁.
 #[test]
 fn stages_of_the_same_load_add_up() {
     let mut problem = block(FRICTION, pushed_at(0.1));

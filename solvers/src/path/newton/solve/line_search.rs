@@ -1,6 +1,6 @@
-//! Line search: how much of an iteration of Newton's method is taken.
+//! Line search: the accepted step length of an iteration of Newton's method.
 //!
-//! The equations of a step are one semismooth system F(x) = 0 in x = (r, q, λ), whatever the modes,
+//! The equations of a step are one semismooth system F(x) = 0 in x = (r, q, λ), for all modes,
 //!
 //! ```text
 //! facets     F_c = r − P(z),   z = r − ρ Δg,   P the return to the polygon along ρ d (see `law`)
@@ -9,18 +9,18 @@
 //! ```
 //!
 //! in the units of the unknowns (Alart & Curnier 1991; the natural map of the complementarity conditions: Facchinei &
-//! Pang 2003, section 1.5). F is linear in every combination of modes, up to large rotations, and the equations of
-//! the modes of z are those of F + F'Δx = 0 row by row recombined: with all modes those of z the step Δx of `iterate`
-//! is Newton's for F, and the merit Ψ = ½‖F‖² has the slope Ψ' = −‖F‖² along it. Where the whole step
-//! does not lower Ψ it is halved until
+//! Pang 2003, section 1.5). F is linear in every combination of modes, up to large rotations. The equations of the
+//! modes of z are linear combinations of the rows of F + F'Δx = 0. With all modes those of z, the step Δx of `iterate`
+//! is therefore Newton's step for F, and the merit Ψ = ½‖F‖² has the slope Ψ' = −‖F‖² along it. If the full step does
+//! not lower Ψ, it is halved until
 //!
 //! ```text
 //! ‖F(x + t Δx)‖ ≤ (1 − σ t) max ‖F‖ of the last m iterations
 //! ```
 //!
 //! ([`optimise::line_search`](crate::optimise::line_search); frictional contact: Christensen, Klarbring, Pang &
-//! Strömberg 1998, Int. J. Numer. Meth. Engng 42, 145-173). A line search finds local minima of Ψ: what it ends in
-//! counts only if F = 0 there, by the test of `iterate`.
+//! Strömberg 1998, Int. J. Numer. Meth. Engng 42, 145-173). A line search finds local minima of Ψ; a minimum is a
+//! solution only if F = 0, by the test of `iterate`.
 
 use super::linearised::residual_of;
 use super::tangent::apply_step;

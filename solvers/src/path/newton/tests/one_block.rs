@@ -60,7 +60,7 @@ fn load_control_ends_at_the_limit_point() {
     assert!((answer.factor.expect("a factor") - tipping(0.8)).abs() < 1e-10, "{:?}", answer.factor);
 }
 
-/// A stage that asks for more than the limit point ends there.
+/// A stage with a target above the limit point ends there.
 #[test]
 fn a_stage_with_a_factor_ends_at_its_limit_point() {
     let mut problem = block(0.9, pushed_at(0.8));
@@ -70,7 +70,7 @@ fn a_stage_with_a_factor_ends_at_its_limit_point() {
     assert!((answer.factor.expect("a factor") - tipping(0.8)).abs() < 1e-10, "{:?}", answer.factor);
 }
 
-/// A stage that asks for less stands at its factor.
+/// A stage with a target below the limit point stands at its factor.
 #[test]
 fn a_stage_below_the_limit_point_stands() {
     let mut problem = block(0.9, pushed_at(0.8));

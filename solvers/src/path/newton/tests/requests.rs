@@ -88,7 +88,7 @@ fn cohesion_adds_to_friction_with_finite_displacements() {
     assert_close(answer.factor.expect("a factor"), 0.4, 1e-9);
 }
 
-/// A second stage goes on from the first: pushed by λ₁, the block slides at λ₂ = μ W − λ₁.
+/// A second stage continues from the first: pushed by λ₁, the block slides at λ₂ = μ W − λ₁.
 #[test]
 fn stages_of_the_same_load_add_up_with_finite_displacements() {
     let mut problem = block(0.3, pushed_at(0.1));
@@ -99,7 +99,7 @@ fn stages_of_the_same_load_add_up_with_finite_displacements() {
     assert_close(answer.factor.expect("a factor"), 0.1, 1e-9);
 }
 
-/// A stage that asks for more than its limit point ends there, and later stages are not computed.
+/// A stage with a target above its limit point ends there, and later stages are not computed.
 #[test]
 fn stages_after_a_limit_point_are_not_computed() {
     let mut problem = block(0.9, pushed_at(0.8));
