@@ -229,7 +229,7 @@ impl DrivenPoint {
                 .iter()
                 .zip(start)
                 .map(|(control, from)| {
-                    // // The end of a step is reached exactly, without rounding.
+                    // The end of a step is reached exactly, without rounding.
                     let between = |target: f64| if to == 1.0 { target } else { from + to * (target - from) };
                     match control {
                         Control::Strain(target) => Control::Strain(between(*target)),
@@ -304,7 +304,7 @@ impl DrivenPoint {
             }
         }
         let free: Vec<usize> = (0..controls.len()).filter(|&i| matches!(controls[i], Control::Stress(_))).collect();
-        // // The predictor applies the change of the given strains to the free ones.
+        // The predictor applies the change of the given strains to the free ones.
         let change: [f64; COMPONENTS] = std::array::from_fn(|i| strain[i] - self.response.strain[i]);
         let mut right = residual(controls, &self.response);
         for &i in &free {

@@ -49,7 +49,7 @@ impl YieldPolygon {
                 }
             }
         }
-        // // At corners with opening, opening covers as much of the gap as possible.
+        // At corners with opening, opening covers as much of the gap as possible.
         for (_, pairs) in &mut corners {
             let opening = |p: &[usize; 2]| p.iter().any(|&i| facets[i].mode == FacetMode::Opening);
             if pairs.iter().any(opening) {

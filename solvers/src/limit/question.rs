@@ -45,7 +45,7 @@ pub fn answer_by(problem: &LimitProblem, question: LimitQuestion, engine: &mut d
         answer.counters = engine.counters();
         return answer;
     }
-    // // Without loads zero forces are a field; a solver would divide by a zero scale.
+    // Without loads zero forces are a field; a solver would divide by a zero scale.
     let idle = problem.magnitude(&base) == 0.0;
     let nothing = || Equilibrium::Field(vec![JointForce::default(); problem.joints.len()]);
     let carries = |engine: &mut dyn Engine| if grows { engine.carried(&base) } else { engine.admissible(&base) };
@@ -57,7 +57,7 @@ pub fn answer_by(problem: &LimitProblem, question: LimitQuestion, engine: &mut d
             if matches!(question, LimitQuestion::Collapse { .. }) {
                 collapse(problem, engine, &base, start, max, &mut answer);
             }
-            // // The field shown at the start is the field furthest from all bounds.
+            // The field shown at the start is the field furthest from all bounds.
             if grows
                 && !idle
                 && answer.field_factor == start
@@ -107,7 +107,7 @@ fn carried(
 ) {
     match greatest {
         Greatest::Collapse { factor, field, motion, unique } => {
-            // // A factor within rounding of zero is zero.
+            // A factor within rounding of zero is zero.
             let dead = problem.magnitude(base);
             let unit = if dead > 0.0 { dead / problem.magnitude(&problem.varying) } else { 1.0 };
             let factor = if factor.abs() < SETTINGS.zero * unit { 0.0 } else { factor };
@@ -164,7 +164,7 @@ fn refuted(problem: &LimitProblem, engine: &mut dyn Engine, base: &Wrenches, sta
         "equilibrium is impossible at the factor {start} at which the stage begins; it is possible only for factors from {:.9} to {:.9}: do not read either end as safe",
         interval[0], interval[1]
     ));
-    // // The motion at the near end of the interval also refutes the base load, and is the most useful one to show.
+    // The motion at the near end of the interval also refutes the base load, and is the most useful one to show.
     let near = if interval[0] > start { lower } else { upper };
     if let Greatest::Collapse { motion, unique, .. } = near {
         answer.motion = Some(motion);

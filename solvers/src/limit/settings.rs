@@ -179,7 +179,7 @@ impl LimitSettings {
             }
             k += 1;
         }
-        // // Each value is less than the next one.
+        // Each value is less than the next one.
         let ordered = [
             ("exhausted", self.exhausted, self.rounding),
             ("rounding", self.rounding, self.admissible),

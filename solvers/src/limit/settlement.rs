@@ -47,7 +47,7 @@ fn settled(
     if systems.entries() > LARGEST {
         return Err(format!("the scene is too large for settlements of rigid blocks ({} entries)", systems.entries()));
     }
-    // // Openings over the force variables, scaled by the greatest opening.
+    // Openings over the force variables, scaled by the greatest opening.
     let unit = openings.iter().flatten().fold(0.0, |a: f64, g| a.max(g.abs()));
     let mut driven = vec![0.0; systems.forces];
     for (opening, &(first, count)) in openings.iter().zip(&systems.variables.joints) {
@@ -70,7 +70,7 @@ fn settled(
     let state = own_flow(&systems, &driven)
         .and_then(|force| follows(&fictitious(&systems, &force), &driven, unit, &force, FlowRule::NonAssociated));
     match state {
-        // // If no state with the laws' own flow is found, flow is associated; the answer reports it.
+        // If no state with the laws' own flow is found, flow is associated; the answer reports it.
         Err(why) if flow == FlowRule::NonAssociated => {
             let force = field(&systems, &driven)?.ok_or(why)?;
             follows(&systems, &driven, unit, &force, FlowRule::Associated)
@@ -95,7 +95,7 @@ fn follows(
     Ok(SettlementAnswer::Follows {
         field: systems.variables.joint_forces(force, systems.force),
         motion: motion.chunks_exact(3).map(of).collect(),
-        // // Unique among the motions of this field; other fields may have others.
+        // Unique among the motions of this field; other fields may have others.
         unique: unique.filter(|unique| flow == FlowRule::Associated || !unique),
         flow,
     })
@@ -126,7 +126,7 @@ fn own_flow(systems: &Systems, driven: &[f64]) -> Result<Vec<f64>, String> {
     for step in 0..PROGRAMS {
         let program = fictitious(systems, &reference);
         let Ok(Some(force)) = field(&program, driven) else {
-            // // The forces may violate the strengths so much that no field carries the loads in the next program.
+            // The forces may violate the strengths so much that no field carries the loads in the next program.
             reference.iter_mut().zip(&start).for_each(|(old, own)| *old += 0.5 * (own - *old));
             continue;
         };
@@ -200,7 +200,7 @@ fn field(systems: &Systems, driven: &[f64]) -> Result<Option<Vec<f64>>, String> 
     if !finished {
         return Err("the program of the field took too many pivots".into());
     }
-    // // The forces for these slacks and this work.
+    // The forces for these slacks and this work.
     let height = systems.equilibrium.len() + pairs + 1;
     let mut matrix = DMatrix::zeros(height, free);
     let mut values = DVector::zeros(height);
@@ -235,7 +235,7 @@ fn ray(systems: &Systems, driven: &[f64]) -> Result<Option<Vec<f64>>, String> {
     if program.feasible() != Feasibility::Point {
         return Ok(None);
     }
-    // // The least sum of slacks selects one vertex with few forces.
+    // The least sum of slacks selects one vertex with few forces.
     let slacks: Vec<(usize, f64)> = (0..pairs).map(|i| (i, 1.0)).collect();
     program.minimise(&slacks, PIVOTS);
     let mut matrix = DMatrix::zeros(systems.equilibrium.len() + pairs + 1, free);
@@ -258,7 +258,7 @@ fn least_squares(matrix: DMatrix<f64>, right: &DVector<f64>, what: &str) -> Resu
     if columns == 0 {
         return Ok(Vec::new());
     }
-    // // Rows of zeros give at least as many rows as columns.
+    // Rows of zeros give at least as many rows as columns.
     let high = matrix.clone().resize_vertically(rows.max(columns), 0.0);
     let tall = right.clone().resize_vertically(rows.max(columns), 0.0);
     let svd = high

@@ -52,9 +52,9 @@ pub(super) fn zone_by<'a>(
 
 /// The greatest s M / (N h) of a joint over all admissible fields.
 fn greatest_ratio(engine: &mut dyn Engine, loads: &Wrenches, joint: usize, sense: f64) -> Option<f64> {
-    // // N_0 or N_1; its greatest value is positive if the joint can be in compression.
+    // N_0 or N_1; its greatest value is positive if the joint can be in compression.
     let (mut ratio, mut reached) = (-0.5, false);
-    // // Five iterations are usual.
+    // Five iterations are usual.
     for _ in 0..50 {
         let form = [-sense / 2.0 - ratio, sense / 2.0 - ratio, 0.0];
         let force = match engine.extreme(loads, joint, form) {
@@ -62,7 +62,7 @@ fn greatest_ratio(engine: &mut dyn Engine, loads: &Wrenches, joint: usize, sense
             Extreme::Failed => return None,
         };
         let next = ratio_of(force, sense)?;
-        // // A ray reaches its ratio only in the limit: all fields may have lower ratios.
+        // A ray reaches its ratio only in the limit: all fields may have lower ratios.
         if reached && next <= ratio + SETTINGS.balanced {
             return Some(next.max(ratio));
         }

@@ -146,7 +146,7 @@ impl BlockMatrix {
             let (x, y) = c.as_slice()[2 * slot * slots..][..2 * slots].split_at(slots);
             let target = &mut block[2 * (point - pattern.start[b]) * height..][..2 * height];
             let (normal, tangent) = target.split_at_mut(height);
-            // // Written out for speed: the compiler does not inline closures over pairs here.
+            // Written out for speed: the compiler does not inline closures over pairs here.
             let [n00, n10, n01, n11] = [n[(0, 0)], n[(1, 0)], n[(0, 1)], n[(1, 1)]];
             for (point, slot, m) in rows {
                 let (k, s) = (2 * point - own.start, 2 * slot);

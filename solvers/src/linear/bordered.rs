@@ -148,7 +148,7 @@ impl<E: Factorised> BorderedSystem<E> {
     /// Returns the residual of all rows for a right-hand side, and the greatest backward error of a row.
     pub fn left(&self, right: &[f64], x: &[f64]) -> (Vec<f64>, f64) {
         let Some((control, _)) = &self.border else { return self.held.equations.errors(right, x) };
-        // // The last row is the control, not the row of the held unknown.
+        // The last row is the control, not the row of the held unknown.
         let last = right.len() - 1;
         let mut above = right.to_vec();
         above[last] = self.held.equations.last_row_dot(x);

@@ -254,7 +254,7 @@ impl FrontRows for Equations {
         if weights == [0.0; 2] {
             return;
         }
-        // // All unknowns of a group have the same rank.
+        // All unknowns of a group have the same rank.
         let pattern = self.above.gaps.forces.pattern();
         pattern
             .beside(pattern.group(i / 2))

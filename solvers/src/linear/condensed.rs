@@ -183,7 +183,7 @@ impl Condensed {
         let mut columns: Vec<usize> = Vec::new();
         for (k, &i) in kept.iter().enumerate() {
             columns.clear();
-            // // Gaps contain few repeated entries, which factorisations add.
+            // Gaps contain few repeated entries, which factorisations add.
             let mut sum = |j: usize, value: f64| {
                 if i < forces {
                     reduced.push((k, j, value));
@@ -207,7 +207,7 @@ impl Condensed {
             }
             for &(point, f) in &down.1[begin..] {
                 let point: &Point = &points[point];
-                // // Added terms need not act on the gaps of other points: refinement removes them, and the unknowns of
+                // Added terms need not act on the gaps of other points: refinement removes them, and the unknowns of
                 // a chain stay neighbours.
                 if point.added && i < forces {
                     continue;
@@ -319,7 +319,7 @@ impl Condensed {
             let step = self.apply(&left)?;
             let better: Vec<f64> = x.iter().zip(&step).map(|(x, s)| x + s).collect();
             let now = self.left(right, &better);
-            // // No decrease: only rounding is left, or the residual is zero.
+            // No decrease: only rounding is left, or the residual is zero.
             if norm(&now) >= norm(&left) {
                 break;
             }

@@ -136,7 +136,7 @@ fn a_few_changed_rows_are_followed_without_a_factorisation() {
     let mut own = UpdatedFactorisation::new(condensed(&entries, 0.0));
     let contact = 1;
     assert_eq!((own.respond(contact, 0), own.respond(contact, 0)), (Some(2), Some(0)));
-    // // In the changed equations the forces of the point are prescribed.
+    // In the changed equations the forces of the point are prescribed.
     let (given, right) = ([0.3, -0.7], right());
     let mut changed = dense(&entries);
     (0..2).for_each(|k| changed.row_mut(2 * contact + k).fill(0.0));
@@ -195,7 +195,7 @@ fn a_control_beside_the_equations_is_their_last_row() {
 #[test]
 fn a_control_beside_the_equations_serves_at_a_limit_point() {
     let mut singular = entries();
-    // // One other unknown appears only in the last row: it moves along the path while the factor is constant.
+    // One other unknown appears only in the last row: it moves along the path while the factor is constant.
     singular.retain(|e| e.1 != SIZE - 2);
     singular.extend((2 * CONTACTS..SIZE - 1).map(|i| (i, SIZE - 1, 1.0 + i as f64)));
     let control: Vec<f64> = (0..SIZE).map(|j| if j == SIZE - 2 { 2.0 } else { value(5, j) }).collect();

@@ -109,7 +109,7 @@ impl Equations {
                     }
                     for &(j, v) in &entries {
                         let x = self.rows[i][j] - factor * v;
-                        // // A difference within rounding is zero.
+                        // A difference within rounding is zero.
                         self.rows[i][j] = if x.abs() < 1e-14 * size { 0.0 } else { x };
                     }
                     self.rows[i][column] = 0.0;
@@ -322,7 +322,7 @@ impl Dictionary {
         }
         let mut entering: Vec<usize> = self.nonbasic.iter().copied().filter(|&x| wanted[x]).collect();
         while !entering.is_empty() {
-            // // The largest pivot in the next possible column.
+            // The largest pivot in the next possible column.
             let mut best: (f64, usize, usize) = (0.0, 0, 0);
             for (k, &x) in entering.iter().enumerate() {
                 let Place::Column(c) = self.place[x] else { continue };
@@ -368,7 +368,7 @@ impl Dictionary {
         let mut restored = false;
         for step in 0..limit {
             self.audit();
-            // // The most violated row; after many pivots an order that cannot cycle.
+            // The most violated row; after many pivots an order that cannot cycle.
             let mut leaving: Option<(usize, f64, f64)> = None;
             for i in 0..self.rows {
                 let (beta, fixed) = (self.beta[i], self.fixed[self.basic[i]]);
@@ -480,7 +480,7 @@ impl Dictionary {
             for c in 0..n {
                 let d = self.cost[c];
                 if d < -1e-10 * scale && !self.fixed[self.nonbasic[c]] {
-                    // // Bland's rule if the point does not move.
+                    // Bland's rule if the point does not move.
                     let better = match entering {
                         None => true,
                         Some((b, _)) if degenerate > 40 => self.nonbasic[c] < self.nonbasic[b],

@@ -33,7 +33,7 @@ pub fn lemke(problem: &Lcp, pivots: &mut u64) -> LemkeResult {
     if q.iter().all(|v| *v >= 0.0) || scale == 0.0 {
         return LemkeResult::Solution(vec![0.0; n]);
     }
-    // // Tableau [I, −M, −1 | q] in the order w (0..n), z (n..2n), z_0 (2n), right-hand side (2n + 1). The columns of w
+    // Tableau [I, −M, −1 | q] in the order w (0..n), z (n..2n), z_0 (2n), right-hand side (2n + 1). The columns of w
     // are the inverse of the basis, which the lexicographic rule uses.
     let last = 2 * n + 1;
     let mut t = DMatrix::<f64>::zeros(n, last + 1);

@@ -40,7 +40,7 @@ fn confirm(problem: &PathProblem, finite: bool, answer: &PathAnswer) -> Result<(
     }
     let mut checker = PathChecker::new(finite);
     checker.state(problem, &answer.state);
-    // // Gaps that are rounding errors of the deformation by the forces have no scale for a comparison.
+    // Gaps that are rounding errors of the deformation by the forces have no scale for a comparison.
     let force = answer.state.force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
     let soft = problem.contacts.iter().flat_map(|c| c.compliance).fold(0.0, f64::max);
     let blocks = problem.bodies.iter().filter_map(|b| b.flexibility.as_ref()).map(|f| f.amax()).fold(soft, f64::max);
@@ -53,7 +53,7 @@ fn confirm(problem: &PathProblem, finite: bool, answer: &PathAnswer) -> Result<(
         if still && !matches!(name, "path_equilibrium" | "path_strength" | "path_inner_equilibrium") {
             continue;
         }
-        // // If all points are open, the forces are rounding errors of the loads.
+        // If all points are open, the forces are rounding errors of the loads.
         if name == "path_strength" && force <= 1e-12 * load {
             continue;
         }
@@ -197,7 +197,7 @@ mod tests {
         refused(&problem, &honest, "path_power", |a| {
             a.motion.as_mut().expect("a motion").iter_mut().flatten().for_each(|v| *v *= 1.01);
         });
-        // // Lifts points that are in contact.
+        // Lifts points that are in contact.
         refused(&problem, &honest, "path_flow", |a| a.motion.as_mut().expect("a motion")[1][1] += 0.1);
     }
 
@@ -208,7 +208,7 @@ mod tests {
         assert_eq!(honest.status, Status::Unbounded, "{:?}", honest.notes);
         assert_eq!(confirmed(&problem, false, honest.clone()).status, Status::Unbounded);
         refused(&problem, &honest, "no ray", |a| a.ray = None);
-        // // Does not carry the load; carries it by more than friction allows.
+        // Does not carry the load; carries it by more than friction allows.
         refused(&problem, &honest, "path_ray", |a| a.ray.as_mut().expect("a ray")[0][0] *= 1.01);
         refused(&problem, &honest, "path_ray", |a| {
             let ray = a.ray.as_mut().expect("a ray");

@@ -96,7 +96,7 @@ impl SecondOrderWork {
         let eigenvalues = half.symmetric_eigenvalues();
         let nothing = softest.max(SETTINGS.admissible * eigenvalues.amax());
         let negative = eigenvalues.iter().filter(|s| **s < -nothing).count();
-        // // The real parts of eigenvalues are at least the least eigenvalue of the symmetric part (Bendixson 1902).
+        // The real parts of eigenvalues are at least the least eigenvalue of the symmetric part (Bendixson 1902).
         let turned = if symmetric || negative == 0 {
             negative
         } else {
@@ -104,7 +104,7 @@ impl SecondOrderWork {
             let values = schur.complex_eigenvalues();
             values.iter().filter(|s| s.re < -nothing && s.im.abs() <= 1e-9 * s.re.abs()).count()
         };
-        // // 1/s is least for the negative s nearest to zero; without a negative s, for the greatest s.
+        // 1/s is least for the negative s nearest to zero; without a negative s, for the greatest s.
         let relevant = eigenvalues.iter().filter(|s| s.abs() > nothing);
         let curvature = relevant.map(|s| 1.0 / s).min_by(f64::total_cmp)?;
         let nearest = 1.0 / eigenvalues.amax();
@@ -142,7 +142,7 @@ mod tests {
         let found = SecondOrderWork::of(&flexibility, 1e-12).expect("eigenvalues");
         assert_eq!((found.negative, found.turned, found.symmetric), (1, 1, true));
         assert!((found.curvature + 1.0).abs() < 1e-12 && (found.critical_mode()[0].abs() - c).abs() < 1e-12);
-        // // With a held load point the structure is stable if the load softens it at that point, otherwise unstable.
+        // With a held load point the structure is stable if the load softens it at that point, otherwise unstable.
         assert!(found.stable_under_control(-1.0) && !found.stable_under_control(1.0));
     }
 

@@ -29,7 +29,7 @@ pub fn choose(problem: &RateProblem, arrival: &Arrival, rates: Vec<Rate>) -> Opt
     if let Some(rate) = present.iter().find_map(goes_on) {
         return Some((rate.clone(), Vec::new()));
     }
-    // // The present modes are unstable: another rate continues, if there is one.
+    // The present modes are unstable: another rate continues, if there is one.
     let (own, others): (Vec<Rate>, Vec<Rate>) = rates.into_iter().partition(|rate| present.contains(&rate.modes));
     let rates = if others.is_empty() { own } else { others };
     let dissipation: Vec<f64> = rates.iter().map(|rate| dissipation_share(problem, arrival, rate)).collect();

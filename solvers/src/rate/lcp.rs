@@ -108,7 +108,7 @@ pub fn rate_lcp(problem: &RateProblem, associated: bool) -> Option<RateLcp> {
         q += &onto * multipliers.column(n);
     }
     let largest = m.diagonal().amax();
-    // // A diagonal entry within rounding of zero cannot be a unit.
+    // A diagonal entry within rounding of zero cannot be a unit.
     let common = if largest > 0.0 { largest } else { 1.0 };
     let scale = |d: f64| if d > SETTINGS.inequality() * largest { d.sqrt() } else { common.sqrt() };
     let unit: Vec<f64> = m.diagonal().iter().map(|d| scale(d.abs())).collect();

@@ -118,7 +118,7 @@ impl RateProblem<'_> {
             _ => return None,
         };
         let solved = if singular {
-            // // The null vector: the last unknown in the order of the pivots is one.
+            // The null vector: the last unknown in the order of the pivots is one.
             let last = u.view((0, n - 1), (n - 1, 1)) * -1.0;
             let mut null = u.view((0, 0), (n - 1, n - 1)).solve_upper_triangular(&last)?.resize_vertically(n, 1.0);
             lu.q().inv_permute_rows(&mut null);
@@ -148,7 +148,7 @@ impl RateProblem<'_> {
     pub fn violations(&self, modes: &[ContactMode], attempt: &Attempt, sign: f64) -> Vec<(f64, usize, ContactMode)> {
         let gap_size = attempt.gaps.amax().max(1e-300);
         let force_size = attempt.forces.amax().max(if attempt.singular {
-            // // A mechanism has no forces: their scale is the gap size times the stiffness.
+            // A mechanism has no forces: their scale is the gap size times the stiffness.
             gap_size * self.points.iter().map(|p| p.stiffness).fold(0.0, f64::max)
         } else {
             let share = if self.settles { SETTINGS.cancelled } else { 1e-4 };
@@ -229,7 +229,7 @@ impl RateProblem<'_> {
         if n == 0 {
             return None;
         }
-        // // Inverse iteration from the given motion finds the null vector.
+        // Inverse iteration from the given motion finds the null vector.
         let shifted = &matrix + DMatrix::identity(n, n) * (1e-12 * matrix.amax().max(1e-300));
         let lu = shifted.lu();
         let points = self.points.iter().zip(modes).zip(gaps);

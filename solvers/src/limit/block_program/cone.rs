@@ -36,7 +36,7 @@ impl Cone {
         if normals.len() > ROWS || forces > 3 {
             return None;
         }
-        // // Forces that a joint does not have, and unbounded forces, get extra rows at the end.
+        // Forces that a joint does not have, and unbounded forces, get extra rows at the end.
         let mut all = normals.clone();
         let independent = |rows: &[[f64; 3]], row: &[f64; 3]| orthonormal(rows, Some(row)).1;
         for k in 0..3 {
@@ -103,7 +103,7 @@ impl Cone {
             if let Some(over) = split.over {
                 column[over] = split.shares[k] * inverse[k] * (1.0 - beta * squared);
             }
-            // // Extra rows of unbounded forces do not belong to the joint.
+            // Extra rows of unbounded forces do not belong to the joint.
             column[self.normals.len()..].fill(0.0);
         }
         (root, columns)
@@ -207,7 +207,7 @@ mod tests {
                 normal += row * row.transpose() * weight;
             }
             let product = root.transpose() * normal * root;
-            // // In unbounded directions the product is zero.
+            // In unbounded directions the product is zero.
             for i in 0..3 {
                 let own = product.row(i).iter().fold(0.0f64, |m, v| m.max(v.abs()));
                 assert!(i >= forces || (product[(i, i)] - 1.0).abs() < 1e-10, "{forces} {weights:?} {product}");

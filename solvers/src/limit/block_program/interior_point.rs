@@ -139,7 +139,7 @@ impl Method<'_> {
             (0..2).filter(|i| halved[*i]).for_each(|i| least[i] = missing[i]);
             idle = if halved.contains(&true) { 0 } else { idle + 1 };
             let error = self.error(statics);
-            // // Below the required gap, only rounding errors of the motion remain.
+            // Below the required gap, only rounding errors of the motion remain.
             let last = nearest.as_ref().map_or(f64::INFINITY, |nearest| nearest.0);
             let done = error < SETTINGS.settled
                 || (gap < SETTINGS.exhausted_gap && error < SETTINGS.admissible && error > 0.5 * last);
@@ -181,7 +181,7 @@ impl Method<'_> {
         let moved = greatest(self.residuals.flow.as_flattened());
         let largest = greatest(self.state.multipliers.as_flattened()).max(f64::MIN_POSITIVE);
         let gap = self.state.gap() / self.state.theta.abs().max(SETTINGS.least_factor);
-        // // A motion without work of the load proves nothing.
+        // A motion without work of the load proves nothing.
         if self.residuals.power.abs() > SETTINGS.unpolished {
             return f64::INFINITY;
         }

@@ -345,7 +345,7 @@ impl Polish<'_> {
             stiffness.solve(&mut w);
             softest = 1.0 / without(&mut w);
         }
-        // // If a second motion exists, the least stiffness is the shift alone.
+        // If a second motion exists, the least stiffness is the shift alone.
         Some(softest > SETTINGS.shift * (1.0 + 1e-3))
     }
 }

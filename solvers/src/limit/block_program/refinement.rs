@@ -70,7 +70,7 @@ impl Directions<'_> {
         if moves {
             theta = -inner(varying, &motion) / (inner(varying, &self.v) + stiff);
             motion.iter_mut().zip(&self.v).for_each(|(c, v)| *c += theta * v);
-            // // The part of `left` along p does no work on the motion; without it the product loses fewer digits.
+            // The part of `left` along p does no work on the motion; without it the product loses fewer digits.
             product = theta * (inner(varying, &motion) + stiff * theta);
         }
         product += inner(left, &motion);

@@ -48,7 +48,7 @@ impl Wanted {
     pub fn centre(&mut self, other: &Wanted, state: &State, step: &Step, lengths: [f64; 2], mean: f64) {
         let off = |s: f64, ds: f64, z: f64, dz: f64| {
             let product = (s + lengths[0] * ds) * (z + lengths[1] * dz);
-            // // No clamp: without rows the mean is NaN, and clamp panics.
+            // No clamp: without rows the mean is NaN, and clamp panics.
             let near = product.max(CENTRED[0] * mean).min(CENTRED[1] * mean);
             let moved = (near - product).max(-CENTRED[1] * mean);
             if z > 0.0 { moved } else { 0.0 }

@@ -43,7 +43,7 @@ impl<'a> ChainEngine<'a> {
                 let (columns, _) = centre(&program, &solved.point, solved.columns);
                 Equilibrium::Motion(program.motion(self.problem, &self.trees, &columns))
             }
-            // // Rows that set T to zero have no margin: they alone may refute equilibrium.
+            // Rows that set T to zero have no margin: they alone may refute equilibrium.
             Outcome::Infeasible(columns) => Equilibrium::Motion(program.motion(self.problem, &self.trees, &columns)),
             Outcome::Unbounded(_) => Equilibrium::Failed("the margin program has no optimum".into()),
             Outcome::Failed(why) => Equilibrium::Failed(why),

@@ -66,7 +66,7 @@ pub fn trees(problem: &LimitProblem) -> Option<Trees> {
             None => trees.cuts.push(joint),
         }
     }
-    // // Groups that are not reached have no support.
+    // Groups that are not reached have no support.
     (reached.iter().all(|&r| r) && trees.cuts.len() <= MOST_CUTS).then_some(trees)
 }
 
@@ -89,7 +89,7 @@ impl Touching {
                 places[group] += 1;
             }
         }
-        // // Each place is now at the end of its group.
+        // Each place is now at the end of its group.
         Touching { joints, ends: places }
     }
 
@@ -128,7 +128,7 @@ impl Redundants {
                 }
                 set(cut, 3 * number + k, resolved(problem, cut, joint.plus, wrench));
                 transmit(trees, &mut loads, |link, wrench| {
-                    // // Branches that the cut does not close have no forces.
+                    // Branches that the cut does not close have no forces.
                     if wrench != Vector3::zeros() {
                         set(link.joint, 3 * number + k, resolved(problem, link.joint, Some(link.ahead), wrench));
                     }

@@ -382,7 +382,7 @@ impl<'a> Program<'a> {
             basis.lu.solve(&mut weights);
             point.copy_from_slice(&costs);
             basis.lu.solve_transposed(&mut point);
-            // // One step of refinement, because λ is read from this point.
+            // One step of refinement, because λ is read from this point.
             for ((step, cost), column) in step.iter_mut().zip(&costs).zip(basis.matrix.chunks_exact(m)) {
                 *step = cost - inner(column, &point);
             }
@@ -394,7 +394,7 @@ impl<'a> Program<'a> {
             if self.any_field && violation <= self.slack_variable(&point) {
                 return Ending::Enough(point);
             }
-            // // The buffer of the step, which is not needed any more, holds the entering column.
+            // The buffer of the step, which is not needed any more, holds the entering column.
             let entering = &mut step;
             let beta = self.write(column, entering);
             change.copy_from_slice(entering);
@@ -425,7 +425,7 @@ impl<'a> Program<'a> {
             row[place] = 1.0;
             basis.lu.solve_transposed(&mut row);
             let mut best: (f64, Option<Column>) = (SETTINGS.active, None);
-            // // In the recession cone the violation at a point is its product with the column.
+            // In the recession cone the violation at a point is its product with the column.
             self.scan((&row, 0.0), f64::abs, best.0, &mut |column, product| {
                 if !basis.columns.contains(&column) {
                     best = (product, Some(column));
@@ -457,7 +457,7 @@ impl<'a> Program<'a> {
         }
         merged.retain(|(column, _)| !matches!(column, Column::Artificial { .. }));
         if merged.iter().any(|(column, _)| matches!(column, Column::Tangent { .. })) {
-            // // Rows with zero multipliers may be active by chance; with too few rows the system is singular.
+            // Rows with zero multipliers may be active by chance; with too few rows the system is singular.
             let mut failed = String::new();
             let found = [SETTINGS.negligible, f64::NEG_INFINITY].iter().find_map(|&least| {
                 let mut trial: Vec<_> = merged.iter().copied().filter(|(_, weight)| *weight > least).collect();
@@ -629,7 +629,7 @@ fn leaving(weights: &[f64], change: &[f64], lu: &mut SmallLu, origin: &[f64]) ->
     let m = change.len();
     let largest = change.iter().fold(0.0f64, |m, x| m.max(x.abs()));
     let close = |x: f64, y: f64| (x - y).abs() <= SETTINGS.rounding * (1.0 + x.abs().max(y.abs()));
-    // // Columns of the rule computed so far: most pivots need none.
+    // Columns of the rule computed so far: most pivots need none.
     let mut reference: Vec<f64> = Vec::new();
     let mut order = |a: usize, b: usize| {
         let (x, y) = (weights[a].max(0.0) / change[a], weights[b].max(0.0) / change[b]);

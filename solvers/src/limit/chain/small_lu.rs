@@ -134,7 +134,7 @@ mod tests {
     }
 
     fn is_solved(n: usize) {
-        // // Sines of k² are used because sines of k give rank two.
+        // Sines of k² are used because sines of k give rank two.
         let columns: Vec<f64> = (0..n * n).map(|k| ((k * k) as f64 * 0.7 + 0.3).sin()).collect();
         let mut lu = SmallLu::new(n);
         assert!(lu.factorise(&columns));

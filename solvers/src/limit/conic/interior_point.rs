@@ -135,7 +135,7 @@ fn solve_with(system: &System, flat: f64) -> Word {
         SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
             Word::Other("the conic solver found no admissible field".into(), iterations)
         }
-        // // The status of the solver does not matter: the polish and the certificate check the pair.
+        // The status of the solver does not matter: the polish and the certificate check the pair.
         _ if finite => Word::Pair(conic.pair(system, &solution.x, &solution.z), iterations),
         status => Word::Other(format!("the conic solver ended with {status:?}"), iterations),
     }

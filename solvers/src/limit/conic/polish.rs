@@ -65,7 +65,7 @@ fn multiplier(pair: &Pair, item: Item) -> f64 {
 
 /// Polishes a pair. `None` if every factorisation fails.
 pub fn polish(system: &System, approximate: &Pair) -> Option<Polished> {
-    // // The greater shift is tried if the smaller one leaves no pivot.
+    // The greater shift is tried if the smaller one leaves no pivot.
     [SETTINGS.shift, SETTINGS.great_shift].iter().find_map(|&delta| polish_with(system, approximate, delta))
 }
 
@@ -274,7 +274,7 @@ impl Newton<'_> {
             }
             let mut step = factorised.as_ref()?.solve(&residual)?;
             iterations += 1;
-            // // Along a direction as soft as the regularisation, residuals decrease by the same ratio in every step:
+            // Along a direction as soft as the regularisation, residuals decrease by the same ratio in every step:
             // two steps give the sum of the series.
             let share = size / last;
             further = !further && (SLOW..STILL).contains(&share);
@@ -352,6 +352,6 @@ fn has_kernel(system: &System, active: &[Item], pair: &Pair, scale: f64, delta: 
         let gain = v.iter().map(|a| a * a).sum::<f64>().sqrt();
         least = delta / gain;
     }
-    // // least = δ² + σ²: it is δ² if a kernel exists.
+    // least = δ² + σ²: it is δ² if a kernel exists.
     Some(least < 1e3 * delta * delta)
 }

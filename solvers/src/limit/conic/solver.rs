@@ -326,13 +326,13 @@ impl Engine for ConicEngine<'_> {
             return greatest;
         }
         self.attempt(question, force, &mut tried);
-        // // If only strengths limit the load, as in flat arches of strong stone, the load is of their size. In the
+        // If only strengths limit the load, as in flat arches of strong stone, the load is of their size. In the
         // unit of the fixed loads its number would be too great for the interior point method.
         let weakest = weakest(self.problem);
         if tried.best.is_none() && weakest.is_finite() && weakest > force * SETTINGS.strong {
             self.attempt(question, weakest, &mut tried);
         }
-        // // Another unit changes the path of the interior point; the polish may converge from its end.
+        // Another unit changes the path of the interior point; the polish may converge from its end.
         for scale in [0.1, 10.0].into_iter().filter(|_| self.problem.groups <= MOST_IN_UNITS) {
             if tried.may_gain() {
                 self.attempt(question, force * scale, &mut tried);
@@ -347,7 +347,7 @@ impl Engine for ConicEngine<'_> {
         if let Some((_, greatest)) = tried.best {
             return greatest;
         }
-        // // Unbounded or not solved: a ray decides. A pair without polish is the last resort.
+        // Unbounded or not solved: a ray decides. A pair without polish is the last resort.
         match self.share(varying, None, false) {
             Equilibrium::Field(ray) => Greatest::Unbounded(ray),
             _ => tried.unsettled.unwrap_or(Greatest::Failed(tried.failed)),

@@ -85,7 +85,7 @@ fn strength_rows(
 ) {
     for row in &joint.strength.rows {
         let bound = if loads.strengths { row.bound / loads.force } else { 0.0 };
-        // // Bounds of the fill may be much greater than the loads: their rows are scaled to size one.
+        // Bounds of the fill may be much greater than the loads: their rows are scaled to size one.
         let scale = if joint.fill.is_some() { 1.0 / bound.max(1.0) } else { 1.0 };
         let entries: Row =
             (0..own).filter(|&k| row.normal[k] != 0.0).map(|k| (first + k, row.normal[k] * scale)).collect();
@@ -100,7 +100,7 @@ fn strength_rows(
             blocks.extend((0..2).map(|end| Block { normal: [first, first + 1], end, strength }));
         }
         Some(_) => {
-            // // A bounded normal force is zero in the recession cone.
+            // A bounded normal force is zero in the recession cone.
             for (k, sign) in [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)] {
                 rows.push(vec![(first + k, sign)]);
                 bounds.push(0.0);

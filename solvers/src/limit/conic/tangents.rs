@@ -62,7 +62,7 @@ pub fn by_tangents(
             break;
         };
         let error = field_error(problem, &combined(fixed, varying, solution.factor), &solution.forces);
-        // // A tangent stays if its block is satisfied, so that undetermined forces do not loosen it.
+        // A tangent stays if its block is satisfied, so that undetermined forces do not loosen it.
         for ((joint, force), touched) in problem.joints.iter().zip(&solution.forces).zip(&mut touched) {
             if joint.strength.block.is_some_and(|block| excess(block, force) > 0.0) {
                 *touched = pressed(force);
@@ -91,7 +91,7 @@ mod tests {
             for (drawn, end) in [(0.0, 0), (2.5, 1), (7.0, 0), (10.0, 1)] {
                 let row = tangent(block, end, drawn);
                 for pressed in [-tension, 0.0, 1.0, 2.5, 6.0, 7.0, 10.0] {
-                    // // The least force of this end that satisfies the block.
+                    // The least force of this end that satisfies the block.
                     let least = ((pressed + tension) * (pressed + tension) / block.total - tension) / 2.0;
                     let mut forces = [pressed - least; 2];
                     forces[end] = least;

@@ -116,7 +116,7 @@ fn search(systems: &Systems, range: [f64; 2], most: u64, work: &mut Work) -> Ran
             search.not_both(i, k);
         }
     }
-    // // The work for the bounds is not counted: it is small and fixed.
+    // The work for the bounds is not counted: it is small and fixed.
     let before = search.work();
     let ending = search.run(before + most);
     let found = match ending {

@@ -268,7 +268,7 @@ impl Builder<'_> {
                     sum[theta] += systems.varying[3 * group + x];
                     sum[one] += systems.fixed[3 * group + x];
                 }
-                // // Forces between two groups above the cut cancel, except for rounding.
+                // Forces between two groups above the cut cancel, except for rounding.
                 (0..systems.forces).filter(|&j| !cut.contains(&self.joint_of[j])).for_each(|j| sum[j] = 0.0);
                 balances.push((sum.into_iter().enumerate().collect(), cut.clone()));
             }
@@ -415,7 +415,7 @@ impl Program {
         q[0] = 1.0;
         let cones =
             [SupportedConeT::ZeroConeT(self.equations.len()), SupportedConeT::NonnegativeConeT(self.rows.len())];
-        // // The rows depend on each other: the factorisation needs more regularisation than usual.
+        // The rows depend on each other: the factorisation needs more regularisation than usual.
         let settings = DefaultSettings::<f64> {
             verbose: false,
             max_iter: 100,
@@ -425,7 +425,7 @@ impl Program {
         };
         let mut solver = DefaultSolver::new(&p, &q, &a, &right, &cones, settings).ok()?;
         solver.solve();
-        // // The status of the solver does not matter: the multipliers are corrected and their bound recomputed.
+        // The status of the solver does not matter: the multipliers are corrected and their bound recomputed.
         let z = &solver.solution.z;
         z.iter().all(|v| v.is_finite()).then(|| (z.clone(), u64::from(solver.solution.iterations)))
     }
@@ -508,7 +508,7 @@ pub fn lower_bound(
     most: usize,
     widest_only: bool,
 ) -> (Option<Bound>, u64) {
-    // // A margin above the known state gives the program an interior, which the method needs.
+    // A margin above the known state gives the program an interior, which the method needs.
     let above = t * (1.0 + MARGIN_ABOVE);
     let fits = |reach: usize| Program::new(systems, problem, above, reach, most);
     let least = if widest_only { NEAREST } else { 0 };

@@ -146,7 +146,7 @@ impl Least<'_> {
             return None;
         }
         let theta = z[self.systems.forces];
-        // // A factor within rounding of zero is zero.
+        // A factor within rounding of zero is zero.
         let theta = if theta.abs() < SETTINGS.zero { 0.0 } else { theta };
         let field = self.systems.joint_forces(&z);
         Some((theta, FlowState { factor: theta * self.systems.unit, field, motion }))
@@ -209,7 +209,7 @@ impl LimitSolver for LimitNonassociated {
         let base: Wrenches = combined(&problem.fixed, &problem.varying, start);
         let mut least = Least { problem, systems: Systems::new(problem, &base), work: Work::default() };
         let unit = least.systems.unit;
-        // // The greatest θ of interest: the result of associated flow or of the search.
+        // The greatest θ of interest: the result of associated flow or of the search.
         let associated_theta = own.associated_factor.map(|factor| (factor - start) / unit);
         let most = associated_theta.unwrap_or((max - start) / unit);
         let mut best = least.first(&answer, start);
@@ -227,7 +227,7 @@ impl LimitSolver for LimitNonassociated {
                 lower = least.prove(self, most, &mut best);
             }
         }
-        // // If a lower state is not excluded, the sequence of linear programs may find it.
+        // If a lower state is not excluded, the sequence of linear programs may find it.
         if best.as_ref().is_none_or(|b| lower.theta < b.0 * (1.0 - SETTINGS.closed)) {
             let from = answer.field.clone().unwrap_or_default();
             match sequence(problem, &base, &from, &mut answer.counters) {
@@ -322,7 +322,7 @@ impl Least<'_> {
                 Proof::Below(proved) => {
                     lower.search(proved);
                     if lower.products.is_none() {
-                        // // A bound of the search can be checked only if products prove it too.
+                        // A bound of the search can be checked only if products prove it too.
                         lower.product(self.products(known, limits.product_rows.min(CHECKED_ROWS), true));
                     }
                     return lower;
@@ -349,7 +349,7 @@ impl Least<'_> {
                         self.work.curve.found(BracketWork::Search, swept, theta);
                         continue;
                     }
-                    // // The proof ends this far below the known state because of rounding.
+                    // The proof ends this far below the known state because of rounding.
                     if gap < SETTINGS.closed {
                         gap *= 10.0;
                     } else if whole {
@@ -443,7 +443,7 @@ fn finish(
             answer.non_associated = Some(own);
         }
         _ if answer.status == Status::Collapse => {
-            // // Only the associated answer is known: an upper bound, marked as such.
+            // Only the associated answer is known: an upper bound, marked as such.
             answer.notes.push(format!(
                 "no limit state with the laws' own flow was found; none lies below {proved:.9} (proved)"
             ));

@@ -215,7 +215,7 @@ impl Products {
         let (mut w, mut penalty) = (z.clone(), PENALTY);
         for iteration in 1..=iterations {
             let mut x = self.project(&(&z - &w)) - &self.objective / penalty;
-            // // p·q̇ = 1, scaled so that the normalisation has length one.
+            // p·q̇ = 1, scaled so that the normalisation has length one.
             let short = 1.0 - x.dot(&unit_power);
             x += &unit_power * short;
             let y = &x * RELAXATION + &z * (1.0 - RELAXATION) + &w;
@@ -223,7 +223,7 @@ impl Products {
             (0..self.pairs).for_each(|i| next[(i, i)] = 0.0);
             w = y - &next;
             if iteration % ADAPTED == 0 {
-                // // Errors of Z = U Y Vᵀ and of the equation of the multipliers, each relative to its data.
+                // Errors of Z = U Y Vᵀ and of the equation of the multipliers, each relative to its data.
                 let apart = (&x - &next).norm() / next.norm().max(x.norm());
                 let by = (apart / (penalty * (&next - &z).norm())).sqrt().clamp(0.5, 2.0);
                 if by.is_finite() && !(0.7..=1.4).contains(&by) {
@@ -318,7 +318,7 @@ impl Products {
             let step = power / squared;
             y += &direction * step;
             residual -= &along * step;
-            // // Conjugate residuals do not grow, except by rounding.
+            // Conjugate residuals do not grow, except by rounding.
             let now = residual.norm();
             if now <= enough || now > before {
                 break;
@@ -367,7 +367,7 @@ impl Products {
         let iterations = |share: f64| ((share * limit as f64 / cost) as usize).max(FEWEST);
         let width = self.range[1] - self.range[0];
         let (mut near, estimate) = self.split(iterations(SPLITTING));
-        // // The estimate may be inaccurate at first: failed values are tried again after a lower bound is proved.
+        // The estimate may be inaccurate at first: failed values are tried again after a lower bound is proved.
         let high = if estimate > 0.0 { estimate.min(width) } else { width };
         let (mut low, mut best, mut bound) = (0.0, None, FIRST_SHARE * high);
         while high - low > CLOSE * width && bound > low + LEAST * width.min(high - low) && self.work < limit {
@@ -393,7 +393,7 @@ pub fn split_bound(systems: &Systems, most: f64, limit: u64, curve: &mut Curve) 
     while !systems.pairs.is_empty() && proved < most * (1.0 - CLOSE) {
         let mut products = Products::new(systems, [proved, most]);
         let own = (RANGE * limit.saturating_sub(work) as f64) as u64;
-        // // No motion of the flow rule has p·q̇ = 1, or too little work is left.
+        // No motion of the flow rule has p·q̇ = 1, or too little work is left.
         let hopeless = products.power.norm() < SETTINGS.negligible || own < (FEWEST as u64) * products.work;
         let mut raised = |own: u64, theta: f64| {
             curve.proved(BracketWork::Splitting, (work + own) as f64 / 1e9, theta * (1.0 - SETTINGS.closed));
@@ -448,7 +448,7 @@ mod tests {
         let (motions, fields) = (motions(&systems), fields(&systems, [0.0, 1.0]));
         let pairs = systems.pairs.len();
         assert!(motions.ncols() > 1 && fields.ncols() == 2);
-        // // The sum of θ and 1 − θ is the share of the fixed loads.
+        // The sum of θ and 1 − θ is the share of the fixed loads.
         let share = |k: usize| fields[(pairs, k)] + fields[(pairs + 1, k)];
         let change = fields.column(0) * share(1) - fields.column(1) * share(0);
         for motion in motions.column_iter() {

@@ -30,7 +30,7 @@ pub struct OptimalFace<'a> {
 /// Returns an orthonormal basis of the null space, the pseudo-inverse, and the rank.
 fn null_space(matrix: &DMatrix<f64>) -> Result<(DMatrix<f64>, DMatrix<f64>, usize), String> {
     let (rows, columns) = matrix.shape();
-    // // Zero rows make the decomposition return all right singular vectors.
+    // Zero rows make the decomposition return all right singular vectors.
     let padded = matrix.clone().resize_vertically(rows.max(columns), 0.0);
     let svd = padded.try_svd(false, true, f64::EPSILON, 10_000).ok_or("singular values were not found")?;
     let v = svd.v_t.ok_or("singular values were not found")?;
@@ -39,7 +39,7 @@ fn null_space(matrix: &DMatrix<f64>) -> Result<(DMatrix<f64>, DMatrix<f64>, usiz
         (0..columns).partition(|&i| svd.singular_values[i] <= SETTINGS.negligible * greatest);
     let basis = DMatrix::from_fn(columns, null.len(), |i, j| v[(null[j], i)]);
     let mut inverse = DMatrix::zeros(columns, rows);
-    // // Uses the images of the right vectors: without full rank the left vectors may belong to other right vectors.
+    // Uses the images of the right vectors: without full rank the left vectors may belong to other right vectors.
     for &k in &full {
         let own = v.row(k).transpose();
         let image = matrix * &own;
@@ -142,7 +142,7 @@ impl<'a> OptimalFace<'a> {
             return Err("some blocks are held by nothing".into());
         }
         let count = self.field.len();
-        // // Where the mechanism moves, the difference of a field from r̂ does no work; a yielding stress block keeps
+        // Where the mechanism moves, the difference of a field from r̂ does no work; a yielding stress block keeps
         // its forces.
         let mut held: Vec<DVector<f64>> = Vec::new();
         let jumps: Vec<[f64; 3]> = (0..problem.joints.len()).map(|joint| self.jump(joint, motion)).collect();
@@ -214,7 +214,7 @@ impl<'a> OptimalFace<'a> {
                 let normal =
                     [0, 1].map(|k| (2.0 * tension_rate - if k == end { 2.0 * total_rate } else { 0.0 }) / total);
                 let constant = (2.0 * tension * tension_rate - total_rate * tension) / total - tension_rate;
-                // // Derivative of ((N + F_t)² − (F_c + F_t)(2 N_i + F_t)) / (F_c + F_t) at a zero of the row.
+                // Derivative of ((N + F_t)² − (F_c + F_t)(2 N_i + F_t)) / (F_c + F_t) at a zero of the row.
                 ([normal[0], normal[1], 0.0], constant)
             }
         };

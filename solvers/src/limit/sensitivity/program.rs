@@ -79,7 +79,7 @@ impl Program {
         if spread == 0 {
             return Ok(());
         }
-        // // Variables: slack gained by each row, at most 1.
+        // Variables: slack gained by each row, at most 1.
         let mut grows = Rows { free: spread, own: rows.len(), rows: Vec::new() };
         for (index, row) in rows.iter().enumerate() {
             let along: Vec<f64> = (row.coefficients.transpose() * &self.spread).iter().copied().collect();

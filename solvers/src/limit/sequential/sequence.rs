@@ -94,7 +94,7 @@ pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], co
         {
             return Sequence::Converged(state);
         }
-        // // If the field is not unique, the programs may change between fields at one factor.
+        // If the field is not unique, the programs may change between fields at one factor.
         if steady && let Some((field, factor)) = field_at(&systems, problem, factor, &moving) {
             return Sequence::Converged(FlowState { factor, field, motion });
         }

@@ -66,7 +66,7 @@ impl Vertices {
         let gamma: Vec<f64> = (0..systems.pairs.len()).map(|i| statics.reduced_cost(i).max(0.0)).collect();
         least_cohesion(statics, &gamma, &self.weights);
         let moving: Vec<(usize, f64)> = greatest_shares(&gamma).into_iter().map(|i| (i, gamma[i])).collect();
-        // // Restores the costs of the factor; the next program starts from them.
+        // Restores the costs of the factor; the next program starts from them.
         statics.minimise(&primary, 0);
         let zero: Vec<usize> = (0..systems.pairs.len()).filter(|&i| statics.at_zero(i)).collect();
         let (z, violation) = systems.field(&zero, vec![0.0; systems.forces + 1])?;

@@ -76,7 +76,7 @@ impl Unrecorded {
         let dot = |own: &mut dyn Iterator<Item = &f64>, rates: &[f64]| -> f64 {
             own.zip(rates).map(|(own, rate)| own * rate).sum()
         };
-        // // Reciprocity: the work of contact forces on the gaps of the load gives its displacement.
+        // Reciprocity: the work of contact forces on the gaps of the load gives its displacement.
         let rate = dot(&mut load.wrench.iter().flatten(), &direction.x[forces..])
             + dot(&mut load.gap.iter().flatten(), &direction.x[..forces]);
         let moved = sense * rate * step;
@@ -245,7 +245,7 @@ fn step(follower: &mut Follower, run: &mut Run) -> Result<bool, End> {
     trace.state.stable_under_load = regains_limit_point(&follower.limits.proven, trace.state.load_step, factors)
         .then(|| stage_stability(trace, &run.load).under_load)
         .flatten();
-    // // A chain has many events; only some of them are recorded.
+    // A chain has many events; only some of them are recorded.
     let all = !by_chain || whole || follower.limits.greatest.is_some();
     if (all || run.unrecorded.events * RECORDED >= trace.log.counts.rate_problems) && !run.unrecorded.record(trace) {
         return Err(End::Stalled("stopped by its observer".into()));
@@ -385,14 +385,14 @@ fn ray_outcome(follower: &mut Follower, Ray { direction, load, proof }: &Ray, se
             Outcome::at(Status::LimitPoint, None)
         }
     };
-    // // With associated flow the mechanism is itself the proof.
+    // With associated flow the mechanism is itself the proof.
     if matches!(outcome.status, Status::Collapse | Status::NoEquilibrium) {
         let witness = if trace.associated { None } else { none_rises(trace, load, proof.as_ref()) };
         follower.witnesses.extend(witness);
     }
     let trace = &mut follower.trace;
     let unique = unique(&trace.system, &trace.state.points, load, &direction.x, &direction.gaps);
-    // // The mechanism belongs to the last state; the state at the limit point may not allow it.
+    // The mechanism belongs to the last state; the state at the limit point may not allow it.
     let allowed = |state: &PathState| flow_residual(trace.problem, &state.force, &motion) <= SETTINGS.distinct();
     let limit = follower.limits.greatest.as_ref().filter(|_| outcome.status == Status::LimitPoint);
     let allowed = limit.is_none_or(allowed);

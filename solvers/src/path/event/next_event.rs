@@ -14,7 +14,7 @@ use voussoir_core::path::{ContactEvent, PathEvent};
 /// Returns the distance to the next events along a direction, and their points with facets (`usize::MAX` for a
 /// closing). Slacks and gaps below `same` are events at the same moment.
 pub fn next_event(trace: &Trace, direction: &Direction, same: f64) -> (f64, Vec<(usize, usize)>) {
-    // // A rate within rounding of zero causes no event.
+    // A rate within rounding of zero causes no event.
     let size = largest(&direction.x[..2 * trace.system.contacts]);
     let gap_size = largest(direction.gaps.as_flattened());
     let (of_forces, share) =
@@ -114,7 +114,7 @@ pub fn stepped(trace: &mut Trace, c: usize, rate: [f64; 2], opening: f64, before
     let flows = point.mode != ContactMode::Stick;
     point.opening = if was_open || flows { (point.opening + opening).max(0.0) } else { 0.0 };
     let mut happened = begun(point.mode, facets, was_hit, !was_open && point.open());
-    // // Facets that this direction leaves become inactive.
+    // Facets that this direction leaves become inactive.
     if !(point.open() && point.apex) {
         let force = [trace.state.x[2 * c], trace.state.x[2 * c + 1]];
         let had = point.active.len();

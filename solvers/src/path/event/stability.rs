@@ -49,7 +49,7 @@ impl HeldModes {
             columns.map(|columns| DMatrix::from_fn(motions, columns.len(), |i, j| columns[j][i]))
         };
         let work = if associated {
-            // // Only the order of magnitude of the flexibility of the softest motion matters.
+            // Only the order of magnitude of the flexibility of the softest motion matters.
             Work::Symmetric(is_stiff(motions, |wrenches| respond(wrenches, false))?)
         } else {
             Work::Examined(work_by_responses(motions, |wrenches| respond(wrenches, true))?)
@@ -102,7 +102,7 @@ pub fn stage_stability(trace: &Trace, load: &Load) -> StageStability {
     let same = free == held;
     let mut free = HeldModes::new(trace, free);
     let positive = |found: &Option<HeldModes>| found.as_ref().map(HeldModes::positive);
-    // // Positive with all of them free is sufficient.
+    // Positive with all of them free is sufficient.
     let enough = same || positive(&free) == Some(true);
     let mut stuck = if enough { None } else { HeldModes::new(trace, held) };
     let under_load = if same { positive(&free) } else { over_weak_points(positive(&free), positive(&stuck)) };

@@ -34,7 +34,7 @@ pub fn unique(system: &System, points: &[Point], load: &Load, x: &[f64], gaps: &
         return None;
     }
     let size = gaps.iter().flatten().fold(0.0, |a: f64, g| a.max(g.abs()));
-    // // Rows of zeros make the decomposition return all right singular vectors.
+    // Rows of zeros make the decomposition return all right singular vectors.
     let space = |flows: &dyn Fn(usize) -> Option<Vec<[f64; 2]>>| {
         let rows: Vec<Vec<f64>> = (0..points.len()).flat_map(|c| constraints(system, c, flows(c))).collect();
         let height = rows.len().max(freedoms);

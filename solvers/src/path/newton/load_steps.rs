@@ -60,7 +60,7 @@ fn run<'a>(tracer: &mut Tracer<'a, '_>, problem: &'a PathProblem) {
         tracer.state.factor = load_step.start;
         tracer.in_force.strategy =
             tracer.settings.strategy(load_step.stage).cloned().unwrap_or_else(|| Arc::new(ArcLength::default()));
-        // // Missing monitors were refused before the start of the path.
+        // Missing monitors were refused before the start of the path.
         tracer.system.monitors = resolve(problem, &tracer.in_force.strategy.monitors()).unwrap_or_default();
         tracer.system.load(StagedLoads::new(earlier.clone(), &load_step.loading, load_step.start));
         let gradient = tracer.system.gradient(&tracer.state);
@@ -69,7 +69,7 @@ fn run<'a>(tracer: &mut Tracer<'a, '_>, problem: &'a PathProblem) {
             LoadStepEnd::Collapse(most) => pieces::driver::follow(tracer, load_step, most),
             LoadStepEnd::Factor(factor) => load_to_factor(tracer, load_step, factor),
         };
-        // // Beyond a peak a structure reaches the load in another equilibrium: it has snapped through.
+        // Beyond a peak a structure reaches the load in another equilibrium: it has snapped through.
         if tracer.limit.peak.is_some() && matches!(outcome, LoadStepEnding::Reached) {
             tracer.ending.status = Status::Collapse;
             outcome = LoadStepEnding::Ended;
@@ -148,7 +148,7 @@ fn answer(mut tracer: Tracer) -> PathAnswer {
     let (balance, stored) = (&tracer.record.balance, tracer.record.state.stored);
     let size = balance.scale(stored);
     if size > 1e-12 * tracer.system.units().energy() {
-        // // The same words in all cases, so that a study shows them once.
+        // The same words in all cases, so that a study shows them once.
         let words = "path_energy in the certificate is the share of Σ|work| + |stored| + dissipated that the balance work − stored − \
                      dissipated leaves (trapezoidal rule over the steps)";
         notes.push(words.into());
@@ -164,7 +164,7 @@ fn answer(mut tracer: Tracer) -> PathAnswer {
     }
     let (state, last, factor, motion) = match tracer.limit.peak {
         Some(peak) => {
-            // // If bonds soften, every joint moves at a peak: only the end of the path shows the hinges.
+            // If bonds soften, every joint moves at a peak: only the end of the path shows the hinges.
             let softens = !tracer.system.laws.responses.is_empty();
             let motion =
                 if softens { tracer.ending.motion.or(peak.motion) } else { peak.motion.or(tracer.ending.motion) };

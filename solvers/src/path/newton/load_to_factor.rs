@@ -13,7 +13,7 @@ use voussoir_core::path::LoadStep;
 
 /// Applies the load up to a factor: in one step if nothing irreversible happens in it, otherwise in several steps.
 pub(super) fn load_to_factor(tracer: &mut Tracer, load_step: &LoadStep, factor: f64) -> LoadStepEnding {
-    // // From the unloaded state a load grows in proportion; later a point may slide and stop within any step.
+    // From the unloaded state a load grows in proportion; later a point may slide and stop within any step.
     let from_nothing = tracer.state.force.iter().flatten().all(|r| *r == 0.0);
     if !from_nothing {
         return pieces::driver::follow(tracer, load_step, factor);

@@ -41,7 +41,7 @@ pub fn ranks(problem: &PathProblem, free: &[Option<usize>]) -> Option<Vec<usize>
             beside[b].push(a);
         }
     }
-    // // Levels of each part come after those of the previous part, with a free rank at both ends.
+    // Levels of each part come after those of the previous part, with a free rank at both ends.
     let mut rank_of: Vec<Option<(usize, usize)>> = vec![None; bodies];
     let mut first = 1;
     for body in 0..bodies {
@@ -56,7 +56,7 @@ pub fn ranks(problem: &PathProblem, free: &[Option<usize>]) -> Option<Vec<usize>
         part.iter().for_each(|&(body, level)| rank_of[body] = Some((first + 2 * level, first)));
         first += 2 * part.last()?.1 + 3;
     }
-    // // A joint to the ground comes before the first level of its part, or with the joint after its body.
+    // A joint to the ground comes before the first level of its part, or with the joint after its body.
     let of_joint = |c: usize| match sides(c).map(|b| b.and_then(|b| rank_of[b])) {
         [Some((a, _)), Some((b, _))] => (a + b) / 2,
         [Some((rank, first)), None] | [None, Some((rank, first))] if rank == first => rank - 1,
@@ -64,7 +64,7 @@ pub fn ranks(problem: &PathProblem, free: &[Option<usize>]) -> Option<Vec<usize>
         [None, None] => 0,
     };
     let mut ranks: Vec<usize> = (0..problem.contacts.len()).flat_map(|c| [of_joint(c); 2]).collect();
-    // // A body has the rank of the joint after it.
+    // A body has the rank of the joint after it.
     ranks.extend(rank_of.iter().flat_map(|rank| [rank.map_or(0, |r| r.0 + 1); 3]));
     Some(ranks)
 }

@@ -35,12 +35,12 @@ pub fn by_active_set(trace: &mut Trace, load: &Load, active: &[usize]) -> Contin
         ))
         .into();
     }
-    // // First with the present factorisation, then with a new one.
+    // First with the present factorisation, then with a new one.
     for fresh in [false, true] {
-        // // The matrix with closed points of the active set is best conditioned; with flowing points it is nearly
+        // The matrix with closed points of the active set is best conditioned; with flowing points it is nearly
         // singular close to a collapse.
         let stale = trace.factors.present.as_ref().is_none_or(|factors| {
-            // // The results depend on the responses themselves.
+            // The results depend on the responses themselves.
             !factors.refine_columns
                 || factors.responses() > UPDATES.max(2 * active.len())
                 || active.iter().any(|c| factors.modes[*c] != ContactMode::Stick)
@@ -69,17 +69,17 @@ fn refresh_for(trace: &mut Trace, open: &[usize], modes: &[ContactMode]) -> bool
         (!factors.refine_columns && refine_columns)
             || factors.responses() > UPDATES.max(2 * open.len())
             || changed(factors) > 2 * UPDATES
-            // // Other methods solved the last events: a factorisation costs less than this number of responses.
+            // Other methods solved the last events: a factorisation costs less than this number of responses.
             || changed(factors) > factors.responses() + AT_ONCE
     };
     if !trace.factors.present.as_ref().is_none_or(stale) {
         return true;
     }
-    // // Open points are closed, because flow at them may be a mechanism.
+    // Open points are closed, because flow at them may be a mechanism.
     let mut closed = modes.to_vec();
     open.iter().for_each(|c| closed[*c] = ContactMode::Stick);
     if let Some(present) = trace.factors.present.as_mut().filter(|present| present.modes == closed) {
-        // // Only its responses are out of date.
+        // Only its responses are out of date.
         present.set_refined(refine_columns);
         return true;
     }
@@ -139,7 +139,7 @@ fn by_newcomers(trace: &mut Trace, load: &Load, active: &[usize], open: &[usize]
     let local = SchurComplement::new((system, &state.points), base, at, open, &modes, &mut log.counts.solves)?;
     let trials = &mut log.counts.rates.trials;
     let rate = if *associated {
-        // // All rising rates have the same forces, and a mechanism proves that no rate rises. A moving support does no
+        // All rising rates have the same forces, and a mechanism proves that no rate rises. A moving support does no
         // work on a mechanism: if it can continue, it does.
         let (guess, free) = (open.iter().map(|c| modes[*c]).collect(), vec![false; open.len()]);
         settled(&local.rate, guess, &free, 1.0, trials)
@@ -208,7 +208,7 @@ fn by_rate_problem(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<C
         }
         Continuation::Open(why) => return Some(Next::Lost(lost(state.factor, active.len(), &why)).into()),
     };
-    // // A mechanism of associated flow is itself the proof.
+    // A mechanism of associated flow is itself the proof.
     let proved = none_rises.is_some() || arrival.factor < 0.0 || (*associated && rate.factor == 0.0);
     if rate.factor <= 0.0 && !proved {
         let why = "it is not decided whether a rate raises the load";
@@ -314,7 +314,7 @@ fn solved_anew(trace: &mut Trace, rates: Rates, load: &Load, modes: &[ContactMod
     };
     let Some(direct) = base.load_rate(system, trace.state.load_step, load) else { return rates };
     let x: Vec<f64> = direct.iter().map(|v| v * rates.factor).collect();
-    // // If the matrix is singular, the sign of its solution is rounding.
+    // If the matrix is singular, the sign of its solution is rounding.
     let along: f64 = x.iter().zip(&rates.x).map(|(a, b)| a * b).sum();
     let direct = Rates::new(system, x, rates.factor, load);
     if along > 0.0 && residual(system, &direct, load, modes).0 < rates.worst {

@@ -18,7 +18,7 @@ use crate::path::system::Load;
 pub fn next_direction(trace: &mut Trace, load: &Load) -> Continued {
     trace.log.counts.rate_problems += 1;
     let active = trace.active_points();
-    // // A single point that arrives can enter one cell only: the present modes lead there.
+    // A single point that arrives can enter one cell only: the present modes lead there.
     if trace.state.sense > 0.0 && (trace.associated || trace.arrived() <= 1) {
         let modes = trace.present_modes();
         if let Some((modes, rates)) = trace.by_chain(load, &active, modes) {
@@ -26,7 +26,7 @@ pub fn next_direction(trace: &mut Trace, load: &Load) -> Continued {
             return Continued { by_chain: true, ..Next::Go(trace.take(modes, rates, load)).into() };
         }
     }
-    // // At the unloaded state all points are in the active set, and no rate is next to another one.
+    // At the unloaded state all points are in the active set, and no rate is next to another one.
     let many = if trace.state.x.iter().all(|v| *v == 0.0) {
         true
     } else {
@@ -40,7 +40,7 @@ pub fn next_direction(trace: &mut Trace, load: &Load) -> Continued {
         if let Some(direction) = on_whole_system(trace, load, &active) {
             return Next::Go(direction).into();
         }
-        // // With associated flow a mechanism itself proves that no rate raises the load.
+        // With associated flow a mechanism itself proves that no rate raises the load.
         let proves =
             |rates: &Rates, associated| rates.factor > 0.0 || associated && rates.factor == 0.0 && !load.settles;
         if let Some((modes, rates)) = by_strength(trace, load, &active)

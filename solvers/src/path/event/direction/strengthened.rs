@@ -93,7 +93,7 @@ fn direction(strong: &mut Trace, load: &Load) -> Option<Direction> {
 fn with_strength(system: &System, points: &[Point]) -> System {
     let strong = |(facets, point): (&Option<Vec<Facet>>, &Point)| {
         let bound = |f: usize, facet: &Facet| match point.settled().is_none() && point.active.contains(&f) {
-            // // The corners of opening and sliding stay separate: at the strength of opening a point may also slide.
+            // The corners of opening and sliding stay separate: at the strength of opening a point may also slide.
             true => facet.normal[0].abs() + facet.normal[1].abs(),
             false => f64::INFINITY,
         };

@@ -133,7 +133,7 @@ impl Sections {
         if self.cycles > MOST_CYCLES {
             return None;
         }
-        // // R of a branch balances the redundants of the cycles beyond it.
+        // R of a branch balances the redundants of the cycles beyond it.
         let mut beyond = vec![vec![0.0; self.cycles]; bodies];
         self.all.iter_mut().for_each(|s| s.shares = vec![0.0; closing.len()]);
         for (k, &s) in closing.iter().enumerate() {
@@ -214,7 +214,7 @@ impl Place {
                     compliance[(i, j % 2)] += v;
                 }
             }
-            // // From the second body, or with opposite sign from the first.
+            // From the second body, or with opposite sign from the first.
             let about = |body: usize| {
                 let g = row_of(system, 2 * contact + i, body);
                 let p = [poles[body][0] - centre[0], poles[body][1] - centre[1]];

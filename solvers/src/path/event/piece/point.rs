@@ -73,7 +73,7 @@ impl Point {
     pub fn arrival(&self, force: [f64; 2]) -> ArrivalPoint {
         let present = || self.settled().unwrap_or(self.mode);
         let (mode, hit) = (self.arrived_from.unwrap_or_else(present), self.arrived_from.is_some());
-        // // Rates are constant on a piece: slip ends only at events of other points.
+        // Rates are constant on a piece: slip ends only at events of other points.
         ArrivalPoint { mode, hit, stops: false, force }
     }
 

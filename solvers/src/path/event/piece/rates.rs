@@ -80,7 +80,7 @@ pub fn leaving(
 pub fn residual(system: &System, rates: &Rates, load: &Load, modes: &[ContactMode]) -> (f64, Vec<f64>) {
     let nc = system.contacts;
     let x = &rates.x;
-    // // If all joints open, forces are zero up to their residual.
+    // If all joints open, forces are zero up to their residual.
     let forces = largest(&x[..2 * nc]).max(1e-300).max(rates.factor.abs() * load.size);
     let motions = largest(&x[2 * nc..]).max(1e-300).max(forces);
     let mut worst: f64 = 0.0;
@@ -149,7 +149,7 @@ fn at_constant_forces((system, points): (&System, &[Point]), (x, factor): (&[f64
 /// Returns the direction of rates and sets the modes of points without a choice; gaps of stuck points are made exact.
 pub fn direction_of(system: &System, points: &mut [Point], rates: Rates, load: &Load) -> Direction {
     let Rates { mut x, mut gaps, mut factor, .. } = rates;
-    // // In a mechanism forces and λ are constant; their rates are rounding errors.
+    // In a mechanism forces and λ are constant; their rates are rounding errors.
     let forces = 2 * system.contacts;
     let stiffest = points.iter().map(|p| p.stiffness).fold(1.0, f64::max);
     let still = if factor == 0.0 { 100.0 * SETTINGS.active * stiffest } else { SETTINGS.active };

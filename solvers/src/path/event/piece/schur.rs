@@ -50,7 +50,7 @@ impl<'a> SchurComplement<'a> {
         base.respond(&points, solves)?;
         base.load_rate(system, load_step, load)?;
         let response = base.local(system, &points, load);
-        // // Rows that fix ε: ġ of the open points, the modes of the others.
+        // Rows that fix ε: ġ of the open points, the modes of the others.
         let mode = |(k, c): (usize, &usize)| system.rows(*c, if k < m { ContactMode::Stick } else { modes[*c] });
         let picks: Vec<[[f64; 4]; 2]> = points.iter().enumerate().map(mode).collect::<Option<_>>()?;
         let fixed = picked(&picks, &response, 2 * n + 1);
@@ -128,7 +128,7 @@ impl<'a> SchurComplement<'a> {
         let n = self.points.len();
         let mut right = left.to_vec();
         self.points.iter().for_each(|c| right[2 * c..2 * c + 2].fill(0.0));
-        // // If the residual concerns only these points, the remaining equations need no solution.
+        // If the residual concerns only these points, the remaining equations need no solution.
         let y = if right.iter().any(|v| *v != 0.0) { base.kept(&right)? } else { base.nothing().1 };
         let held = |k: usize| still && k < self.open;
         let mode = |(k, c): (usize, &usize)| self.system.rows(*c, if held(k) { ContactMode::Stick } else { modes[*c] });

@@ -112,7 +112,7 @@ pub fn add_elastic_hessian(geometry: &Geometry, body: usize, place: &Place, grad
     for columns in by_joints() {
         by_joints().for_each(|rows| out.forces.add_turned(rows, columns, flexibility));
     }
-    // // Derivative by the factor.
+    // Derivative by the factor.
     let back = geometry.turn(-place.motion[body][2]);
     let mut pushed = vec![0.0; flexibility.nrows()];
     for (_, slot, _, load) in place.loads.growing().forces.iter().filter(|l| l.0 == body) {
@@ -195,7 +195,7 @@ fn add_rotations(
     let columns = forces_by_rotations(geometry, body, place, v, out);
     let products: Vec<Vec<f64>> =
         columns.iter().map(|(_, column)| times_flexibility(geometry, body, column, place.blocks)).collect();
-    // // If a block yields, C need not be symmetric: gaps by rotations use C, moments by forces use Cᵀ.
+    // If a block yields, C need not be symmetric: gaps by rotations use C, moments by forces use Cᵀ.
     let yields = matches!(place.blocks.get(body), Some(Some(inner)) if inner.linear.yielding > 0);
     let across: Option<Vec<Vec<f64>>> = yields.then(|| {
         let times = |column: &[f64]| flexibility.column_iter().map(|c| inner(c.as_slice(), column)).collect();

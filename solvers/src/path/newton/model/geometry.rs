@@ -157,7 +157,7 @@ impl<'a> Geometry<'a> {
 
     fn displaced(&self, body: usize, point: Vec2, [x, y, _]: [f64; 3], turn: &Turn) -> Vec2 {
         let arm = point - self.problem.bodies[body].pole;
-        // // R a − a without subtraction: rounding of gaps is relative to the motions, not to the scene.
+        // R a − a without subtraction: rounding of gaps is relative to the motions, not to the scene.
         let swing = if self.finite {
             turned(arm) * turn.rotation[(1, 0)] - arm * (2.0 * turn.half * turn.half)
         } else {

@@ -58,7 +58,7 @@ impl Limits {
         let mut limits = Limits {
             remembers,
             nearby: finite && chain && !remembers,
-            // // The strength of a block that may yield bounds the load, and so do displaced positions.
+            // The strength of a block that may yield bounds the load, and so do displaced positions.
             carries_any_load: !yields && !finite,
             newton: Iterations { search: None, iterations: 30, unsolved: 10, cycle: u32::MAX, one_step: u64::MAX },
             rounding: 0.0,
@@ -67,7 +67,7 @@ impl Limits {
             position: if yields { SETTINGS.inequality() } else { 0.0 },
             rotation: f64::INFINITY,
             weak: -1.0,
-            // // With small displacements the mechanism does not change.
+            // With small displacements the mechanism does not change.
             mechanism: 1.0,
             energy: SETTINGS.energy_of_stage,
         };
@@ -79,14 +79,14 @@ impl Limits {
             (limits.weak, limits.mechanism) = (SETTINGS.small, 1e-3);
         }
         if bonds {
-            // // Between the pieces of a law whole iterations may cycle. A softening law converges soon or not at all:
+            // Between the pieces of a law whole iterations may cycle. A softening law converges soon or not at all:
             // shorter steps cost less than more iterations.
             let nothing = SETTINGS.admissible;
             limits.newton.search =
                 Some(LineSearch { decrease: 0.3, halvings: 4, memory: 1, nothing, merits: Vec::new() });
             (limits.newton.iterations, limits.branch) = (25, SETTINGS.half);
             limits.rounding = limits.rounding.max(400.0 * f64::EPSILON);
-            // // Softening bonds need a smaller energy error in each step.
+            // Softening bonds need a smaller energy error in each step.
             limits.energy = SETTINGS.fine;
         }
         limits

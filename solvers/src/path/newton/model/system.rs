@@ -191,7 +191,7 @@ impl<'a> StepSystem<'a> {
             updates: TractionUpdates { memory: self.problem.untouched(), ..TractionUpdates::default() },
             blocks: self.laws.undeformed.clone(),
         };
-        // // The update of undeformed joints has succeeded in `new`.
+        // The update of undeformed joints has succeeded in `new`.
         if let Ok(updates) = self.laws.responses.update(&state.gap, &state.updates.memory) {
             state.updates = updates;
         }

@@ -185,7 +185,7 @@ pub(super) fn advance(
     let end = StepEnd { state: start.clone(), rate: piece.tangent.clone(), length: 0.0, error: 0.0, unexplained: 0.0 };
     let low = Trial { end, readings };
     let crossing = first_crossing(&low.readings);
-    // // Beyond the end of a branch of a law of tractions a state along the present tangent may not exist.
+    // Beyond the end of a branch of a law of tractions a state along the present tangent may not exist.
     let of_branch = step.branch_crossing(&low.readings);
     let length = length.min(if of_branch <= crossing { of_branch } else { SETTINGS.beyond * crossing });
     if let Some(end) = step.reaching_target(&low.end, length) {
@@ -246,7 +246,7 @@ fn locate(step: &mut Step, mut low: Trial, mut high: Trial) -> Advance {
         if width <= SETTINGS.rounding * whole {
             break;
         }
-        // // If the root of a cubic has not halved the bracket, bisect: rates may jump if a material yields.
+        // If the root of a cubic has not halved the bracket, bisect: rates may jump if a material yields.
         let share = if width > 0.5 * last { 0.5 } else { first_root(&low, &high).clamp(1e-6, 1.0 - 1e-6) };
         last = width;
         let at = low.end.length + share * width;
@@ -255,7 +255,7 @@ fn locate(step: &mut Step, mut low: Trial, mut high: Trial) -> Advance {
             high = middle;
             continue;
         }
-        // // A monitor that stays at zero is violated beyond a corner of the path: only the bracket locates it.
+        // A monitor that stays at zero is violated beyond a corner of the path: only the bracket locates it.
         let arrives = |i: usize| {
             let here = &middle.readings[i];
             let falls =
@@ -268,7 +268,7 @@ fn locate(step: &mut Step, mut low: Trial, mut high: Trial) -> Advance {
             return ended(low, &high);
         }
     }
-    // // Slacks and openings are continuous along a path: a jump over the bracket leads to another branch.
+    // Slacks and openings are continuous along a path: a jump over the bracket leads to another branch.
     let jumps = |(a, b): (&Reading, &Reading)| a.rate.is_some() && !a.is_active() && b.is_violated();
     let far = SETTINGS.cancels * (high.end.length - low.end.length) + length_ahead(step.system, step.start);
     match step.distance(&low, &high) > far || low.readings.iter().zip(&high.readings).any(jumps) {
@@ -293,7 +293,7 @@ fn ended(low: Trial, high: &Trial) -> Advance {
         (_, true, _) => Advance::Target(low.end),
         (false, ..) => Advance::Event(low.end, hits),
         (true, _, true) => Advance::Turn(low.end),
-        // // The bracket is narrower than rounding: all monitors that end in it end here.
+        // The bracket is narrower than rounding: all monitors that end in it end here.
         _ => {
             let hits: Vec<usize> = (0..monitors).filter(|i| high.readings[*i].is_violated()).collect();
             match (hits.is_empty(), high.readings[target].is_violated()) {
@@ -347,7 +347,7 @@ fn hidden_root(low: &Trial, high: &Trial, watched: bool) -> Option<f64> {
     let hidden = |(a, b): (&Reading, &Reading)| {
         let (da, db) = (a.rate?, b.rate?);
         let of = [a.value, da * width, b.value, db * width];
-        // // Only a monitor that turns inside the step has its minimum there.
+        // Only a monitor that turns inside the step has its minimum there.
         if a.value <= a.tolerance || da >= 0.0 || db <= 0.0 {
             return None;
         }
@@ -367,7 +367,7 @@ fn hidden_turn(low: &Trial, high: &Trial) -> Option<f64> {
         return None;
     }
     let gained = high.end.state.factor - low.end.state.factor;
-    // // The derivative of the cubic of the factor, in the sense at the ends.
+    // The derivative of the cubic of the factor, in the sense at the ends.
     let slope = |x: f64| {
         (6.0 * gained * x * (1.0 - x) + da * (1.0 - x) * (1.0 - 3.0 * x) + db * x * (3.0 * x - 2.0)) * da.signum()
     };

@@ -125,7 +125,7 @@ fn greatest_step(tracer: &Tracer) -> f64 {
     let u = tracer.system.units();
     let most = match tracer.in_force.strategy.largest_step() {
         step if step.is_finite() => step,
-        // // The flow of friction turns with the blocks: its error accumulates over the steps of a path.
+        // The flow of friction turns with the blocks: its error accumulates over the steps of a path.
         _ => SETTINGS.largest_finite_step,
     };
     most * u.length / u.displacement
@@ -221,7 +221,7 @@ impl<'d> Run<'d> {
         if length >= SETTINGS.inequality() * self.length.first {
             return None;
         }
-        // // Steps become too short at a corner of a law that is not an event.
+        // Steps become too short at a corner of a law that is not an event.
         if let Some(found) = self.around_corner(tracer) {
             self.length.next = 0.1 * self.length.first;
             tracer.state.blocks.clone_from(&found.state.blocks);
@@ -229,7 +229,7 @@ impl<'d> Run<'d> {
             return self.go_on(tracer, found, modes, None);
         }
         if tracer.system.limits.remembers && !self.crowded() {
-            // // The rate of an event may be rounding if many points are at their bounds: the arrival continues.
+            // The rate of an event may be rounding if many points are at their bounds: the arrival continues.
             let arrival = self.cluster.arrival.as_ref().map(|(modes, piece, _)| (modes.clone(), piece.clone()));
             let own = (tracer.state.mode.clone(), self.piece.clone());
             for (modes, piece) in std::iter::once(own).chain(arrival) {
@@ -264,7 +264,7 @@ impl<'d> Run<'d> {
             let control = piece.control(length);
             let guess = moved(facing, &piece.tangent, length);
             let (next, _) = solve_step(&mut tracer.system, &here, guess, &control).ok()?;
-            // // Blocks have another solution, in which all of them unload.
+            // Blocks have another solution, in which all of them unload.
             if facing.yields() && !next.yields() {
                 return None;
             }
@@ -301,11 +301,11 @@ impl<'d> Run<'d> {
         if !energy.holds && end.length > 1e-3 * self.length.first {
             return Err(self.shorten(tracer, end.length * energy.growth.clamp(0.25, 0.7)));
         }
-        // // A step shortened by an event gives no information about the next length: its error is rounding.
+        // A step shortened by an event gives no information about the next length: its error is rounding.
         if end.length >= SETTINGS.telling * self.length.next {
             let by_error = (SETTINGS.wanted_error / end.error.max(1e-300)).max(0.3) * end.length;
             let by_energy = energy.growth.max(0.25) * end.length;
-            // // The error is of second order in the length.
+            // The error is of second order in the length.
             let by_factor = (0.5 * SETTINGS.most_error / end.unexplained.max(1e-300)).sqrt().max(0.5) * end.length;
             self.length.next = by_error.min(by_energy).min(by_factor).min(2.0 * self.length.next.max(end.length));
         }
@@ -381,7 +381,7 @@ impl<'d> Run<'d> {
     fn turn(&mut self, tracer: &mut Tracer, end: StepEnd) -> Option<LoadStepEnding> {
         let was = self.rises;
         let length = end.length;
-        // // At the turn other rates may be singular too, such as the tilt of a softening block; the chord is not.
+        // At the turn other rates may be singular too, such as the tilt of a softening block; the chord is not.
         let chord = (length > SETTINGS.distinct() * self.length.first).then(|| chord(&tracer.state, &end.state));
         if let Err(ending) = self.take(tracer, end) {
             return ending;
@@ -390,7 +390,7 @@ impl<'d> Run<'d> {
         if let Some(piece) = chord.and_then(|chord| self.piece.turned(&tracer.system, &chord)) {
             self.piece = piece;
         }
-        // // Beyond the turn the rate has the opposite sense; at the turn it is rounding.
+        // Beyond the turn the rate has the opposite sense; at the turn it is rounding.
         self.rises = !was;
         let slope = SETTINGS.rounding * tracer.system.units().factor;
         self.piece.tangent.factor = if self.rises { slope } else { -slope } * self.range.direction;
@@ -519,7 +519,7 @@ impl<'d> Run<'d> {
         match leave_unstable(tracer, &here, work, false) {
             Departure::Stopped => Some(LoadStepEnding::Ended),
             Departure::Stable => self.anew(tracer),
-            // // The present modes continue under control.
+            // The present modes continue under control.
             Departure::Falls => {
                 let (load_step, factor) = (tracer.in_force.load_step, here.factor);
                 self.standing.unstable = true;
@@ -542,7 +542,7 @@ impl<'d> Run<'d> {
     fn event(&mut self, tracer: &mut Tracer, mut end: StepEnd, hits: Vec<Monitor>) -> Option<LoadStepEnding> {
         tracer.system.count("events", 1);
         if hits.iter().any(|hit| matches!(hit.what, What::Branch(_))) {
-            // // Next to the end of a branch a tangent by differences mixes both sides: its rate is unusable.
+            // Next to the end of a branch a tangent by differences mixes both sides: its rate is unusable.
             end.unexplained = 0.0;
         }
         let moved = end.length > 1e-9 * self.length.first;

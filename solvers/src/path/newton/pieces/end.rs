@@ -27,14 +27,14 @@ pub(super) fn end_of_range(
         });
     };
     let done = match tracer.settings.stop(load_step.stage) {
-        // // A support does not move further by itself: the next motion is a fall.
+        // A support does not move further by itself: the next motion is a fall.
         [None, None] if tracer.system.settles() => true,
         [None, None] => {
             let fallen = (greatest - factor) * direction;
             fallen >= SETTINGS.half * (greatest - load_step.start).abs() || gone
         }
         [most, least] => {
-            // // Measured from the last limit point.
+            // Measured from the last limit point.
             let from = tracer.limit.proven_peaks.last().map_or(place, |last| last.displacement);
             most.is_some_and(|most| (displacement - from).abs() >= most)
                 || least.is_some_and(|least| (factor - least) * direction <= 0.0)

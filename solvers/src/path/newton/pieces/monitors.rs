@@ -145,9 +145,9 @@ impl Monitors {
         let force = greatest(&state.force).max(1e-12 * u.force);
         let rigidity = (0..state.gap.len()).map(|c| system.stiffness(c)).fold(0.0, |a: f64, k| a.max(k[0].max(k[1])));
         let rounding = gap_rounding(system, state);
-        // // Accuracy of positions in Newton's method on yielding blocks, relative to the displacements.
+        // Accuracy of positions in Newton's method on yielding blocks, relative to the displacements.
         let of_blocks = system.limits.position * fastest(system, &state.motion);
-        // // If a structure moves as a whole, the rates of gaps and forces are rounding errors of its motion.
+        // If a structure moves as a whole, the rates of gaps and forces are rounding errors of its motion.
         let gap_rate = greatest(&tangent.gap);
         let gap_rounding = SETTINGS.rounding * fastest(system, &tangent.motion);
         let sizes = Sizes {
@@ -176,7 +176,7 @@ impl Monitor {
             return Reading::NEVER;
         }
         let ahead = length_ahead(system, start);
-        // // In a shorter step the branch that a law names is rounding of its history and of the state.
+        // In a shorter step the branch that a law names is rounding of its history and of the state.
         let tolerance =
             (sizes.gap.max(SETTINGS.inequality() * gap[0].hypot(gap[1])) / speed).max(SETTINGS.small * ahead);
         let is_in = |length: f64| {
@@ -184,7 +184,7 @@ impl Monitor {
             let said = system.laws.responses.at(self.contact, there, &start.updates.memory);
             said.is_none_or(|point| point.branch == branch)
         };
-        // // Nearer than the place of the tangents the branch may be rounding, or a point may not have entered it yet.
+        // Nearer than the place of the tangents the branch may be rounding, or a point may not have entered it yet.
         let mut far = ahead.max(tolerance);
         let at_start = std::ptr::eq(start, state);
         let inside = at_start || state.updates.points[self.contact].branch == branch || is_in(far);

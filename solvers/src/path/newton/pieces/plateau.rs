@@ -61,7 +61,7 @@ pub(super) fn plateau(tracer: &mut Tracer, piece: &Piece, direction: f64, flows:
     if moved * fastest < SETTINGS.small * size || !is_same(tracer, &start, &state) {
         return None;
     }
-    // // If no facet may change its mode, the only rate has a constant factor. Tangents of flowing blocks are
+    // If no facet may change its mode, the only rate has a constant factor. Tangents of flowing blocks are
     // regularised and do not show it.
     let remembers = tracer.system.limits.remembers;
     // Slip and forces of facets give the dissipation of the whole motion.
@@ -89,7 +89,7 @@ fn is_same(tracer: &Tracer, start: &State, state: &State) -> bool {
     let largest = start.force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
     let pairs = start.force.iter().flatten().zip(state.force.iter().flatten());
     let change = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    // // If the load has fallen to zero, both are rounding of their values at the limit point.
+    // If the load has fallen to zero, both are rounding of their values at the limit point.
     let peak = tracer.limit.peak.as_ref().map_or(0.0, |peak| peak.factor.abs());
     let carried = largest.max(tracer.system.units().force * peak / tracer.system.units().factor);
     change <= SETTINGS.active * carried

@@ -29,7 +29,7 @@ pub(super) fn ray(tracer: &mut Tracer, piece: &Piece, direction: f64) -> Option<
     if !goes_on || !tractions_persist(&tracer.system, &tracer.state, rate) {
         return None;
     }
-    // // A support that moves a statically determinate structure causes no forces.
+    // A support that moves a statically determinate structure causes no forces.
     let constant = force <= 10.0 * SETTINGS.active * motion && tracer.system.settles();
     let of = |x: f64| if constant { 0.0 } else { x / rate.factor };
     tracer.ending.ray = Some(rate.force.iter().map(|r| r.map(of)).collect());

@@ -97,7 +97,7 @@ fn entering_rate(
     }
     add_weighted_gaps(system, &mut row, &by_gap, &equations);
     if row.iter().all(|x| *x == 0.0) {
-        // // A point that stops flowing has the same rate on both sides of the event.
+        // A point that stops flowing has the same rate on both sides of the event.
         row.copy_from_slice(&piece.row);
     }
     let turned = State { mode: modes.to_vec(), ..state.clone() };

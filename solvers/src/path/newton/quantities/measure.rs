@@ -70,7 +70,7 @@ pub fn increment_along(system: &StepSystem, state: &State, rate: &Tangent) -> In
     let u = system.units();
     let velocity = |body, point| system.geometry.velocity(body, point, &state.motion, &rate.motion);
     let moved = system.problem.load_displacement((system.loads.growing, rate.factor), &rate.motion, velocity);
-    // // The dissipation of bonds is computed in a small step. If the law fails there, the rest still counts.
+    // The dissipation of bonds is computed in a small step. If the law fails there, the rest still counts.
     let small = 1e-6 / tangent_size(system, rate).max(1e-300);
     let ahead = |(g, dg): (&[f64; 2], &[f64; 2])| [0, 1].map(|k| g[k] + small * dg[k]);
     let gaps: Vec<[f64; 2]> = state.gap.iter().zip(&rate.gap).map(ahead).collect();

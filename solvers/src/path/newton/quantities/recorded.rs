@@ -44,7 +44,7 @@ pub fn energy_after(
     for contact in 0..state.gap.len() {
         let Some(law) = system.law(contact) else { continue };
         let (kept, _) = law.irreversible(state.mode[contact], system.step_gap(start, state, contact));
-        // // Trapezoidal rule if the point yielded before on the same facet, or yields from zero force. Otherwise its
+        // Trapezoidal rule if the point yielded before on the same facet, or yields from zero force. Otherwise its
         // force at the start of yielding is unknown: the force at the end is used.
         let from_nothing = start.force[contact] == [0.0; 2] && law.facets.iter().all(|f| f.bound == 0.0);
         let same = from_nothing || start.mode[contact] == state.mode[contact];
@@ -68,7 +68,7 @@ pub fn recorded(
     let mut stored = gradient.stored + stored_by_tractions(system, state);
     for contact in 0..state.gap.len() {
         let Some(law) = system.law(contact) else { continue };
-        // // A tensile strength that opens keeps its force reversibly.
+        // A tensile strength that opens keeps its force reversibly.
         let gap = [state.gap[contact][0] - state.slip[contact][0], 0.0];
         if law.opens(state.mode[contact]) && state.force[contact][0] < 0.0 {
             stored -= state.force[contact][0] * gap[0].max(0.0);

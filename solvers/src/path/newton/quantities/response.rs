@@ -38,7 +38,7 @@ pub fn traction_error(system: &StepSystem, state: &State) -> f64 {
     let largest = state.force.iter().flatten().map(|r| r.abs()).fold(system.units().force, f64::max);
     let moved = state.motion.iter().flat_map(|q| &q[..2]).chain(state.gap.iter().flatten());
     let moved = moved.fold(0.0, |a: f64, x| a.max(x.abs()));
-    // // Half of the tolerance of a certificate.
+    // Half of the tolerance of a certificate.
     let place = system.limits.place;
     let rounding = f64::EPSILON * if place > 0.0 { 256.0 * place } else { 32.0 * moved };
     let mut worst: f64 = 0.0;

@@ -57,7 +57,7 @@ pub fn iterate(
         if !norm.is_finite() {
             return Err("an iteration left the numbers".into());
         }
-        // // A residual that a full step does not lower is rounding.
+        // A residual that a full step does not lower is rounding.
         let stays = whole && norm > 0.3 * last_norm;
         let settled = norm <= system.found() + rounding || (norm <= SETTINGS.admissible + 30.0 * rounding && stays);
         let fine = !linearised.lags || norm <= SETTINGS.fine * (system.found() + rounding);
@@ -73,7 +73,7 @@ pub fn iterate(
         system.count("newton_iterations", 1);
         system.report.iterations += 1;
         let solution = solve(system, &state, &equations, (&row, &right), Accuracy::Rough);
-        // // Modes without a solution may lead to modes with one: with small displacements the shifted equations, which
+        // Modes without a solution may lead to modes with one: with small displacements the shifted equations, which
         // act as a soft bedding, show the points that close.
         unsolved += u32::from(solution.as_ref().is_some_and(|(_, solved)| !solved));
         let Some((step, _)) = solution.filter(|_| unsolved <= most_unsolved) else {
@@ -139,7 +139,7 @@ pub fn holds_at(
     state: &State,
     (inner, rounding, stays): (f64, f64, bool),
 ) -> bool {
-    // // Rounding of positions allows errors of gaps, not of equilibrium.
+    // Rounding of positions allows errors of gaps, not of equilibrium.
     let holds = || {
         let (gap, force) = gap_error(system, residual, state);
         inner <= SETTINGS.inequality()

@@ -179,7 +179,7 @@ pub fn without_factor(responses: &[Vec<f64>], gaps: &[[f64; 2]], factor: f64) ->
 fn modes_of(system: &StepSystem, active: &ActiveSet, modes: Vec<ContactMode>) -> Vec<ContactMode> {
     let mut all = active.modes.clone();
     for (c, mode) in active.contacts.iter().zip(modes) {
-        // // A corner has one mode for all pairs of its facets.
+        // A corner has one mode for all pairs of its facets.
         let law = system.law(*c);
         all[*c] = match mode {
             ContactMode::Corner(i, j) => law.and_then(|law| law.mode_of_pair(i as usize, j as usize)).unwrap_or(mode),

@@ -185,7 +185,7 @@ mod tests {
                 let row = control_row(&system, &control);
                 let right: Vec<f64> = rows.iter().map(|x| -x).collect();
                 let Some((step, true)) = solve_linear(&mut system, &state, &equations, &row, &right) else { continue };
-                // // If all points slide to the same side, the modes do not hold the block.
+                // If all points slide to the same side, the modes do not hold the block.
                 if step.iter().any(|x| x.abs() > 1e3) {
                     continue;
                 }

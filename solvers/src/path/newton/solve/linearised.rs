@@ -120,7 +120,7 @@ pub fn factorised(
         None => by_rows(system, state, equations, row, damping),
     };
     let held = Rc::new(held?);
-    // // The tangents of bonds change the matrix, so modes alone do not identify it.
+    // The tangents of bonds change the matrix, so modes alone do not identify it.
     if system.laws.responses.is_empty() {
         system.cache.factors.hold(Kept {
             equations: equations.clone(),
@@ -193,7 +193,7 @@ pub fn solve_linear(
     if found.as_ref().is_some_and(|(_, solved)| *solved) || !again {
         return found;
     }
-    // // With another held unknown the control may be better conditioned.
+    // With another held unknown the control may be better conditioned.
     system.cache.factors.forget();
     let (held, _) = factorised(system, state, equations, row)?;
     refined(&BorderedSystem::new(held, row)?, right)
@@ -225,7 +225,7 @@ fn refined(bordered: &BorderedSystem<ModeEquations>, right: &[f64]) -> Option<(V
         }
         before = now;
     }
-    // // The remaining residual is rounding of the solution, or the system has no solution.
+    // The remaining residual is rounding of the solution, or the system has no solution.
     let size = norm(&best).max(aim);
     Some((best, before <= 1e-9 * size))
 }

@@ -170,7 +170,7 @@ impl<'k> Nearby<'k> {
                 return Some(x);
             }
             if now.is_nan() || now > SETTINGS.contraction * before {
-                // // The residual may be rounding of the solution.
+                // The residual may be rounding of the solution.
                 return (now.min(before) <= accuracy * norm(&x)).then_some(x);
             }
             before = now;

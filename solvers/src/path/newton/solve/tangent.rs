@@ -13,7 +13,7 @@ use std::rc::Rc;
 pub fn apply_step(system: &StepSystem, state: &mut State, step: &[f64], share: f64) {
     add_step(system, &mut state.force, &mut state.motion, step, share);
     if share == 1.0 {
-        // // Removes the rounding error of a force that the mode determines.
+        // Removes the rounding error of a force that the mode determines.
         for (c, force) in state.force.iter_mut().enumerate() {
             if let Some(corner) = system.law(c).and_then(|law| law.corner(state.mode[c])) {
                 let area = system.problem.contacts[c].area;
@@ -62,7 +62,7 @@ pub fn wanted_modes(system: &mut StepSystem, start: &State, state: &State) -> (V
         .map(|c| match system.law(c) {
             None => ContactMode::Stick,
             Some(law) => {
-                // // In a solution any ρ > 0 gives the same modes, unless rounding of a gap becomes a force.
+                // In a solution any ρ > 0 gives the same modes, unless rounding of a gap becomes a force.
                 let stiffness = system.stiffness(c);
                 let noise = rounding * stiffness[0].max(stiffness[1]);
                 let rho = stiffness.map(|k| k * (SETTINGS.mode * largest / noise).min(1.0));

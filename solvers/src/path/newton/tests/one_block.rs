@@ -150,7 +150,7 @@ fn a_path_begins_with_open_joints() {
 #[test]
 fn a_corner_that_leaves_its_face_ends_the_path() {
     let mut problem = block(0.3, pushed_at(0.1));
-    // // Events within a thousandth of the size: the block slides less far than on a plateau.
+    // Events within a thousandth of the size: the block slides less far than on a plateau.
     problem.contacts.iter_mut().for_each(|contact| contact.sliding.slip = [-5e-4, 5e-4]);
     let answer = followed(&problem, None);
     assert_eq!(answer.status, Status::Collapse, "{:?}", answer.notes);

@@ -106,7 +106,7 @@ fn two_bars_snap_through() {
         how.stop_displacement = Some(0.35);
         let mut states = Kept(Vec::new());
         let answer = NewtonPath {}.trace(&two_bars(a, h, c), &how, &mut states);
-        // // Hanging bars carry more than at the peak: the answer would depend on the end of the path.
+        // Hanging bars carry more than at the peak: the answer would depend on the end of the path.
         assert_eq!(answer.status, Status::Stalled, "{:?}", answer.notes);
         assert!(answer.notes.iter().any(|note| note.starts_with("still rising")), "{:?}", answer.notes);
         assert_eq!(answer.limit_points.len(), 1);

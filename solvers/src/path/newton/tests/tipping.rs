@@ -94,7 +94,7 @@ fn a_block_that_is_unloaded_comes_back() {
     problem.load_steps.push(stage(2, force(v(0.0, HEIGHT), v(-1.0, 0.0)), LoadStepEnd::Factor(0.3)));
     let answer = followed(&problem, None);
     assert_eq!(answer.status, Status::Stands, "{:?}", answer.notes);
-    // // The direction of the load and its arm are unchanged: no force remains.
+    // The direction of the load and its arm are unchanged: no force remains.
     answer.state.force.iter().for_each(|r| assert_close(r[0], 0.5, 1e-9));
     assert_close(answer.state.motion[1][2], 0.0, 1e-12);
 }

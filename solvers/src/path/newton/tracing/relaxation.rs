@@ -93,7 +93,7 @@ fn descent(system: &mut StepSystem, from: &State, work: &SecondOrderWork, sense:
         last_moved = moved;
         system.loads.damping = None;
         rate = match second_order_work(system, &state) {
-            // // With this damping each step is unique, and unstable motions double in it.
+            // With this damping each step is unique, and unstable motions double in it.
             Some(work) if work.turned > 0 => 2.0 * work.curvature.abs().max(SETTINGS.same_rate()),
             _ if iterations <= 10 => (0.5 * rate).max(SETTINGS.same_rate()),
             _ => rate,
@@ -107,7 +107,7 @@ fn descent(system: &mut StepSystem, from: &State, work: &SecondOrderWork, sense:
 fn settled(system: &mut StepSystem, state: &State, control: &Control, moved: f64, rate: f64) -> Option<State> {
     let (next, _) = iterate(system, state, state.clone(), control, 8, None).ok()?;
     let work = second_order_work(system, &next).filter(|work| work.negative == 0 || work.turned == 0)?;
-    // // By the equation of the damped step, the remaining distance is about κ / k times the step.
+    // By the equation of the damped step, the remaining distance is about κ / k times the step.
     let left = moved * (1.0 + rate / work.curvature.abs().max(1e-12));
     (distance(system, state, &next) <= 4.0 * left).then_some(next)
 }
