@@ -360,7 +360,7 @@ impl Dictionary {
         }
     }
 
-    /// Searches a point with x ≥ 0 and the fixed variables at zero, by the dual simplex method.
+    /// Searches for a point with x ≥ 0 and the fixed variables at zero, by the dual simplex method.
     pub fn feasible(&mut self) -> Feasibility {
         self.shift_costs();
         self.refuted = None;

@@ -213,7 +213,7 @@ impl Inquiry<'_> {
         }
     }
 
-    /// Searches rates with λ rising; returns a proof if no such rate exists. With `few` combinations the search is complete,
+    /// Searches for rates with λ rising; returns a proof if no such rate exists. With `few` combinations the search is complete,
     /// since the rate that another algorithm finds may not be the only one. Otherwise the first rate is kept.
     fn rising(&mut self, few: bool) -> (Option<NoRate>, Algorithm) {
         let trials = &mut self.counts.trials;

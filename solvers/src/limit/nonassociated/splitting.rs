@@ -240,7 +240,7 @@ impl Products {
         (multipliers, bound)
     }
 
-    /// Searches exact multipliers of a bound, starting from approximate ones, which are improved.
+    /// Searches for exact multipliers of a bound, starting from approximate ones, which are improved.
     fn prove(&mut self, bound: f64, near: &mut DMatrix<f64>, iterations: usize) -> Option<DMatrix<f64>> {
         let target = &self.objective - &self.power * (bound / self.unit);
         let mut nearly = SETTINGS.nearly;

@@ -47,7 +47,7 @@ pub enum LimitPointTest {
     Unknown(String),
 }
 
-/// Searches a rate with λ growing in the sense `direction` at a converged state, or proves that none exists.
+/// Searches for a rate with λ growing in the sense `direction` at a converged state, or proves that none exists.
 pub fn limit_point_test(system: &mut StepSystem, state: &State, direction: f64) -> LimitPointTest {
     let active = active_set(system, state, &[]);
     let count: usize = active.facets.iter().map(|(facets, _)| facets.len()).sum();

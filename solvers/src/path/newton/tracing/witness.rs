@@ -51,7 +51,7 @@ pub fn none_continues(system: &mut StepSystem, (state, seen): (&State, &PathStat
     Some(Witness { state: seen.clone(), claim: RateClaim::NoneContinues(trees) })
 }
 
-/// Searches a proof at a state over the modes of the active points, which are given with λ for a unit of the load.
+/// Searches for a proof at a state over the modes of the active points, which are given with λ for a unit of the load.
 fn search<T>(
     system: &mut StepSystem,
     state: &State,
