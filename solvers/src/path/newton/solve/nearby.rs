@@ -27,7 +27,7 @@ const MOST_CHANGED: usize = 6;
 /// Greatest number of refinements.
 const MOST_REFINEMENTS: usize = 8;
 
-/// Factors with the equations that they are used to solve.
+/// Factors, with the equations to solve.
 struct Nearby<'k> {
     kept: &'k Kept,
     factors: &'k ChainFactors,
