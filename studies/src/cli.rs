@@ -163,8 +163,12 @@ enum Command {
         /// laws, materials, scenes, solvers, kinds, writers …; all if it is omitted
         kind: Option<String>,
     },
-    /// Print the JSON Schema of study files
-    Schema,
+    /// Print the JSON Schema of study files, or of results.json
+    Schema {
+        /// Files that the schema describes
+        #[arg(default_value = commands::explain::SCHEMAS[0], value_parser = commands::explain::SCHEMAS)]
+        files: String,
+    },
     /// Check results against their study
     Verify {
         /// Folder written by `run`
@@ -217,7 +221,7 @@ impl Command {
             Command::Explain { what, export: None } => commands::explain::explain(&what),
             Command::Conform { tags, out } => commands::conform::conform_tags(&tags, out.as_deref()),
             Command::List { kind } => commands::explain::list(kind.as_deref()),
-            Command::Schema => commands::explain::schema(),
+            Command::Schema { files } => commands::explain::schema(&files),
             Command::Verify { dir, study, set, partial, jobs } => {
                 commands::verify::verify(&dir, &commands::verify::VerifyOptions { study, set, partial, jobs })
             }

@@ -143,7 +143,56 @@ fn the_program_explains_itself() {
     assert!(path.contains("event_path, small displacements") && path.contains("1 factorisation"), "{path}");
     let schema = voussoir(&["schema"]);
     assert!(serde_json::from_slice::<serde_json::Value>(&schema.stdout).expect("JSON").is_object());
+    assert_eq!(schema.stdout, voussoir(&["schema", "studies"]).stdout);
+    assert_eq!(code(&voussoir(&["schema", "report"])), 2);
     assert_eq!(code(&voussoir(&["check", study().to_str().expect("a path")])), 0);
+}
+
+/// The names of an object; none of a value that is no object.
+fn names(value: &serde_json::Value) -> Vec<&str> {
+    value.as_object().into_iter().flat_map(|object| object.keys().map(String::as_str)).collect()
+}
+
+/// The schema of results describes every property in a sentence, has a definition for every reference, and has exactly the
+/// keys that results have.
+#[test]
+fn the_schema_of_results_is_complete() {
+    let printed = String::from_utf8(voussoir(&["schema", "results"]).stdout).expect("UTF-8");
+    let schema: serde_json::Value = serde_json::from_str(&printed).expect("JSON");
+    for target in printed.split("\"#/$defs/").skip(1).filter_map(|rest| rest.split('"').next()) {
+        assert!(schema["$defs"].get(target).is_some(), "{target}");
+    }
+    let definitions = names(&schema["$defs"]).into_iter().map(|name| (name, &schema["$defs"][name]));
+    let objects: Vec<_> = definitions.chain([("results", &schema)]).collect();
+    for (name, object) in &objects {
+        assert!(object["description"].as_str().is_some_and(|text| text.ends_with('.')), "{name}");
+        for key in names(&object["properties"]) {
+            let text = object["properties"][key]["description"].as_str().unwrap_or_default();
+            assert!(text.len() > 8 && text.ends_with('.'), "{name}.{key}: {text}");
+        }
+        for key in object["required"].as_array().into_iter().flatten().filter_map(|key| key.as_str()) {
+            assert!(object["properties"].get(key).is_some(), "{name}.{key} is required and has no description");
+        }
+    }
+    let folder = empty_folder("schema_of_results");
+    assert_eq!(
+        code(&voussoir(&[
+            "run",
+            study().to_str().expect("a path"),
+            "--out",
+            folder.to_str().expect("a path"),
+            "--quiet"
+        ])),
+        0
+    );
+    let results = timeless(&folder);
+    let cases = results["cases"].as_array().expect("cases").iter().map(|case| (&schema["$defs"]["case"], case));
+    for (object, value) in cases.chain([(&schema, &results)]) {
+        let (known, written) = (names(&object["properties"]), names(value));
+        assert!(written.len() > 10 && written.iter().all(|key| known.contains(key)), "{written:?}");
+        let required = object["required"].as_array().expect("a list");
+        assert!(required.iter().all(|key| written.contains(&key.as_str().expect("a key"))), "{written:?}");
+    }
 }
 
 /// `run` solves every point study, writes a row for each step, and reports a stress that cannot be reached. `verify`

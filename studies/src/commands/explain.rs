@@ -1,9 +1,10 @@
 //! `voussoir list`, `explain` and `schema`.
 
 use super::error::{CliError, Outcome, Verdict};
-use super::print::{say, say_data};
+use super::print::{print, say, say_data};
 use super::{files, topics};
 use crate::kinds::json_schema::json_schema;
+use crate::results::RESULTS_SCHEMA;
 use std::path::Path;
 use voussoir_core::plugin::{Card, PluginKind, cards, cards_of, describe, nearest};
 
@@ -29,9 +30,15 @@ pub fn list(kind: Option<&str>) -> Outcome {
     Ok(Verdict::Proved)
 }
 
-/// Prints the JSON Schema of study files.
-pub fn schema() -> Outcome {
-    say(format!("{:#}", json_schema()));
+/// Files that have a JSON Schema; without a choice the first ones.
+pub const SCHEMAS: [&str; 2] = ["studies", "results"];
+
+/// Prints the JSON Schema of study files, or of results.json.
+pub fn schema(files: &str) -> Outcome {
+    match files {
+        "results" => print(RESULTS_SCHEMA.as_bytes()),
+        _ => say(format!("{:#}", json_schema())),
+    }
     Ok(Verdict::Proved)
 }
 

@@ -38,3 +38,6 @@ pub use rank::{least_of, load_rank};
 pub use sensitivity::SensitivityEntry;
 pub use study_results::StudyResults;
 pub use totals::{MAX_SHOWN, Totals};
+
+/// The JSON Schema of results.json. A field that is added to a result is added there too.
+pub const RESULTS_SCHEMA: &str = include_str!("results.schema.json");
