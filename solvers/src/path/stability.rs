@@ -2,8 +2,8 @@
 //!
 //! With the modes of all contact points held, rates satisfy K q̇ = λ̇ p + f for any small wrenches f on the bodies,
 //! contact forces condensed out. The factorisation of a solver gives the flexibility S = K⁻¹ column by column. By
-//! Sylvester's law S has as many negative eigenvalues as K, and ½(S + Sᵀ) as many as ½(K + Kᵀ), since ½(S + Sᵀ) = S ½(K
-//! + Kᵀ) Sᵀ. Motions that the modes exclude are eigenvectors of S with eigenvalue zero, and do not count.
+//! Sylvester's law S has as many negative eigenvalues as K, and ½(S + Sᵀ) as many as ½(K + Kᵀ), since
+//! ½(S + Sᵀ) = S ½(K + Kᵀ) Sᵀ. Motions that the modes exclude are eigenvectors of S with eigenvalue zero, and do not count.
 //!
 //! ```text
 //! loads held           second-order work q̇ᵀ K q̇ > 0 for all q̇: no negative eigenvalue

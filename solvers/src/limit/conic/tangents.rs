@@ -16,8 +16,8 @@ use voussoir_core::model::Wrenches;
 /// Greatest number of programs.
 const MOST: usize = 12;
 
-/// Returns the tangent of a stress block at one end for the normal force N̄ = `pressed`: 2 ū (N + F_t) − ū² ≤ F (2 N_i
-/// + F_t), ū = N̄ + F_t, over F.
+/// Returns the tangent of a stress block at one end for the normal force N̄ = `pressed`: 2 ū (N + F_t) − ū² ≤
+/// F (2 N_i + F_t), ū = N̄ + F_t, over F.
 fn tangent(block: StressBlock, end: usize, pressed: f64) -> ForceRow {
     let share = ((pressed + block.tension) / block.total).clamp(0.0, 1.0);
     let mut normal = [2.0 * share, 2.0 * share, 0.0];

@@ -1,8 +1,8 @@
 //! The limit point test: finds out if a rate with growing λ starts at a converged state (small displacements).
 //!
 //! Points with slack in all facets stay stuck; open points without strength stay open. The other points are the active
-//! set. With these points stuck, equilibrium and elasticity are one factorisation, which gives the rate problem ṙ = S ġ
-//! + s λ̇ over them ([`rate::problem`](crate::rate::problem)). Branching finds a rate with λ̇ = 1 or proves that none
+//! set. With these points stuck, equilibrium and elasticity are one factorisation, which gives the rate problem
+//! ṙ = S ġ + s λ̇ over them ([`rate::problem`](crate::rate::problem)). Branching finds a rate with λ̇ = 1 or proves that none
 //! exists.
 
 use super::tangent::tangent_from;
