@@ -44,7 +44,7 @@ pub struct Settings {
     pub beyond: f64,
     /// Load at the end of a falling path, relative to the greatest limit point, by default.
     pub half: f64,
-    /// Reduction of the residual per iteration that is required of factors of a nearby state.
+    /// Greatest ratio of successive residuals at which the factorisation of a nearby state is still used.
     pub contraction: f64,
     /// Share of a residual above which an iteration counts as without progress.
     pub stays: f64,

@@ -12,7 +12,7 @@ use std::process::ExitCode;
 /// Version and commit of the program.
 const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (commit ", env!("VOUSSOIR_COMMIT"), ")");
 
-/// How masonry made of blocks stands and collapses.
+/// Stability and collapse of masonry made of blocks.
 #[derive(Parser)]
 #[command(name = "voussoir", version = VERSION, about)]
 struct Cli {
@@ -49,7 +49,7 @@ enum Command {
         /// Print nothing but errors
         #[arg(long)]
         quiet: bool,
-        /// Solve one part of the study, say 2/8 on the second of eight machines; `merge` puts the parts together
+        /// Solve one part of the study, for example 2/8 on the second of eight machines; `merge` puts the parts together
         #[arg(long, value_name = "M/N", conflicts_with_all = ["case", "open"])]
         shard: Option<Shard>,
         /// Print each answered case as a line of JSON, and nothing else on standard output

@@ -1,4 +1,4 @@
-//! Voussoir: how masonry made of blocks stands and collapses.
+//! Voussoir: stability and collapse of masonry made of blocks.
 //!
 //! You can read a study from a text, a file or a value with the same keys, or build it step by step. Its results are typed
 //! and contain their proofs:

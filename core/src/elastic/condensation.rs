@@ -169,7 +169,7 @@ impl Condenser {
     /// inertia.
     ///
     /// # Errors
-    /// Names the fault of the body, its mesh or a point, or different numbers of points and forces.
+    /// Returns an error if the body, its mesh or a point is invalid, or if the numbers of points and forces differ.
     pub fn recover(
         &mut self,
         vertices: &[Vec2],

@@ -59,8 +59,8 @@ pub fn carried(chords: &[Chord], [start, end]: [f64; 2], rounding: f64) -> Vec<(
     cuts.extend([start, end]);
     cuts.retain(|&x| start <= x && x <= end);
     cuts.sort_by(f64::total_cmp);
-    // Between two cuts one chord is the upper one. Its parts are joined again, so that each chord gets one force at the
-    // middle of its loaded length.
+    // Between two neighbouring cuts the same chord is uppermost. Its parts are joined again, so that each chord gets one
+    // force at the middle of its loaded length.
     let mut parts: Vec<(Chord, f64, f64)> = Vec::new();
     for pair in cuts.windows(2).filter(|pair| pair[0] < pair[1]) {
         let middle = (pair[0] + pair[1]) / 2.0;

@@ -43,7 +43,7 @@ pub fn table(bench: &Bench) -> String {
     let mut text: String = table.to_string().lines().map(|line| line.trim_end().to_string() + "\n").collect();
     for (problem, name, why) in &bench.refused {
         let of = if several { format!("{}: ", bench.problems[*problem].name) } else { String::new() };
-        text += &format!("{of}{name} takes no part: {why}\n");
+        text += &format!("{of}{name} is not measured: {why}\n");
     }
     text
 }

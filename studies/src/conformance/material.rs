@@ -115,7 +115,7 @@ fn axes(recorder: &mut Recorder, subject: &Subject) {
         let strain = turned(strain, &axes, 0.5);
         let with_block = at(strain, Some(&axes)).map(off);
         recorder.hold("axes", with_block.is_ok_and(|off| off < 1e-9), || {
-            format!("turned together with its block it does not answer turned: {strain:?}")
+            format!("if block and strain rotate together, the stress does not rotate with them: {strain:?}")
         });
         turned_alone = turned_alone.max(at(strain, None).map_or(f64::INFINITY, off));
     }

@@ -119,7 +119,7 @@ fn check_sample(recorder: &mut Recorder, card: &Card, sample: &Sample) {
     recorder.hold("round_trip", same, || {
         format!("written and read again it is {:?}, not {}", again.map(|again| again.says()), law.says())
     });
-    recorder.hold("purity", law.says() == law.says(), || "asked twice it says something else".into());
+    recorder.hold("purity", law.says() == law.says(), || "two equal calls give different results".into());
     let mut unknown = table.clone();
     unknown["no_such_key"] = 1.0.into();
     recorder.hold("unknown_keys", Law::read(card.kind, &unknown).is_err(), || {

@@ -193,7 +193,7 @@ pub fn headline(result: &CaseResult, stages: &[Stage]) -> String {
         }
         (Status::Unbounded, _) => "unbounded: it carries any multiple of the load".into(),
         _ if result.supports_cannot_move() => {
-            "no equilibrium: no motion of the rigid blocks goes with that of their supports".into()
+            "no equilibrium: the rigid blocks have no motion that is compatible with the support displacements".into()
         }
         (Status::NoEquilibrium, _) => "no equilibrium: the loads before the last stage cannot be carried".into(),
         (Status::Stands, None) => "stands: every stage reached its factor".into(),

@@ -95,7 +95,7 @@ pub struct YieldedEntry {
 pub struct StateEntry {
     /// Name of the stage.
     pub stage: String,
-    /// The factor of that stage's loads (of its gravity, where `gravity` is set).
+    /// Factor of the loads of the stage. If `gravity` is true, factor of its gravity.
     pub factor: f64,
     /// True if gravity was being applied.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -113,7 +113,7 @@ pub struct StateEntry {
 pub struct EventEntry {
     /// Name of the stage; gravity of a stage comes before its loads.
     pub stage: String,
-    /// The factor of that stage's loads (of its gravity, where `gravity` is set).
+    /// Factor of the loads of the stage. If `gravity` is true, factor of its gravity.
     pub factor: f64,
     /// True if it happened while gravity was applied.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]

@@ -69,10 +69,17 @@ fn explain_case(case: &Case, text: &mut String) {
         let tag = limit_solvers(input.solver, &problem).next().map_or("no solver", |(tag, _)| tag).to_string();
         let _ = match stage.target {
             Target::Collapse => {
-                writeln!(text, "  {tag}: stands at factor {}? then the greatest factor", search_start(stage))
+                writeln!(
+                    text,
+                    "  {tag}: checks that factor {} is carried, then finds the greatest factor",
+                    search_start(stage)
+                )
             }
             Target::Factor(factor) => {
-                writeln!(text, "  {tag}: stands up to factor {factor}? (left to the next stage where that starts here)")
+                writeln!(
+                    text,
+                    "  {tag}: checks that factor {factor} is carried (left to the next stage if that starts here)"
+                )
             }
         };
         if let Some(card) = card(PluginKind::LimitSolver, &tag) {

@@ -257,8 +257,8 @@ fn readings(assembly: &Assembly, problem: &LimitProblem, result: &CaseResult) ->
     }
     if free.any(|body| assembly.yields(body)) {
         notes.push(
-            "the material of blocks yields, which limit analysis of rigid blocks does not see: crushing counts here only \
-             where a joint has a compressive_strength; newton_path follows blocks that yield"
+            "limit analysis treats blocks as rigid and ignores their yielding: it includes crushing only in joints with a \
+             compressive_strength; newton_path includes blocks that yield"
                 .into(),
         );
     }

@@ -118,8 +118,8 @@ fn blocked(
     result.certificate = certificate;
     result.proof = ProofFields { ray: Some(field_entries(ray)), ..ProofFields::default() };
     result.notes.push(
-        "rigid blocks cannot follow their supports: no motion that their joints allow goes with that of the supports, and \
-             forces would grow without bound; blocks or joints that deform decide what happens"
+        "rigid blocks cannot follow their supports: no motion that the joints allow is compatible with the support \
+             displacements, and forces would grow without bound; model deformable blocks or joints"
             .into(),
     );
     Ok(())
@@ -128,7 +128,9 @@ fn blocked(
 fn followed(input: &CaseInput, index: usize, asked: Settling, result: &mut CaseResult) -> Result<Vec<Hinge>, String> {
     let (assembly, problem) = (input.assembly, asked.problem);
     if problem.joints.iter().any(|joint| joint.fill.is_some()) {
-        return Err("settlements of rigid blocks take no fill that presses: switch its resistance off".into());
+        return Err(
+            "settlements of rigid blocks do not support fill with resistance: remove scene.fill.resistance".into()
+        );
     }
     let supports = support_motions(assembly, input.stages, index)?;
     let (field, motion, unique, flow) = match common_motion(assembly, &supports).zip(result.proof.field.as_deref()) {
@@ -190,9 +192,8 @@ fn followed(input: &CaseInput, index: usize, asked: Settling, result: &mut CaseR
             ),
             FlowRule::NonAssociated => (
                 None,
-                "blocks follow their supports with the laws' own flow: a state in balance, within the strengths, that moves only \
-                 where it yields; there may be others, with other forces and motions, and only a path of joints that have a \
-                 stiffness tells to which of them blocks come",
+                "blocks follow their supports: the state obeys equilibrium, the strengths and the laws' own flow, but it may \
+                 not be unique; to find the state that the blocks reach, give the joints a stiffness and use a path solver",
             ),
         };
         result.flow_read_as = read;

@@ -54,8 +54,8 @@ pub(super) fn stands_without_a_path(input: &CaseInput, path: &CaseResult) -> Opt
     if !proved {
         result.flow_read_as = Some("associated".into());
         result.notes.push(
-            "an admissible field carries the loads, so that it stands where slip is associated; no path from unloaded \
-             joints was found, and with the flow of the laws whether it stands may depend on how the joints were compressed"
+            "an admissible field carries the loads, so the structure stands if flow is associated; no path from unloaded \
+             joints was found; with the laws' own flow the result may depend on the initial compression of the joints"
                 .into(),
         );
     }

@@ -76,7 +76,8 @@ impl Entity<'_> {
 pub(super) fn read_drawing(text: &str) -> Result<Drawing, String> {
     let pairs = if text.starts_with(BINARY.trim_end_matches('\0')) { binary_pairs(text)? } else { text_pairs(text)? };
     let mut drawing = Drawing { unit: unit(&pairs), ..Drawing::default() };
-    let entities = entities(&pairs).ok_or("there is no section ENTITIES: this is no DXF file, or not all of it")?;
+    let entities =
+        entities(&pairs).ok_or("the section ENTITIES is missing: this is not a DXF file, or it is incomplete")?;
     let mut next = entities.iter().peekable();
     while let Some(entity) = next.next() {
         let mut vertices = Vec::new();

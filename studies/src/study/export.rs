@@ -108,7 +108,10 @@ fn scene(case: &Case) -> Result<Json, String> {
             }
             Bond::Bonded if fixed => {}
             Bond::Bonded => {
-                return Err(format!("\"{}\" and \"{}\" are bonded, which blocks cannot say", names[0], names[1]));
+                return Err(format!(
+                    "\"{}\" and \"{}\" are bonded; scene = \"blocks\" does not support bonded blocks",
+                    names[0], names[1]
+                ));
             }
         }
     }

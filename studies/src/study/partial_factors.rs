@@ -139,8 +139,8 @@ pub fn design<'a>(resolved: &'a Resolved, notes: &mut Vec<String>) -> Cow<'a, Re
     let heavier = factors.get("fill_weight").and_then(Json::as_f64).filter(|factor| *factor > 1.0);
     if let (Some(factor), true) = (heavier, resolved.at("scene.fill.resistance").is_some_and(Json::is_object)) {
         notes.push(format!(
-            "factors.fill_weight = {factor} raises the resistance of the fill too (one source, one factor); where weight helps, \
-             its favourable value decides: solve with fill_weight = 1 besides"
+            "factors.fill_weight = {factor} raises the resistance of the fill too (one source, one factor); if more weight \
+             raises the load factor, also solve with fill_weight = 1 and use the lower result"
         ));
     }
     out.remove("factors");

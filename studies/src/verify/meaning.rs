@@ -147,7 +147,7 @@ impl<'a> Comparison<'a> {
             (Rule::Any, ..) if stored.is_null() == again.is_null() => {}
             (Rule::Curve, Json::Array(_), Json::Array(_)) => {
                 if !same_curve(stored, again, self.route) {
-                    self.found.push("the curve is not that of solving again".into());
+                    self.found.push("the second solution gives another curve".into());
                 }
             }
             (Rule::Events, Json::Array(_), Json::Array(_)) => {
@@ -247,7 +247,7 @@ fn measure(value: &Json, key: &str, greatest: &mut HashMap<String, f64>) {
     }
 }
 
-/// The greatest number of a list.
+/// The greatest absolute value of a list.
 fn greatest_number(list: &Json) -> f64 {
     list.as_array().into_iter().flatten().filter_map(Json::as_f64).fold(0.0, |most, x| most.max(x.abs()))
 }

@@ -49,14 +49,20 @@ pub fn assumptions(case: &Case) -> Vec<(String, String)> {
     let mut rows = vec![row("dimensions", "a plane model, the same over the width; static loads")];
     rows.extend(used(case).into_iter().map(|(what, card)| (what, format!("{} ({})", card.summary, card.tag))));
     if matches!(case.solver.solver, SelectedSolver::Auto) {
-        rows.push(row("solver", "the cheapest that answers the question, named beside each answer (auto)"));
+        rows.push(row(
+            "solver",
+            "chosen automatically: the fastest solver that supports the case; each result names it",
+        ));
     }
     let finite = case.solver.settings.finite;
     rows.push(row("displacements", if finite { "finite" } else { "small: equilibrium of the undeformed scene" }));
     let deforms = (0..assembly.bodies.len()).any(|body| assembly.is_deformable(body));
     rows.push(row("blocks", if deforms { "some deform" } else { "rigid" }));
     if assembly.bridge.as_ref().is_some_and(|bridge| !bridge.road.is_empty()) {
-        rows.push(row("fill", "weighs in vertical columns and presses with horizontal forces; it is no continuum"));
+        rows.push(row(
+            "fill",
+            "modelled by the weight of vertical columns and by horizontal forces, not as a continuum",
+        ));
         let absent = |key: &str| case.resolved.at(key).is_none_or(Json::is_null);
         rows.extend(OF_FILL.iter().filter(|(_, key, _)| absent(key)).map(|(what, ..)| row(what, "none")));
     }
@@ -67,7 +73,7 @@ pub fn assumptions(case: &Case) -> Vec<(String, String)> {
     }
     rows.push(row(
         "proof",
-        "each answer is recomputed from the scene without its solver; the residuals stand under its certificate",
+        "each result is checked from the scene without the solver; its certificate lists the residuals",
     ));
     rows
 }

@@ -461,7 +461,7 @@ fn congruent_voussoirs_share_one_factorisation() {
     assert_eq!(condenser.factorisations(), 3);
 }
 
-/// Impossible bodies are refused with the reason, without panic.
+/// An invalid body gives an error with the reason and no panic.
 #[test]
 fn impossible_bodies_are_refused() {
     let mut condenser = Condenser::new(Plane::Strain, WIDTH);

@@ -145,7 +145,7 @@ impl PathChain {
             }
             rate = next;
         }
-        Err("the rate just beyond the state does not load as its laws say".into())
+        Err("the rate just after the state violates the loading conditions of the laws".into())
     }
 
     /// Returns a rate in the same direction, scaled to the size of the motion of the state.

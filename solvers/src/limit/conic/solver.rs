@@ -19,7 +19,7 @@ use voussoir_core::limit::{
 use voussoir_core::model::Wrenches;
 use voussoir_core::plugin::{Capability, Card, Keys, PluginKind};
 
-/// Greatest number of bodies of scenes on which other units of force are tried if the polish does not converge.
+/// If the polish does not converge, other units of force are tried in scenes with at most this many bodies.
 const MOST_IN_UNITS: usize = 500;
 
 /// Limit analysis of any scene.

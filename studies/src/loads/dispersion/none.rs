@@ -18,7 +18,7 @@ voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::Dispersion,
         tag: "none",
-        summary: "a load reaches the extrados as it stands",
+        summary: "loads reach the extrados without dispersion",
         file: file!(),
         package: voussoir_core::package!(),
         page: "# `none`\n\nThe load acts on the extrados where it stands, as where `dispersion` is not given.\n",

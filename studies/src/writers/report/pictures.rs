@@ -8,8 +8,8 @@ use crate::writers::page::figure;
 use maud::{Markup, PreEscaped, html};
 
 /// The caption of a load-displacement curve.
-pub(super) const CURVE: &str = "The load over its displacement along itself (that of the rigid motion of the blocks that carry it), \
-counted from the scene without any load.";
+pub(super) const CURVE: &str = "Load against displacement. The displacement is that of the loaded blocks as rigid bodies, in the \
+direction of the load, from the unloaded scene.";
 
 /// Explains the pictures.
 const MEANING: &str = "A thrust line shows where the resultant force crosses the joints. While it stays within the blocks an \

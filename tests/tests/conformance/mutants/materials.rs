@@ -136,7 +136,7 @@ const TABLE: &str = "young_modulus = 5e9\nyield_stress = 1e7";
 
 /// 3 K = E / (1 − 2ν).
 const TRIPLE_BULK: f64 = 5e9 / 0.6;
-/// κ at which 3 A σ = R decreases to R_u: the tip is at R_u / (3 A) where 3 K (ε − A κ) has this value.
+/// Stress σ at the tip of the cone when R has decreased to R_u: 3 A σ = R_u.
 const TIP: f64 = 1e6 / 0.9;
 const BACK: f64 = TRIPLE_BULK * 1e-4;
 
