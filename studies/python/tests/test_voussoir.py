@@ -85,7 +85,10 @@ def test_mistakes_are_exceptions_with_text_and_place(tmp_path):
     with pytest.raises(voussoir.StudyError) as found:
         voussoir.check(path)
     said = subprocess.run([sys.executable, "-m", "voussoir", "check", path], capture_output=True, text=True)
-    assert said.returncode == 2 and str(found.value) in said.stderr and 'did you mean "friction"?' in str(found.value)
+    # The command line shows the line of the file between the mistake and its help.
+    first, *rest = str(found.value).splitlines()
+    assert said.returncode == 2 and first in said.stderr
+    assert rest == ['  help: did you mean "friction"?'] and '= help: did you mean "friction"?' in said.stderr
     mistake = found.value.mistakes[0]
     assert mistake["file"] == str(path) and mistake["line"] > 1 and mistake["key"].startswith("joints.dry")
     with pytest.raises(voussoir.StudyError, match="joints.dry.friction"):

@@ -167,13 +167,28 @@ def _answer(made: Any, gaps: Any, old: Any) -> dict[str, Any]:
 
 
 def _differences(made: Any, gaps: Any, old: Any) -> Any:
-    """Computes the tangent by central differences."""
+    """Computes the tangent by differences on the smooth side of each point.
+
+    Next to a corner of the law a central difference mixes the tangents of both sides. On the side of the corner the
+    difference changes if the step is halved; the other side is taken. At the corner itself the stiffer side is taken.
+    """
     step = 1e-6 * float(getattr(made, "size", 1e-4))
+    here = np.asarray(_answer(made, gaps, old)["traction"])
     tangent = np.empty((len(gaps), 2, 2))
     for j in range(2):
-        shift = np.zeros(2)
-        shift[j] = step
-        high = np.asarray(_answer(made, gaps + shift, old)["traction"])
-        low = np.asarray(_answer(made, gaps - shift, old)["traction"])
-        tangent[:, :, j] = (high - low) / (2 * step)
+
+        def slope(length: float, j: int = j) -> Any:
+            shift = np.zeros(2)
+            shift[j] = length
+            return (np.asarray(_answer(made, gaps + shift, old)["traction"]) - here) / length
+
+        ahead, behind = slope(step), slope(-step)
+        bend_ahead = np.abs(ahead - slope(step / 2)).max(axis=1)
+        bend_behind = np.abs(behind - slope(-step / 2)).max(axis=1)
+        largest = np.abs(ahead).max(axis=1) + np.abs(behind).max(axis=1)
+        smooth = np.abs(ahead - behind).max(axis=1) <= 1e-3 * largest
+        at_corner = np.maximum(bend_ahead, bend_behind) <= 1e-3 * largest
+        stiffer = np.abs(ahead).max(axis=1) > np.abs(behind).max(axis=1)
+        side = np.where(np.where(at_corner, stiffer, bend_ahead < bend_behind)[:, None], ahead, behind)
+        tangent[:, :, j] = np.where(smooth[:, None], (ahead + behind) / 2, side)
     return tangent
