@@ -311,7 +311,7 @@ def test_schema_plugins_and_the_command_line(tmp_path):
     ran = run("run", "arch.toml", "--json")
     assert ran.returncode == 0 and json.loads(ran.stdout)["load_factor"] == voussoir.run(ARCH)[0].load_factor
     assert run("verify", "results/arch").returncode == 0
-    assert run("rum").returncode == 2 and run("--version").stdout.strip() == f"voussoir {voussoir.__version__}"
+    assert run("rum").returncode == 2 and run("--version").stdout.startswith(f"voussoir {voussoir.__version__}")
 
 
 def test_a_point_study():
