@@ -1,4 +1,4 @@
-//! What `#[key(…)]` says of a field and `#[keys(…)]` of a type.
+//! The attributes `#[key(…)]` of a field and `#[keys(…)]` of a type.
 
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -154,7 +154,7 @@ impl Key {
     }
 }
 
-/// How the variants of an enum are told apart.
+/// The way in which the reader distinguishes the variants of an enum.
 pub enum Tagging {
     /// By the word under this key.
     Tag(LitStr),
@@ -210,7 +210,7 @@ pub fn documentation(attributes: &[Attribute]) -> String {
     }
 }
 
-/// The path of what the derive needs of the core.
+/// The path of the items of the core that the derive uses.
 pub fn core() -> TokenStream {
     quote!(::voussoir_core::plugin)
 }

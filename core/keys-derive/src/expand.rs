@@ -1,4 +1,4 @@
-//! What the derive writes.
+//! The code that the derive writes.
 
 use super::attributes::{Key, Options, Tagging, core, documentation};
 use super::default::{self, Default};
@@ -9,7 +9,7 @@ use syn::ext::IdentExt;
 use syn::spanned::Spanned;
 use syn::{Data, DeriveInput, Error, Field, Fields, FieldsNamed, Ident, LitStr, Result, Type, Variant};
 
-/// The keys of a type as tokens, or what is wrong with its attributes.
+/// Returns the keys of a type as tokens, or the errors of its attributes.
 pub fn expand(input: &DeriveInput) -> Result<TokenStream> {
     if !input.generics.params.is_empty() {
         return Err(Error::new_spanned(&input.generics, "a table of keys has no type parameters"));
