@@ -428,7 +428,7 @@ fn solvers_say_what_they_can() {
     let Err(mistakes) = voussoir::study::load(&with("event_path"), "press.toml", &[]) else { panic!("refused") };
     assert!(mistakes.mistakes().iter().any(|m| m.to_string().contains("newton_path")), "{mistakes:?}");
     let limit = answered(&with("limit_conic"));
-    assert!(limit.notes.iter().any(|note| note.contains("yields")), "{:?}", limit.notes);
+    assert!(limit.notes.iter().any(|note| note.contains("their yielding")), "{:?}", limit.notes);
     let study = voussoir_tests::study(&press.study());
     let result = voussoir::solve_case(&study.cases[0]);
     assert_eq!((result.solver.as_str(), result.status), ("newton_path", Status::Stands), "{:?}", result.notes);
