@@ -1,6 +1,7 @@
 //! The native part of the Python package `voussoir`. It accepts studies and returns texts and columns. The public
 //! interface is written in Python, in `python/voussoir/`.
 
+mod blocks;
 mod interrupted;
 mod law;
 mod source;
@@ -158,6 +159,8 @@ fn main(py: Python<'_>, arguments: Vec<String>) -> i32 {
 /// The native module.
 #[pymodule]
 mod _voussoir {
+    #[pymodule_export]
+    use super::blocks::blocks;
     #[pymodule_export]
     use super::source::StudyError;
     #[pymodule_export]

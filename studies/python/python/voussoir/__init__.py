@@ -4,8 +4,8 @@
     results = voussoir.run("my_bridge.toml")        # or a dictionary with the same keys, or the text of a file
     results[0].load_factor
 
-`run` solves all cases of a study and returns the results with their proofs. `sweep` solves many cases, on this machine or
-on a cluster, and returns columns. `law` registers a class as a joint law.
+`run` solves all cases of a study and returns the results with their proofs. `load` reads the results of a folder. `sweep`
+solves many cases, on this machine or on a cluster, and returns columns. `law` registers a class as a joint law.
 """
 
 from __future__ import annotations
@@ -15,15 +15,16 @@ import os as _os
 from typing import Any as _Any
 
 from . import _voussoir
+from ._folder import load
 from ._laws import Facet, law
-from ._results import Case, Figure, Results
+from ._results import Block, Case, Figure, Results
 from ._study import Study
 from ._sweep import Table, sweep
 from ._voussoir import StudyError, __version__
 
 __all__ = [
-    "Case", "Facet", "Figure", "Results", "Study", "StudyError", "Table", "__version__",
-    "check", "law", "plugins", "run", "schema", "sweep", "verify",
+    "Block", "Case", "Facet", "Figure", "Results", "Study", "StudyError", "Table", "__version__",
+    "check", "law", "load", "plugins", "run", "schema", "sweep", "verify",
 ]  # fmt: skip
 
 
