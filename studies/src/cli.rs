@@ -110,6 +110,9 @@ enum Command {
         /// Open the page in a browser
         #[arg(long)]
         open: bool,
+        /// Port of the page; 0 chooses a free port
+        #[arg(long, value_name = "PORT", default_value_t = 0)]
+        port: u16,
     },
     /// Write a commented study that runs without changes, or a law
     New {
@@ -214,7 +217,7 @@ impl Command {
                 let arguments = commands::bench::BenchArguments { out, set, runs, reference, within, quiet };
                 commands::bench::measure(&study, &arguments)
             }
-            Command::Serve { study, set, open } => commands::serve::serve(&study, &set, open),
+            Command::Serve { study, set, open, port } => commands::serve::serve(&study, &set, open, port),
             Command::New { what } => what.answer(),
             Command::Check { studies, set } => commands::check::check(&studies, &set),
             Command::Explain { what, export: Some(_) } => commands::explain::export(std::path::Path::new(&what)),

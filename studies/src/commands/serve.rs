@@ -11,14 +11,15 @@ use crate::writers::page::served_policy;
 use serde_json::Value as Json;
 use std::collections::hash_map::RandomState;
 use std::hash::{BuildHasher, Hasher};
+use std::io;
 use std::net::TcpListener;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// A path that takes longer is cancelled.
-const PATIENCE: Duration = Duration::from_secs(2);
+/// A report whose path takes longer is cancelled.
+const PATIENCE: Duration = Duration::from_secs(60);
 
-/// Cancels a path that takes too long for a slider.
+/// Cancels a path that takes too long for a report.
 struct Patience(Instant);
 
 impl Observer for Patience {
@@ -34,15 +35,28 @@ fn token() -> String {
     format!("{:016x}{:016x}", half(), half())
 }
 
-/// Serves a study until Ctrl-C.
-pub fn serve(path: &Path, sets: &[String], in_browser: bool) -> Outcome {
-    let session = files::session(path, &files::overrides(sets)?)?;
-    let bound = TcpListener::bind("127.0.0.1:0").and_then(|listener| {
+/// Opens the port, or a free one for 0. Returns the listener and its port.
+fn bind(port: u16) -> Result<(TcpListener, u16), CliError> {
+    let bound = TcpListener::bind(("127.0.0.1", port)).and_then(|listener| {
         let port = listener.local_addr()?.port();
         Ok((listener, port))
     });
-    let refused = |error| CliError::no_access(format_args!("voussoir: cannot serve on 127.0.0.1: {error}"));
-    let (listener, port) = bound.map_err(refused)?;
+    bound.map_err(|error| {
+        let why = match error.kind() {
+            io::ErrorKind::AddrInUse => {
+                format!("port {port} is used by another program; choose another, or --port 0 for a free one")
+            }
+            io::ErrorKind::PermissionDenied => format!("port {port} needs more rights; choose one above 1023"),
+            _ => error.to_string(),
+        };
+        CliError::no_access(format_args!("voussoir: cannot serve on 127.0.0.1: {why}"))
+    })
+}
+
+/// Serves a study until Ctrl-C.
+pub fn serve(path: &Path, sets: &[String], in_browser: bool, port: u16) -> Outcome {
+    let session = files::session(path, &files::overrides(sets)?)?;
+    let (listener, port) = bind(port)?;
     // If signals cannot be caught, the default action of the system ends the process.
     drop(ctrlc::set_handler(|| {
         eprintln!("\nvoussoir: serving has ended");
@@ -73,14 +87,17 @@ fn route(session: &Session, method: &str, path: &str, query: &[(String, String)]
                 Err(why) => Answer::text(404, why),
             }
         }
-        ("POST", "/answer") => {
-            asked().map_or_else(|wrong| wrong, |asked| Answer::json(&session.answer(&asked, &patience)))
+        ("POST", "/answer") => asked().map_or_else(|wrong| wrong, |asked| Answer::json(&session.answer(&asked))),
+        ("POST", "/progress" | "/stop") => {
+            asked().map_or_else(|wrong| wrong, |asked| Answer::json(&session.progress(&asked.page, path == "/stop")))
         }
         ("POST", "/report") => asked().map_or_else(
             |wrong| wrong,
             |asked| session.report(&asked, &patience).map_or_else(|why| Answer::text(200, why), Answer::page),
         ),
-        (_, "/" | "/answer" | "/report") => Answer::text(405, "use GET for the page, POST for answers".to_string()),
+        (_, "/" | "/answer" | "/report" | "/progress" | "/stop") => {
+            Answer::text(405, "use GET for the page, POST for answers".to_string())
+        }
         _ => Answer::text(404, "there is nothing here".to_string()),
     }
 }

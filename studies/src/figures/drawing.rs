@@ -27,8 +27,10 @@ pub fn scene_svg(title: &str, assembly: &Assembly, stages: &[Stage], result: &Ca
         _ => None,
     });
     let loads = Loads::new(assembly, stages, reached);
+    // A served page shows its own title.
     let titles = [title.to_string(), headline(result, stages)];
-    let mut canvas = SceneCanvas::new(low, high, loads.margins(low, high), &titles);
+    let titles = if title.is_empty() { &[] } else { &titles[..] };
+    let mut canvas = SceneCanvas::new(low, high, loads.margins(low, high), titles);
     let mut legend = Legend::new();
     let filled = fill::draw(&mut canvas, assembly);
     let spread = filled && fill::draw_spreads(&mut canvas, stages);

@@ -1,26 +1,29 @@
-//! Sliders for the numbers of a case: ranges from the schema, steps from the values.
+//! Controls for a case: sliders for its numbers, with ranges from the schema and steps from the values, and lists of laws and
+//! solvers from the registry.
 
+use super::swap;
 use crate::config::key_meaning::key_meaning;
 use crate::figures::format::format_short;
 use crate::figures::plot::number::step_below;
-use crate::study::{NumberKind, NumericKey, numeric_keys, study_keys};
+use crate::study::{NumberKind, NumericKey, PluginTable, numeric_keys, study_keys};
 use maud::{Markup, html};
 use serde_json::Value as Json;
 use voussoir_core::plugin::{Quantity, Range};
 
-/// Greatest length of a list of numbers with sliders.
-const LONGEST: usize = 12;
+/// Greatest length of a list of numbers with controls.
+const LONGEST: usize = 400;
 /// Number of steps of a slider.
 const PARTS: f64 = 500.0;
 
 /// Headings of the groups of controls, each with its table of the study.
-const GROUPS: [(&str, &str); 6] = [
+const GROUPS: [(&str, &str); 7] = [
     ("Geometry", "scene"),
     ("Materials", "materials"),
     ("Joints", "joints"),
     ("Vehicles", "vehicles"),
     ("Stages and loads", "stages"),
     ("Partial factors", "factors"),
+    ("Solver", "solver"),
 ];
 
 /// The ends and the step of a slider.
@@ -106,24 +109,69 @@ fn control(key: &NumericKey, resolved: &Json) -> Markup {
     }
 }
 
-/// Returns the controls of a case: sliders for its numbers, fields for optional numbers that are not given.
-pub(super) fn controls(resolved: &Json) -> Markup {
-    let keys = numeric_keys(study_keys(), resolved, LONGEST);
-    let group = |table: &str| -> (Vec<&NumericKey>, Vec<&NumericKey>) {
-        let own = keys.iter().filter(|key| key.key.split('.').next() == Some(table));
-        own.partition(|key| key.value.is_some())
-    };
+/// Returns true for a coordinate or another entry of a list of lists: `scene.blocks.1.vertices.2.1`.
+fn is_coordinate(key: &str) -> bool {
+    key.rsplit('.').take(2).all(|segment| segment.parse::<usize>().is_ok())
+}
+
+/// A list of the laws or solvers that a table may name.
+fn choice(table: &PluginTable) -> Markup {
+    let name = table.key.rsplit('.').next().unwrap_or(&table.key);
+    let tag_key = table.kind.tag_key();
+    let label = if name == tag_key { name.to_string() } else { format!("{name}: {tag_key}") };
+    html! {
+        div class="control" {
+            span { (label) }
+            select data-table=(table.key) aria-label=(label) {
+                @for (tag, summary) in swap::choices(table) {
+                    option value=(tag) title=(summary) selected[tag == table.tag] { (tag) }
+                }
+            }
+        }
+    }
+}
+
+/// A switch that keeps a load at its most onerous position; `movable` are the keys that move loads, with their names.
+fn follow(movable: &[(String, String)]) -> Markup {
+    html! {
+        @for (key, name) in movable {
+            label class="follow" {
+                input type="checkbox" data-follow=(key);
+                " Follow the most onerous position of " (name)
+            }
+        }
+    }
+}
+
+/// Returns the controls of a case: lists of laws and solvers, sliders for its numbers, fields for optional numbers that are not
+/// given. Coordinates are in one closed panel.
+pub(super) fn controls(resolved: &Json, movable: &[(String, String)]) -> Markup {
+    let (tables, keys) = (swap::tables(resolved), numeric_keys(study_keys(), resolved, LONGEST));
+    let (listed, keys): (Vec<&NumericKey>, Vec<&NumericKey>) = keys.iter().partition(|key| is_coordinate(&key.key));
+    let of = |key: &str, table: &str| key.split('.').next() == Some(table);
     html! {
         @for (heading, table) in GROUPS {
-            @let (given, absent) = group(table);
-            @if !given.is_empty() || !absent.is_empty() {
+            @let choices: Vec<_> = tables.iter().filter(|own| of(&own.key, table)).collect();
+            @let own: Vec<&NumericKey> = keys.iter().copied().filter(|key| of(&key.key, table)).collect();
+            @let (given, absent): (Vec<&NumericKey>, Vec<&NumericKey>) =
+                own.iter().copied().partition(|key| key.value.is_some());
+            @let switches = if table == "stages" { movable } else { &[] };
+            @if !choices.is_empty() || !own.is_empty() {
                 fieldset {
                     legend { (heading) }
+                    (follow(switches))
+                    @for table in choices { (choice(table)) }
                     @for key in given { (control(key, resolved)) }
                     @if !absent.is_empty() {
                         details { summary { "not given" } @for key in absent { (control(key, resolved)) } }
                     }
                 }
+            }
+        }
+        @if !listed.is_empty() {
+            details class="coordinates" {
+                summary { "Coordinates (" (listed.len()) ")" }
+                @for key in listed { (control(key, resolved)) }
             }
         }
     }
@@ -152,6 +200,19 @@ mod tests {
         ] {
             let own = keys.iter().find(|own| own.key == key).unwrap_or_else(|| panic!("no {key}"));
             assert_eq!(label(own, &resolved), words);
+        }
+    }
+
+    #[test]
+    fn coordinates_are_entries_of_lists_of_lists() {
+        for (key, expected) in [
+            ("scene.blocks.1.vertices.2.1", true),
+            ("scene.profile.points.3.0", true),
+            ("scene.brick.1", false),
+            ("scene.spans.0.thickness", false),
+            ("stages.0.loads.0.force.1", false),
+        ] {
+            assert_eq!(is_coordinate(key), expected, "{key}");
         }
     }
 

@@ -1,10 +1,13 @@
-//! A study with sliders in the browser: sliders from the schema, results as data for the script of the page, and the page.
-//! These are pure functions; `voussoir serve` connects them to a browser.
+//! A study with sliders in the browser: controls from the schema and the cards, results as data for the script of the page, and
+//! the page. `voussoir serve` connects them to a browser.
 
 mod answer;
 mod controls;
+mod critical;
 mod handles;
 mod page;
+mod runs;
 mod session;
+mod swap;
 
 pub use session::{Asked, Session};

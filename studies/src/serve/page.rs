@@ -1,9 +1,7 @@
 //! The page in the browser: drawings, result, sliders.
 
-use super::controls::controls;
 use crate::writers::page;
-use maud::{Markup, html};
-use serde_json::Value as Json;
+use maud::{Markup, PreEscaped, html};
 
 /// The data of a page.
 #[derive(Debug)]
@@ -18,8 +16,8 @@ pub(super) struct Shown<'a> {
     pub count: usize,
     /// Labels of the cases; `None` if there are too many for a list.
     pub labels: Option<Vec<String>>,
-    /// The checked keys of the case.
-    pub resolved: &'a Json,
+    /// The controls of the case, as HTML.
+    pub controls: String,
 }
 
 /// Returns the page of a case as HTML.
@@ -32,7 +30,7 @@ pub(super) fn page(shown: &Shown) -> String {
         (choice(shown))
         div id="live" data-case=(shown.case) {
             (seen())
-            form { (controls(shown.resolved)) }
+            form id="controls" { (PreEscaped(&shown.controls)) }
         }
         noscript { "This page needs its script." }
     };
@@ -65,23 +63,23 @@ fn seen() -> Markup {
         section class="seen" {
             p class="summary" role="status" { strong id="headline" { "…" } }
             pre id="mistakes" class="bad" role="alert" hidden {}
-            figure class="moving" {
-                svg id="statics" role="img" aria-label="the scene with its thrust line and loads" {}
-                figcaption { "Forces at the answer. Drag a load by its arrow, or move it with the arrow keys." }
+            p id="progress" class="quiet" role="status" hidden {
+                span class="spinner" {} " " span id="doing" {} " " button type="button" id="stop" { "Stop" }
             }
-            figure class="moving" {
-                svg id="mechanism" role="img" aria-label="the mechanism" {}
-                figcaption {
-                    span id="kind" {} " "
-                    label { "motion " input id="motion" type="range" min="0" max="100" value="60"; }
+            div class="case" {
+                figure class="scene" id="scene" hidden {
+                    div id="picture" {}
+                    figcaption { span id="kind" {} " Drag a load, or move it with the arrow keys." }
                 }
+                figure id="curve" hidden {}
             }
+            p id="sampled" class="bad" hidden {}
             p class="quiet" { span id="proof" {} " " span id="time" {} }
             ul id="notes" class="quiet" {}
             p class="buttons" {
                 button type="button" id="copy" { "Copy the study file" } " "
                 button type="button" id="reset" { "Reset" } " "
-                button type="button" id="report" { "Its report" } " "
+                button type="button" id="report" { "Report" } " "
                 span id="said" role="status" {}
             }
             details { summary { "Study file" } pre id="toml" {} }

@@ -1,13 +1,14 @@
 //! A session of `voussoir serve`: one case of a study, with the numbers that the page has changed.
 
-use super::{answer, page};
+use super::runs::{Run, Runs, Stop};
+use super::{answer, controls, critical, page, swap};
 use crate::config::diagnostic::LocatedDiagnostic;
 use crate::config::document::{Node, Value, from_json};
 use crate::config::origin::Origin;
 use crate::config::overlay::set;
 use crate::results::Totals;
 use crate::solve::{Observer, solve_unless_cancelled};
-use crate::study::{Study, StudyError, StudyFile, StudySource, value_of};
+use crate::study::{Case, Study, StudyError, StudyFile, StudySource, value_of};
 use crate::writers::StudyOutput;
 use crate::writers::report::report_html;
 use serde::Deserialize;
@@ -17,6 +18,7 @@ use serde_json::{Value as Json, json};
 #[derive(Debug)]
 pub struct Session {
     study: Study,
+    runs: Runs,
 }
 
 /// A request of the page.
@@ -28,6 +30,27 @@ pub struct Asked {
     /// Dotted keys with their new values: numbers in SI units, or texts such as `"25 MPa"`.
     #[serde(default)]
     pub set: Vec<(String, Json)>,
+    /// Tables with another law or solver: dotted key and tag.
+    #[serde(default)]
+    pub swap: Vec<(String, String)>,
+    /// The load whose most onerous position is searched for: the dotted key that moves it.
+    #[serde(default)]
+    pub follow: Option<String>,
+    /// True if the answer must contain the controls of the page.
+    #[serde(default)]
+    pub controls: bool,
+    /// Name of the page, which distinguishes several pages of one session. A new request of a page ends its earlier one.
+    #[serde(default)]
+    pub page: String,
+}
+
+/// The study of a request.
+struct Posed {
+    /// The study file, with one case.
+    root: Node,
+    study: Study,
+    /// The keys whose values come from samples of laws.
+    sampled: Vec<String>,
 }
 
 /// Greatest number of cases that are drawn in a report.
@@ -38,7 +61,7 @@ const LISTED: usize = 500;
 impl Session {
     /// Reads a study. The error contains all mistakes in its first case and its axes.
     pub fn read(source: StudySource) -> Result<Self, StudyError> {
-        Ok(Session { study: StudyFile::read(source)?.study_unchecked()? })
+        Ok(Session { study: StudyFile::read(source)?.study_unchecked()?, runs: Runs::default() })
     }
 
     /// Returns the name of the study.
@@ -68,13 +91,19 @@ impl Session {
         (self.count() <= LISTED).then(|| (0..self.count()).map(|id| label(id).unwrap_or_default()).collect())
     }
 
-    /// Returns the study file of a request, with one case.
-    fn root(&self, asked: &Asked) -> Result<Node, Vec<LocatedDiagnostic>> {
+    /// Returns the study file of a request, with one case, and the keys whose values come from samples of laws.
+    fn root(&self, asked: &Asked) -> Result<(Node, Vec<String>), Vec<LocatedDiagnostic>> {
         let mut root = self.study.expansion.case(asked.case)?.root;
         let run = Node { value: Value::String("run".into()), origin: root.place("kind") };
         set(&mut root, "kind", run, &Origin::Value).map_err(|wrong| vec![*wrong])?;
+        let case = self.study.case(asked.case).filter(|_| !asked.swap.is_empty());
+        let mut swapped = Vec::new();
+        for (table, tag) in &asked.swap {
+            let Some(case) = &case else { break };
+            swapped.push(swap::swap(&mut root, case, table, tag)?);
+        }
         let mut wrong = Vec::new();
-        for (key, value) in &asked.set {
+        for (key, value) in asked.set.iter().filter(|(key, _)| !swapped.iter().any(|table| table.drops(key))) {
             let origin = Origin::Set(key.as_str().into());
             let node = match value {
                 Json::String(text) => value_of(text, &origin),
@@ -82,40 +111,89 @@ impl Session {
             };
             wrong.extend(set(&mut root, key, placed(node, &origin), &origin).err().map(|wrong| *wrong));
         }
-        if wrong.is_empty() { Ok(root) } else { Err(wrong) }
+        let given = |key: &String| asked.set.iter().any(|(set, _)| set == key);
+        let sampled = swapped.into_iter().flat_map(|table| table.sampled).filter(|key| !given(key)).collect();
+        if wrong.is_empty() { Ok((root, sampled)) } else { Err(wrong) }
     }
 
-    fn study(&self, asked: &Asked) -> Result<(Node, Study), StudyError> {
+    fn posed(&self, asked: &Asked) -> Result<Posed, StudyError> {
         if asked.case >= self.count() {
             let message = format!("the study \"{}\" has cases 0 to {}", self.name(), self.count().saturating_sub(1));
             return Err(vec![LocatedDiagnostic::new(&Origin::Value, "case", message)].into());
         }
-        let root = self.root(asked)?;
+        let (root, sampled) = self.root(asked)?;
         let source = StudySource { root: root.clone(), sets: Vec::new(), diagnostics: Vec::new() };
-        Ok((root, Study::from_source(source)?))
+        Ok(Posed { root, study: Study::from_source(source)?, sampled })
     }
 
     /// Returns the result in the form that the script of the page draws. `mistakes` contains the diagnostics as text if the
-    /// input is wrong; `slow` is set if the observer has cancelled.
-    pub fn answer(&self, asked: &Asked, observer: &dyn Observer) -> Json {
-        let (root, study) = match self.study(asked) {
-            Ok(study) => study,
+    /// input is wrong; `stopped` is the reason if there is no result.
+    pub fn answer(&self, asked: &Asked) -> Json {
+        let run = self.runs.start(&asked.page);
+        let mut answer = self.solved(asked, &run);
+        self.runs.end(&asked.page, &run);
+        if asked.controls && answer.get("controls").is_none() {
+            // The law that was chosen may be wrong for this case: the reader must be able to choose another.
+            let Ok(posed) = self.posed(&Asked { swap: Vec::new(), set: Vec::new(), ..asked.clone() }) else {
+                return answer;
+            };
+            let case = posed.study.cases.first();
+            answer["controls"] = case.map(|case| self.controls(case, asked)).into();
+        }
+        answer
+    }
+
+    fn solved(&self, asked: &Asked, run: &Run) -> Json {
+        let posed = match self.posed(asked) {
+            Ok(posed) => posed,
             Err(wrong) => return json!({ "mistakes": wrong.to_string() }),
         };
-        let Some(case) = study.cases.first() else { return json!({ "mistakes": "the study has no case" }) };
-        let toml = toml::to_string(&root.to_toml()).unwrap_or_default();
-        match solve_unless_cancelled(case, observer) {
-            Some(result) => answer::answer(case, &result, &root, toml),
-            None => json!({
-                "slow": "this takes too long to follow a slider: copy the study file and give it to voussoir run",
-                "toml": toml,
-            }),
+        let Some(case) = posed.study.cases.first() else { return json!({ "mistakes": "the study has no case" }) };
+        let mut answer = match &asked.follow {
+            Some(key) => match critical::most_onerous(&posed.root, key, &self.own_envelope(asked), run) {
+                Ok(Some(found)) => found,
+                Ok(None) => stopped(run),
+                Err(wrong) => return json!({ "mistakes": wrong.to_string() }),
+            },
+            None => match solve_unless_cancelled(case, run) {
+                Some(result) => answer::answer(case, &result, &posed.root),
+                None => stopped(run),
+            },
+        };
+        if answer.get("toml").is_none() {
+            answer["toml"] = answer::toml_of(&posed.root).into();
         }
+        if !posed.sampled.is_empty() {
+            let words = format!("example values, which you must check: {}", posed.sampled.join(", "));
+            answer["sampled"] = words.into();
+        }
+        if asked.controls {
+            answer["controls"] = self.controls(case, asked).into();
+        }
+        answer
+    }
+
+    /// Returns the `[envelope]` of the study as it is for a case, if the study is an envelope.
+    fn own_envelope(&self, asked: &Asked) -> Option<Node> {
+        let root = self.study.expansion.case(asked.case).ok().filter(|_| self.kind() == "envelope")?.root;
+        root.table()?.get("envelope").cloned()
+    }
+
+    /// Returns the controls of a case as HTML.
+    fn controls(&self, case: &Case, asked: &Asked) -> String {
+        let resolved = case.resolved.to_json();
+        let movable = critical::movable(case, self.own_envelope(asked).as_ref());
+        controls::controls(&resolved, &movable).into_string()
+    }
+
+    /// Returns the progress of the request of a page, or null; with `stop`, the request ends.
+    pub fn progress(&self, page: &str, stop: bool) -> Json {
+        self.runs.progress(page, stop)
     }
 
     /// Returns the report of a request, as `run` writes it; an error is a text for the reader.
     pub fn report(&self, asked: &Asked, observer: &dyn Observer) -> Result<String, String> {
-        let (_, study) = self.study(asked).map_err(|wrong| wrong.to_string())?;
+        let Posed { study, .. } = self.posed(asked).map_err(|wrong| wrong.to_string())?;
         let result = study.cases.first().and_then(|case| solve_unless_cancelled(case, observer));
         let result = result.ok_or("this takes too long here: copy the study file and give it to voussoir run")?;
         let results = study.results(env!("CARGO_PKG_VERSION"), vec![result]);
@@ -126,17 +204,28 @@ impl Session {
 
     /// Returns the page of a case, with sliders at the values of the study file.
     pub fn page(&self, case: usize) -> Result<String, String> {
-        let (_, study) = self.study(&Asked { case, set: Vec::new() }).map_err(|wrong| wrong.to_string())?;
-        let first = study.cases.first().ok_or("the study has no case")?;
+        let asked = Asked { case, ..Asked::default() };
+        let posed = self.posed(&asked).map_err(|wrong| wrong.to_string())?;
+        let first = posed.study.cases.first().ok_or("the study has no case")?;
         Ok(page::page(&page::Shown {
             name: self.name(),
             kind: self.kind(),
             case,
             count: self.count(),
             labels: self.labels(),
-            resolved: &first.resolved.to_json(),
+            controls: self.controls(first, &asked),
         }))
     }
+}
+
+/// The answer without a result.
+fn stopped(run: &Run) -> Json {
+    let words = match run.stop() {
+        Some(Stop::Superseded) => "replaced by a newer request",
+        Some(Stop::Unseen) => "stopped, because the page did not ask for progress",
+        _ => "stopped; copy the study file and give it to voussoir run to follow it to its end",
+    };
+    json!({ "stopped": words })
 }
 
 /// Sets the origin of a value and of all its parts.

@@ -36,7 +36,7 @@ pub use file::{HELD, StudyFile};
 pub use keys::study_keys;
 pub use load::load;
 pub use model::{Case, Drawn, Output, SelectedSolver, SolverChoice, Study, ZoneOfThrust};
-pub use numeric_keys::{NumberKind, NumericKey, numeric_keys};
+pub use numeric_keys::{NumberKind, NumericKey, PluginTable, numeric_keys, plugin_tables};
 pub use outline::Outline;
 pub use partial_factors::design;
 pub use resolved::{CheckedValue, Resolved};

@@ -1,5 +1,5 @@
-//! The numbers of a checked case by dotted key, with their description in the schema. Sliders and derivatives of the load
-//! factor use them.
+//! The numbers of a checked case by dotted key, with their description in the schema, and its tables of laws and solvers.
+//! Sliders and derivatives of the load factor use them.
 
 use crate::config::common_keys::common_parameters;
 use crate::config::dotted_key::join;
@@ -34,22 +34,46 @@ pub struct NumericKey {
     pub doc: &'static str,
 }
 
+/// A table of a case whose tag chooses a law or a solver.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PluginTable {
+    /// Its dotted key, such as `joints.dry`.
+    pub key: String,
+    /// Kind of the plug-in.
+    pub kind: PluginKind,
+    /// Tag of the plug-in; `auto` if the program chooses the solver.
+    pub tag: String,
+}
+
 /// Returns the numbers of a checked case ([`super::Case::resolved`]) in the order of the schema. Optional numbers that are
 /// not given are listed too, if they are keys of a table. Lists of more than `longest` numbers or tables are omitted: they
 /// are data, not parameters. `keys` are the keys of study files ([`super::study_keys`]).
 pub fn numeric_keys(keys: &[Parameter], resolved: &Json, longest: usize) -> Vec<NumericKey> {
-    let mut walk = Walk { longest, found: Vec::new() };
-    for parameter in keys.iter().filter(|parameter| TABLES.contains(&parameter.name)) {
+    walked(keys, &TABLES, resolved, longest).found
+}
+
+/// Returns the tables of a checked case that choose a plug-in of one of these kinds, in the order of the schema.
+pub fn plugin_tables(keys: &[Parameter], resolved: &Json, kinds: &[PluginKind]) -> Vec<PluginTable> {
+    let tables: Vec<&str> = TABLES.into_iter().chain(["solver"]).collect();
+    let mut found = walked(keys, &tables, resolved, usize::MAX).plugins;
+    found.retain(|table| kinds.contains(&table.kind));
+    found
+}
+
+fn walked(keys: &[Parameter], tables: &[&str], resolved: &Json, longest: usize) -> Walk {
+    let mut walk = Walk { longest, found: Vec::new(), plugins: Vec::new() };
+    for parameter in keys.iter().filter(|parameter| tables.contains(&parameter.name)) {
         if let Some(value) = resolved.get(parameter.name) {
             walk.shape(parameter.name, &parameter.shape, value, parameter.doc);
         }
     }
-    walk.found
+    walk
 }
 
 struct Walk {
     longest: usize,
     found: Vec<NumericKey>,
+    plugins: Vec<PluginTable>,
 }
 
 impl Walk {
@@ -99,6 +123,7 @@ impl Walk {
 
     fn plugin(&mut self, key: &str, kind: PluginKind, value: &Json) {
         let tag = value[kind.tag_key()].as_str().unwrap_or_default();
+        self.plugins.push(PluginTable { key: key.into(), kind, tag: tag.into() });
         let Some(card) = candidate(kind, tag) else { return };
         self.table(key, card.parameters, value);
         let common = common_parameters(kind).iter();

@@ -10,6 +10,12 @@ use std::process::{Child, Command, Stdio};
 /// The study that is served.
 pub const STUDY: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/cases/strathmashie_rise.toml");
 
+/// A bridge with a survey, fill and a vehicle.
+pub const BRIDGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/served/bridge.toml");
+
+/// A study whose path takes long.
+pub const SLOW: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/served/slow.toml");
+
 /// A server that is stopped at the end of its test.
 pub struct Served {
     pub program: Child,

@@ -84,3 +84,97 @@ const pressures = (own, state, moved) => {
   });
   return out;
 };
+// Places of values on an axis of a chart.
+const axis = description => {
+  const [low, high, from, to, log] = description.split(' ').map(Number);
+  const f = log ? Math.log10 : x => x;
+  return { place: value => from + (f(value) - f(low)) / (f(high) - f(low)) * (to - from) };
+};
+
+// Makes the drawing of a scene move: its blocks, thrust line and hinges make room for those at the slider's place; loads, supports
+// and fill stay. `share` is the first place of a mechanism, in percent. Returns nothing if the case does not move.
+const moving = (place, own, share) => {
+  const room = place.querySelector('.metres');
+  const path = own && own.states && own.states.length > 1;
+  if (!room || !path && !(own && own.motion)) return null;
+  place.classList.add('moves');
+  const tools = make('div', { class: 'tools' });
+  place.querySelector('svg').after(tools);
+  const play = make('button', { type: 'button' }, tools);
+  const label = make('label', {}, tools);
+  label.append(path ? 'state ' : 'motion ');
+  const slider = make('input', { type: 'range', min: 0, max: path ? own.states.length - 1 : 100, value: path ? own.peak || 0 : share }, label);
+  const magnify = make('label', {}, tools);
+  let factor;
+  if (path) {
+    magnify.append('displacements × ');
+    factor = make('input', { type: 'number', min: 1, value: own.magnify || 1 }, magnify);
+  }
+  const said = make('output', {}, tools);
+  const chart = place.closest('.case').querySelector('svg .plot');
+  let cursor, running = null;
+  const hinges = moved => {
+    for (const [joint, x, y] of own.hinges || []) {
+      const [px, py] = follow(own, joint, moved, [x, y]);
+      make('circle', { class: 'hinge', cx: px, cy: -py, r: 5 / +room.dataset.scale }, room);
+    }
+  };
+  const show = () => {
+    const atRest = !path && +slider.value === 0;
+    place.classList.toggle('moved', !atRest);
+    if (!path) {
+      const moved = twists(own, slider.value / 100);
+      if (atRest) room.replaceChildren();
+      else {
+        paint(room, own, moved, []);
+        hinges(moved);
+      }
+      said.textContent = atRest ? 'at rest' : 'displacements exaggerated';
+      return;
+    }
+    const state = own.states[slider.value], times = Math.max(1, +factor.value || 1);
+    const moved = own.bodies.map((_, body) => state.bodies[body].map(u => u * times));
+    const line = state.thrust.map((point, joint) => point && follow(own, joint, moved, point));
+    paint(room, own, moved, pieces(line), pressures(own, state, moved));
+    said.textContent = `${state.stage}, λ = ${short(state.factor)}, ${short(state.displacement * 1e3)} mm`;
+    if (chart) {
+      if (!cursor) cursor = make('circle', { r: 6, class: 'cursor' }, chart);
+      const [x, y] = [axis(chart.dataset.x), axis(chart.dataset.y)];
+      cursor.setAttribute('cx', x.place(state.displacement * 1e3));
+      cursor.setAttribute('cy', y.place(state.factor));
+      cursor.setAttribute('visibility', state.live ? 'visible' : 'hidden');
+    }
+  };
+  const stop = () => {
+    cancelAnimationFrame(running);
+    running = null;
+    play.textContent = '▶ play';
+  };
+  // Once through all states of a path; there and back for a mechanism.
+  const start = () => {
+    let begun = null;
+    play.textContent = '❚❚ pause';
+    const step = now => {
+      begun = begun === null ? now : begun;
+      const share = Math.min(1, (now - begun) / (path ? 6000 : 4000));
+      slider.value = Math.round(slider.max * (path ? share : 1 - Math.abs(1 - 2 * share)));
+      show();
+      if (share < 1) running = requestAnimationFrame(step); else stop();
+    };
+    running = requestAnimationFrame(step);
+  };
+  play.addEventListener('click', () => running === null ? start() : stop());
+  slider.addEventListener('input', () => {
+    stop();
+    show();
+  });
+  if (factor) factor.addEventListener('input', show);
+  const rest = () => {
+    stop();
+    if (!path) slider.value = 0;
+    show();
+  };
+  stop();
+  show();
+  return { stop, rest, share: () => path ? share : +slider.value };
+};
