@@ -10,6 +10,9 @@ use crate::writers::live::case_data;
 use serde_json::{Value as Json, json};
 use voussoir_core::limit::Status;
 
+/// Greatest number of hinges that are listed by their joints.
+const LISTED: usize = 12;
+
 /// Returns the study file of a case.
 pub(super) fn toml_of(root: &Node) -> String {
     toml::to_string(&root.to_toml()).unwrap_or_default()
@@ -20,8 +23,11 @@ pub(super) fn answer(case: &Case, result: &CaseResult, root: &Node) -> Json {
     let (assembly, stages) = (&case.assembly, case.stages.as_slice());
     let mechanism = result.mechanism.as_ref().map(|mechanism| {
         let joints = hinge_list(mechanism);
-        let hinges =
-            if joints.is_empty() { String::new() } else { format!(", hinges at joints {}", joints.join(", ")) };
+        let hinges = match joints.len() {
+            0 => String::new(),
+            1..=LISTED => format!(", hinges at joints {}", joints.join(", ")),
+            count => format!(", {count} hinges"),
+        };
         let unique = if mechanism.unique == Some(false) { ", not the only one" } else { "" };
         format!("{}{hinges}{unique}", kind_words(mechanism.kind))
     });

@@ -3,6 +3,7 @@
 use super::answer;
 use super::handles::{key_of_position, span};
 use super::runs::Run;
+use crate::config::diagnostic::LocatedDiagnostic;
 use crate::config::document::{Node, from_json};
 use crate::config::origin::Origin;
 use crate::config::overlay::set;
@@ -65,13 +66,17 @@ pub(super) fn most_onerous(
     };
     let mut searched = root.clone();
     put(&mut searched, "kind", "envelope".into())?;
+    let case = study_of(root)?.cases.into_iter().next();
+    let case = case.filter(|case| movable(case, envelope.as_ref()).iter().any(|(own, _)| own == key));
+    let Some(case) = case else {
+        let message = "moves no load over the structure".to_string();
+        return Err(vec![LocatedDiagnostic::new(&Origin::Value, key, message)].into());
+    };
     match envelope {
         Some(own) => set(&mut searched, "envelope", own.clone(), &Origin::Value).map_err(|wrong| vec![*wrong])?,
         None => {
-            let case = study_of(root)?.cases.into_iter().next();
             let load = key.rsplit_once('.').map_or("", |(load, _)| load);
-            let found = case.as_ref().and_then(|case| range(case, case.resolved.at(load)?));
-            let [from, to] = found.unwrap_or([0.0, 1.0]);
+            let [from, to] = case.resolved.at(load).and_then(|load| range(&case, load)).unwrap_or([0.0, 1.0]);
             put(&mut searched, "envelope", json!({ "parameter": key, "from": from, "to": to, "scan": SCAN }))?;
         }
     }

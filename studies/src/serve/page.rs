@@ -69,7 +69,7 @@ fn seen() -> Markup {
             div class="case" {
                 figure class="scene" id="scene" hidden {
                     div id="picture" {}
-                    figcaption { span id="kind" {} " Drag a load, or move it with the arrow keys." }
+                    figcaption { span id="kind" {} " " span id="drag" { "Drag a load, or move it with the arrow keys." } }
                 }
                 figure id="curve" hidden {}
             }

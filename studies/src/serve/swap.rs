@@ -86,6 +86,8 @@ pub(super) fn swap(root: &mut Node, case: &Case, key: &str, tag: &str) -> Result
 
 /// Returns the values that a table needs from the sample of a card: required keys, or all if the table is otherwise wrong.
 fn from_sample(card: &Card, mut table: Map<String, Json>) -> Vec<(String, Json)> {
+    // The check of a card reads the concrete type, which has neither the tag nor the common keys.
+    table.retain(|name, _| card.parameters.iter().any(|own| own.name == name));
     let sample: Option<toml::Table> = card.samples.first().and_then(|sample| sample.table.parse().ok());
     let required =
         |name: &str| card.parameters.iter().any(|own| own.name == name && matches!(own.need, Need::Required));

@@ -138,9 +138,23 @@ function picture() {
       'aria-label': `load at ${handle.keys[0]}`, 'aria-valuenow': handle.values[0] }, top);
     vehicle(group, handle, unit);
   });
+  by('drag').hidden = !answer.handles.length;
+  clear(svg, top);
   if (focused) {
     const again = top.querySelector(`[data-handle="${focused}"]`);
     if (again) again.focus({ preventScroll: true });
+  }
+}
+// Moves the texts under vehicles above their roofs.
+function clear(svg, top) {
+  const zoom = svg.getScreenCTM().a || 1;
+  for (const vehicle of top.querySelectorAll('.handle:has(.wheel)')) {
+    const box = vehicle.getBoundingClientRect();
+    for (const words of svg.querySelectorAll('text')) {
+      const own = words.getBoundingClientRect();
+      const apart = own.right < box.left || own.left > box.right || own.bottom < box.top || own.top > box.bottom;
+      if (!apart) words.setAttribute('y', +words.getAttribute('y') - (own.bottom - box.top) / zoom - 2);
+    }
   }
 }
 // A vehicle with its wheels on the road, or a disc on the arrow of another load; `unit` is a pixel in metres.
