@@ -119,7 +119,7 @@ fn laws_and_solvers_are_replaced() {
     }
 }
 
-/// The most onerous position is not less onerous than any other, and its answer is that of the load there.
+/// The most onerous position is not less onerous than any other, and the load there gives the same answer.
 #[test]
 fn the_most_onerous_position_is_followed() {
     let served = Served::start(BRIDGE);

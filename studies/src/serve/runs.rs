@@ -111,7 +111,7 @@ impl Runs {
         }
     }
 
-    /// Returns the progress of the request of a page; null if there is none. With `stop`, the request ends.
+    /// Returns the progress of the request of a page, or null. With `stop`, the request ends.
     pub fn progress(&self, page: &str, stop: bool) -> Json {
         let Some(run) = locked(&self.pages).get(page).cloned() else { return Json::Null };
         *locked(&run.seen) = Instant::now();

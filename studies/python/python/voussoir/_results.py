@@ -283,7 +283,7 @@ class Results(Sequence[Case]):
         rows = list(zip(*columns.values()))[:ROWS_SHOWN]
         body = "".join("<tr>" + "".join(f"<td>{html.escape(_cell(value))}</td>" for value in row) + "</tr>" for row in rows)
         more = f"<p>{len(self)} cases, of which {ROWS_SHOWN} are shown</p>" if len(self) > ROWS_SHOWN else ""
-        # As an image, so that names and styles inside the SVG do not meet those of other figures of the notebook.
+        # As an image, so that names and styles inside the SVG do not meet the names and styles of other figures.
         picture = self._picture()
         data = base64.b64encode(picture.svg.encode()).decode() if picture else ""
         image = f'<img alt="{html.escape(picture.name)}" style="max-width:100%" src="data:image/svg+xml;base64,{data}">' if picture else ""
