@@ -31,7 +31,7 @@ enum Command {
         /// Study files (TOML)
         #[arg(required = true)]
         studies: Vec<PathBuf>,
-        /// Folder for results; several studies get one folder each inside it \[default: results/NAME\]
+        /// Folder for results; several studies get one folder each inside it (default: results/NAME)
         #[arg(long)]
         out: Option<PathBuf>,
         /// Override a key of the study, e.g. --set joints.dry.friction=0.5
@@ -67,7 +67,7 @@ enum Command {
         /// Folders with parts, or parts
         #[arg(required = true, value_name = "DIR")]
         dirs: Vec<PathBuf>,
-        /// Folder for the results \[default: the given folder, if there is only one\]
+        /// Folder for the results (default: the given folder, if there is only one)
         #[arg(long)]
         out: Option<PathBuf>,
         /// Number of cases checked in parallel
@@ -81,7 +81,7 @@ enum Command {
     Bench {
         /// Study file (TOML)
         study: PathBuf,
-        /// Folder for bench.csv and figures \[default: results/NAME/bench\]
+        /// Folder for bench.csv and figures (default: results/NAME/bench)
         #[arg(long)]
         out: Option<PathBuf>,
         /// Override a key of the study
@@ -135,7 +135,7 @@ enum Command {
         /// Study files (TOML) with kind = "point"
         #[arg(required = true)]
         studies: Vec<PathBuf>,
-        /// Folder for results; several studies get one folder each inside it \[default: results/NAME\]
+        /// Folder for results; several studies get one folder each inside it (default: results/NAME)
         #[arg(long)]
         out: Option<PathBuf>,
         /// Override a key of the study, e.g. --set point.length=0.1
@@ -188,6 +188,19 @@ enum Command {
         #[arg(long, default_value_t = 1)]
         jobs: usize,
     },
+    /// Compare the results of two runs: cases, statuses, loads, mechanisms, and keys of the studies
+    Diff {
+        /// Results folder or results.json of the first run
+        a: PathBuf,
+        /// Results folder or results.json of the second run
+        b: PathBuf,
+        /// Greatest relative difference of numbers that count as equal
+        #[arg(long, default_value_t = 1e-6, value_parser = commands::diff::tolerance)]
+        tolerance: f64,
+        /// Print all differences as one line of JSON
+        #[arg(long)]
+        json: bool,
+    },
     /// Print the completions of a shell
     Completions {
         /// Name of the shell
@@ -228,6 +241,9 @@ impl Command {
             Command::Verify { dir, study, set, partial, jobs } => {
                 commands::verify::verify(&dir, &commands::verify::VerifyOptions { study, set, partial, jobs })
             }
+            Command::Diff { a, b, tolerance, json } => {
+                commands::diff::diff(&a, &b, &commands::diff::DiffOptions { tolerance, json })
+            }
             Command::Completions { shell } => commands::pages::completions(shell, &mut Cli::command()),
             Command::Man => commands::pages::man(Cli::command()),
         }
@@ -262,7 +278,7 @@ enum New {
 
 #[derive(Args)]
 struct NewStudy {
-    /// Name of the study; the file is NAME.toml \[default: the word itself\]
+    /// Name of the study; the file is NAME.toml (default: the word itself)
     name: Option<String>,
 }
 

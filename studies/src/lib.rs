@@ -43,6 +43,7 @@ pub mod cli;
 mod commands;
 pub mod config;
 pub mod conformance;
+pub mod difference;
 pub mod figures;
 mod fnv;
 pub mod kinds;

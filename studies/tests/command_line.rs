@@ -298,3 +298,82 @@ fn a_law_is_checked_and_a_new_one_is_written() {
     assert_eq!(code(&voussoir(&["new", "law", "Shear-Pins", "--out", into])), 2, "no name of a file");
     std::fs::remove_dir_all(&krate).expect("removed");
 }
+
+/// `diff` ends with 0 if two folders have the same results and with 1 if they differ. The table begins with the largest
+/// change. A folder without results is wrong input, and the nearest name of a missing folder is suggested.
+#[test]
+fn two_runs_are_compared() {
+    let folder = empty_folder("two_runs_are_compared");
+    let study = study();
+    let study = study.to_str().expect("a path");
+    let run = |name: &str, more: &[&str]| {
+        let out = folder.join(name).to_str().expect("a path").to_string();
+        let output = voussoir(&[&["run", study, "--quiet", "--out", &out, "--set", "output.figures=false"], more].concat());
+        assert_eq!(code(&output), 0, "{}", String::from_utf8_lossy(&output.stderr));
+        out
+    };
+    let diff = |arguments: &[&str]| {
+        let output = voussoir(&[&["diff"], arguments].concat());
+        let all = [&output.stdout[..], &output.stderr].concat();
+        (code(&output), String::from_utf8_lossy(&all).into_owned())
+    };
+    let (one, two) = (run("before", &[]), run("after", &["--set", "scene.thickness=0.61"]));
+    let (exit, said) = diff(&[&one, &one]);
+    assert!(exit == 0 && said.contains("38 cases: equal within 1e-6"), "{said}");
+    let (exit, said) = diff(&[&one, &two]);
+    assert_eq!(exit, 1);
+    for part in ["scene.thickness", "0.61", "load factor", "scene.profile.rise = 2.99", "0 cases equal, 38 differ"] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+    // A file is as good as its folder, and a large tolerance allows everything but a change of status.
+    let file = format!("{one}/results.json");
+    assert_eq!(diff(&[&file, &one, "--tolerance", "0"]).0, 0);
+    let (exit, line) = diff(&[&one, &two, "--json"]);
+    let json: serde_json::Value = serde_json::from_str(&line).expect("one line of JSON");
+    assert!(exit == 1 && json["equal"] == false && json["inputs"][0]["key"] == "scene.thickness", "{line}");
+    assert!(json["cases"].as_array().is_some_and(|cases| cases.len() == 38));
+    // A case that only one run has.
+    let part = run("part", &["--case", "3"]);
+    let (exit, said) = diff(&[&one, &part]);
+    assert!(exit == 1 && said.contains("cases that only A has") && said.contains("1 case equal"), "{said}");
+    for (arguments, expected, words) in [
+        ([format!("{one}r"), two.clone()], 3, "did you mean"),
+        ([folder.display().to_string(), two.clone()], 2, "has no results.json"),
+        ([study.to_string(), two.clone()], 2, "not a results file"),
+    ] {
+        let (exit, said) = diff(&[&arguments[0], &arguments[1]]);
+        assert!(exit == expected && said.contains(words), "{exit}: {said}");
+    }
+    let (exit, said) = diff(&[&one, &two, "--tolerance", "5%"]);
+    assert!(exit == 2 && said.contains("0.01 for 1 %"), "{said}");
+}
+
+/// Names of the commands below a command.
+fn commands(path: &[&str]) -> Vec<String> {
+    let help = voussoir(&[path, &["--help"]].concat());
+    let text = String::from_utf8_lossy(&help.stdout).into_owned();
+    let listed = text.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
+    let names = listed.filter_map(|line| line.split_whitespace().next());
+    names.filter(|name| *name != "help").map(ToString::to_string).collect()
+}
+
+/// Help texts have no signs of other formats and no line over 120 characters.
+#[test]
+fn help_is_plain_text() {
+    let mut left: Vec<Vec<String>> = vec![vec![], vec!["point".into()]];
+    let mut seen = 0;
+    while let Some(path) = left.pop() {
+        let words: Vec<&str> = path.iter().map(String::as_str).collect();
+        for flag in ["-h", "--help"] {
+            let output = voussoir(&[&words[..], &[flag]].concat());
+            assert_eq!(code(&output), 0, "{words:?}");
+            for line in String::from_utf8_lossy(&output.stdout).lines() {
+                let plain = line.chars().count() <= 120 && !line.contains('\\') && !line.contains("](") && !line.contains("[`");
+                assert!(plain, "{words:?} {flag}: {line}");
+            }
+        }
+        seen += 1;
+        left.extend(commands(&words).into_iter().map(|name| [path.clone(), vec![name]].concat()));
+    }
+    assert!(seen > 20, "{seen} commands");
+}

@@ -35,6 +35,7 @@ const PARTS: [(&str, &[(&str, &str)]); 6] = [
             ("how_to/one_point.md", "Test a law at one point"),
             ("how_to/clusters.md", "Run a sweep on a cluster"),
             ("how_to/pandas.md", "Read results with pandas"),
+            ("how_to/compare_runs.md", "Compare two runs"),
             ("how_to/reports.md", "Write a report"),
         ],
     ),

@@ -7,6 +7,7 @@ mod case_lines;
 pub mod check;
 pub mod clock;
 pub mod conform;
+pub mod diff;
 mod error;
 pub mod explain;
 pub mod files;

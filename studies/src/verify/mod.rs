@@ -29,5 +29,5 @@ pub mod tolerances;
 
 pub use agreement::Agreement;
 pub use fit::misfits;
-pub use same_study::first_difference;
+pub use same_study::{KeyDifference, first_difference, key_differences};
 pub use study::{CheckedCase, against, by_itself, solve_again, verify, verify_against};

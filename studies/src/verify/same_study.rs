@@ -1,28 +1,55 @@
 //! Compares two resolved studies key by key.
 
+use crate::config::dotted_key::join;
+use serde::Serialize;
 use toml::Value;
 
 /// Greatest number of characters of a value in a message.
 const SHOWN: usize = 60;
 
-/// The first key in which the study of a folder differs from another one, in words; `None` if they are the same. The order
-/// of keys has no meaning.
-pub fn first_difference(folder: &Value, study: &Value) -> Option<String> {
-    at("", Some(folder), Some(study))
+/// A key with different values in two studies.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct KeyDifference {
+    /// The dotted key.
+    pub key: String,
+    /// Its value in the first study; `None` if it is missing.
+    pub a: Option<Value>,
+    /// Its value in the second study.
+    pub b: Option<Value>,
 }
 
-fn at(path: &str, folder: Option<&Value>, study: Option<&Value>) -> Option<String> {
-    let inner = |key: &str| if path.is_empty() { key.to_string() } else { format!("{path}.{key}") };
-    match (folder, study) {
+impl KeyDifference {
+    /// Both values in words.
+    pub fn words(&self) -> [String; 2] {
+        [&self.a, &self.b].map(|value| shown(value.as_ref()))
+    }
+}
+
+/// All keys in which two studies differ. The order of keys has no meaning; 5 and 5.0 are equal.
+pub fn key_differences(a: &Value, b: &Value) -> Vec<KeyDifference> {
+    let mut found = Vec::new();
+    at("", Some(a), Some(b), &mut found);
+    found
+}
+
+/// The first key in which the study of a folder differs from another one, in words; `None` if they are the same.
+pub fn first_difference(folder: &Value, study: &Value) -> Option<String> {
+    let found = key_differences(folder, study).into_iter().next()?;
+    let [folder, study] = found.words();
+    Some(format!("{} is {folder} in the folder and {study} in the study", found.key))
+}
+
+fn at(path: &str, a: Option<&Value>, b: Option<&Value>, found: &mut Vec<KeyDifference>) {
+    match (a, b) {
         (Some(Value::Table(a)), Some(Value::Table(b))) => {
             let keys = b.keys().chain(a.keys().filter(|key| !b.contains_key(*key)));
-            keys.into_iter().find_map(|key| at(&inner(key), a.get(key), b.get(key)))
+            keys.for_each(|key| at(&join(path, key), a.get(key), b.get(key), found));
         }
         (Some(Value::Array(a)), Some(Value::Array(b))) => {
-            (0..a.len().max(b.len())).find_map(|index| at(&inner(&index.to_string()), a.get(index), b.get(index)))
+            (0..a.len().max(b.len())).for_each(|index| at(&join(path, &index.to_string()), a.get(index), b.get(index), found));
         }
-        _ if same(folder, study) => None,
-        _ => Some(format!("{path} is {} in the folder and {} in the study", shown(folder), shown(study))),
+        _ if same(a, b) => {}
+        _ => found.push(KeyDifference { key: path.into(), a: a.cloned(), b: b.cloned() }),
     }
 }
 
