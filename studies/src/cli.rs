@@ -3,7 +3,7 @@
 use crate::commands;
 pub use crate::commands::clock::processor_time;
 use crate::commands::new::Template;
-use crate::commands::options::{Options, Shard};
+use crate::commands::options::{Options, Shard, at_least_one, case_id};
 pub use crate::commands::{CliError, ErrorKind, Outcome, Verdict};
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use std::path::PathBuf;
@@ -14,7 +14,7 @@ const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (commit ", env!("VOUS
 
 /// Stability and collapse of masonry made of blocks.
 #[derive(Parser)]
-#[command(name = "voussoir", version = VERSION, about)]
+#[command(name = "voussoir", version = VERSION)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -38,10 +38,10 @@ enum Command {
         #[arg(long, value_name = "KEY=VALUE")]
         set: Vec<String>,
         /// Number of cases in parallel
-        #[arg(long, default_value_t = 1)]
+        #[arg(long, default_value_t = 1, value_parser = at_least_one)]
         jobs: usize,
         /// Solve only the case with this id
-        #[arg(long)]
+        #[arg(long, allow_negative_numbers = true, value_parser = case_id)]
         case: Option<usize>,
         /// Continue from the finished cases of an interrupted run
         #[arg(long)]
@@ -49,7 +49,7 @@ enum Command {
         /// Print nothing but errors
         #[arg(long)]
         quiet: bool,
-        /// Solve one part of the study, for example 2/8 on the second of eight machines; `merge` puts the parts together
+        /// Solve one part of the study, for example 2/8 on the second of eight machines (see `merge`)
         #[arg(long, value_name = "M/N", conflicts_with_all = ["case", "open"])]
         shard: Option<Shard>,
         /// Print each answered case as a line of JSON, and nothing else on standard output
@@ -71,7 +71,7 @@ enum Command {
         #[arg(long)]
         out: Option<PathBuf>,
         /// Number of cases checked in parallel
-        #[arg(long, default_value_t = 1)]
+        #[arg(long, default_value_t = 1, value_parser = at_least_one)]
         jobs: usize,
         /// Print nothing but errors
         #[arg(long)]
@@ -88,7 +88,7 @@ enum Command {
         #[arg(long, value_name = "KEY=VALUE")]
         set: Vec<String>,
         /// Runs of each contestant; the fastest counts
-        #[arg(long, default_value_t = 3)]
+        #[arg(long, default_value_t = 3, value_parser = at_least_one)]
         runs: usize,
         /// Reference of the errors: a variant, a contestant, or a known load factor
         #[arg(long, value_name = "NAME|NUMBER")]
@@ -149,7 +149,7 @@ enum Command {
     Explain {
         /// Tag of a plug-in, key of a study file, a word such as `units`, or a study file
         what: String,
-        /// Print the study's first case in another form instead: every block by its vertices
+        /// Print the study's first case in another form, with every block by its vertices
         #[arg(long, value_name = "FORM", value_parser = commands::explain::EXPORTS)]
         export: Option<String>,
     },
@@ -185,7 +185,7 @@ enum Command {
         #[arg(long)]
         partial: bool,
         /// Number of cases in parallel
-        #[arg(long, default_value_t = 1)]
+        #[arg(long, default_value_t = 1, value_parser = at_least_one)]
         jobs: usize,
     },
     /// Compare the results of two runs: cases, statuses, loads, mechanisms, and keys of the studies
@@ -356,7 +356,17 @@ pub fn outcome_of(arguments: impl IntoIterator<Item = std::ffi::OsString>) -> Re
         return Ok(Err(CliError::of_lines(ErrorKind::NoAccess, lines)));
     }
     let words: Vec<String> = arguments.iter().map(|word| word.to_string_lossy().into_owned()).collect();
-    let cli = Cli::try_parse_from(std::iter::once("voussoir".into()).chain(arguments))?;
+    let cli = match Cli::try_parse_from(std::iter::once("voussoir".into()).chain(arguments)) {
+        Err(wrong) if wrong.kind() == clap::error::ErrorKind::InvalidSubcommand => match words.first() {
+            Some(file) if file.ends_with(".toml") => {
+                let why =
+                    format_args!("voussoir: {file} is no command; to solve this study, write `voussoir run {file}`");
+                return Ok(Err(CliError::wrong_input(why)));
+            }
+            _ => return Err(wrong),
+        },
+        parsed => parsed?,
+    };
     #[cfg(feature = "external")]
     for path in &cli.allow_library {
         if let Err(error) = crate::external::allow(path) {

@@ -8,8 +8,7 @@ use crate::difference::{RunDifference, StoredRun, compare};
 use crate::regular_file::open_regular;
 use std::collections::BTreeSet;
 use std::io::ErrorKind;
-use std::path::{Component, Path, PathBuf};
-use voussoir_core::plugin::nearest;
+use std::path::{Component, Path};
 
 /// Greatest length of a results.json.
 const MAX_RESULTS_BYTES: u64 = 1 << 40;
@@ -67,7 +66,8 @@ fn compare_folders(
 ) -> Result<(), CliError> {
     let [a, b] = [stored(folders[0])?, stored(folders[1])?];
     found.push((part.into(), compare(&a, &b, options.tolerance)));
-    let inside = |name: &&String| matches!(Path::new(name).components().collect::<Vec<_>>()[..], [Component::Normal(_)]);
+    let inside =
+        |name: &&String| matches!(Path::new(name).components().collect::<Vec<_>>()[..], [Component::Normal(_)]);
     let parts: BTreeSet<&String> = a.parts.iter().filter(|name| b.parts.contains(name)).filter(inside).collect();
     for own in parts {
         let inner = folders.map(|folder| folder.join(own));
@@ -92,25 +92,20 @@ fn not_opened(path: &Path, file: &Path, error: &std::io::Error) -> CliError {
         return CliError::of_file(file, error);
     }
     if path.is_dir() {
-        let parts = path.join(PART).is_file() || names_in(path).iter().any(|name| name.starts_with("shard-"));
+        let parts = path.join(PART).is_file() || has_parts(path);
         let help = match parts {
             true => "it has parts of a study: put them together with `voussoir merge`",
             false => "`voussoir run STUDY --out DIR` writes one",
         };
         return CliError::wrong_input(format_args!("voussoir: {} has no results.json; {help}", path.display()));
     }
-    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
-    let names = names_in(folder);
-    let wrong = path.file_name().unwrap_or_default().to_string_lossy();
-    let help = nearest(&wrong, names.iter().map(String::as_str))
-        .map(|name| format!("; did you mean {}?", path.with_file_name(name).display()));
-    let why = format!("voussoir: there is no results folder {}{}", path.display(), help.unwrap_or_default());
+    let results = |own: &Path| own.is_dir() || own.extension().is_some_and(|ending| ending == "json");
+    let why = format!("voussoir: there is no results folder {}{}", path.display(), files::did_you_mean(path, &results));
     CliError::no_access(why)
 }
 
-/// Names of the folders and JSON files in a folder; empty if it cannot be read.
-fn names_in(folder: &Path) -> Vec<String> {
-    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    let wanted = |path: &PathBuf| path.is_dir() || path.extension().is_some_and(|ending| ending == "json");
-    entries.map(|entry| entry.path()).filter(wanted).filter_map(|path| Some(path.file_name()?.to_str()?.into())).collect()
+/// Returns true if a folder contains folders of parts.
+fn has_parts(path: &Path) -> bool {
+    let entries = std::fs::read_dir(path).into_iter().flatten().flatten();
+    entries.map(|entry| entry.file_name()).any(|name| name.to_string_lossy().starts_with("shard-"))
 }

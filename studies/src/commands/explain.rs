@@ -3,10 +3,11 @@
 use super::error::{CliError, Outcome, Verdict};
 use super::print::{print, say, say_data};
 use super::{files, topics};
+use crate::config::synonyms::nearest_name;
 use crate::kinds::json_schema::json_schema;
 use crate::results::RESULTS_SCHEMA;
 use std::path::Path;
-use voussoir_core::plugin::{Card, PluginKind, cards, cards_of, describe, nearest};
+use voussoir_core::plugin::{Card, PluginKind, cards, cards_of, describe};
 
 /// Lists plug-ins, of one kind or all.
 pub fn list(kind: Option<&str>) -> Outcome {
@@ -16,7 +17,8 @@ pub fn list(kind: Option<&str>) -> Outcome {
             Some(kind) => vec![*kind],
             None => {
                 let words = PluginKind::ALL.map(PluginKind::plural);
-                let why = format_args!("there are no \"{word}\" to list; list one of: {}", words.join(", "));
+                let near = nearest_name(word, words).map_or(String::new(), |near| format!(" did you mean \"{near}\"?"));
+                let why = format_args!("there is no list \"{word}\";{near} lists: {}", words.join(", "));
                 return Err(CliError::wrong_input(why));
             }
         },
@@ -65,9 +67,16 @@ pub fn explain(what: &str) -> Outcome {
     if found.is_empty() && known.is_empty() {
         let tags = cards().iter().map(|card| card.tag.to_string());
         let words: Vec<String> = tags.chain(topics::words()).collect();
-        let near = nearest(what, words.iter().map(String::as_str));
+        let near = nearest_name(what, words.iter().map(String::as_str));
         let advice = near.map_or("see `voussoir list`".into(), |tag| format!("did you mean \"{tag}\"?"));
         let why = format!("no plug-in, key or word is called \"{what}\"; {advice}");
+        // A word with a dot or a slash is meant as a file.
+        let file = what.contains(['/', '.']) && near.is_none();
+        let why = if file {
+            format!("there is no file {what}{}", files::did_you_mean(Path::new(what), &|own| own.is_file()))
+        } else {
+            why
+        };
         return Err(if what.contains('/') { CliError::no_access(why) } else { CliError::wrong_input(why) });
     }
     found.iter().for_each(|card| print_card(card));

@@ -5,11 +5,11 @@ use crate::kinds::{LoadedStudy, read_source_beside};
 use crate::serve::Session;
 use crate::study::{StudySource, beside, read_bounded};
 use std::path::Path;
+use voussoir_core::plugin::nearest;
 
 /// Reads a text file.
 pub fn read(path: &Path) -> Result<String, CliError> {
-    let bytes = read_bounded(path)
-        .map_err(|error| CliError::no_access(format_args!("voussoir: cannot read {}: {error}", path.display())))?;
+    let bytes = read_bounded(path).map_err(|error| unreadable(path, &error))?;
     // UTF-16 without a byte order mark: ASCII letters in it are the same bytes as in UTF-8, each with a zero byte
     // beside it.
     if bytes.contains(&0) {
@@ -28,6 +28,27 @@ pub fn read(path: &Path) -> Result<String, CliError> {
             bytes[at]
         ))
     })
+}
+
+/// The error for a study file that cannot be read, with the most similar name in its folder.
+fn unreadable(path: &Path, error: &std::io::Error) -> CliError {
+    let help = match error.kind() {
+        _ if path.is_dir() => "; it is a folder: give the name of a study file".to_string(),
+        std::io::ErrorKind::NotFound => did_you_mean(path, &|own| own.is_file()),
+        _ => String::new(),
+    };
+    CliError::no_access(format_args!("voussoir: cannot read {}: {error}{help}", path.display()))
+}
+
+/// Suggests the most similar name in the folder of a path; `wanted` selects the entries.
+pub fn did_you_mean(path: &Path, wanted: &dyn Fn(&Path) -> bool) -> String {
+    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    let names: Vec<String> =
+        entries.filter(|own| wanted(own)).filter_map(|own| Some(own.file_name()?.to_str()?.to_string())).collect();
+    let wrong = path.file_name().unwrap_or_default().to_string_lossy();
+    let near = nearest(&wrong, names.iter().map(String::as_str));
+    near.map_or(String::new(), |name| format!("; did you mean {}?", path.with_file_name(name).display()))
 }
 
 /// Splits KEY=VALUE overrides.

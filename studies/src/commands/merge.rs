@@ -61,7 +61,10 @@ fn merged(dirs: &[PathBuf], options: &MergeOptions) -> Outcome {
     open_regular(&resolved, MAX_PART_BYTES).map_err(|error| CliError::of_file(&resolved, error))?;
     let study = files::study(&resolved, &[])?;
     if study_hash(study.resolved()) != first.head.study_hash {
-        return Err(wrong(format!("{}: resolved.toml is not that of its cases", first.folder.display())));
+        return Err(wrong(format!(
+            "{}: resolved.toml has another hash than the study of its cases; copy the folder again",
+            first.folder.display()
+        )));
     }
     let cases = study.with_cases().ok_or_else(|| wrong("this kind of study is not solved in parts"))?;
     let doubles = lines.sort();

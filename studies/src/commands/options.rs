@@ -5,6 +5,23 @@ use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use std::str::FromStr;
 
+/// Reads a whole number of at least 1.
+///
+/// # Errors
+/// The reason why it is not one.
+pub fn at_least_one(text: &str) -> Result<usize, String> {
+    text.parse().ok().filter(|count| *count > 0).ok_or("give a whole number of at least 1".into())
+}
+
+/// Reads the id of a case.
+///
+/// # Errors
+/// The reason why it is not one.
+pub fn case_id(text: &str) -> Result<usize, String> {
+    text.parse()
+        .map_err(|_| "give the id of a case, a whole number from 0; `voussoir run STUDY --list` shows them".into())
+}
+
 /// Options of `voussoir run`.
 #[derive(Debug, Default)]
 pub struct Options {

@@ -2,6 +2,7 @@
 
 use crate::config::documented_vehicles;
 use crate::config::key_meaning::quantity_of;
+use crate::config::synonyms::GLOSSARY;
 use crate::study::study_keys;
 use std::collections::BTreeSet;
 use voussoir_core::plugin::{Card, Need, Parameter, PluginKind, Quantity, Shape, Variant, cards, cards_of};
@@ -19,10 +20,7 @@ const PAGES: [(&[&str], &str); 9] = [
     (&["units", "unit"], include_str!("topics/units.md")),
 ];
 
-/// The glossary, a copy of `docs/reference/glossary.md` in the package. Each row of its tables explains the words of its first column.
-const GLOSSARY: &str = include_str!("../../templates/glossary.md");
-
-/// Words of the glossary with their meaning.
+/// Words of the glossary with their meaning. Each row of its tables explains the words of its first column.
 fn glossary() -> impl Iterator<Item = (&'static str, &'static str)> {
     let rows = GLOSSARY.lines().filter_map(|line| line.strip_prefix("| ")?.split_once(" | "));
     let rows = rows.filter(|(words, _)| *words != "word");

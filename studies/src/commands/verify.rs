@@ -60,7 +60,13 @@ struct Checked {
 fn opened(dir: &Path, name: &str, limit: u64) -> Result<File, CliError> {
     let path = dir.join(name);
     open_regular(&path, limit).map_err(|error| {
-        let why = format!("voussoir: cannot read {}: {error}", path.display());
+        let help = match error.kind() {
+            _ if dir.is_file() => "; verify checks a results folder, not a file".into(),
+            ErrorKind::NotFound if !dir.exists() => files::did_you_mean(dir, &|own| own.is_dir()),
+            ErrorKind::NotFound => "; is this a results folder?".into(),
+            _ => String::new(),
+        };
+        let why = format!("voussoir: cannot read {}: {error}{help}", path.display());
         let no_results = error.kind() == ErrorKind::NotFound && dir.is_dir();
         match error.kind() {
             ErrorKind::InvalidInput | ErrorKind::FileTooLarge => CliError::wrong_input(why),

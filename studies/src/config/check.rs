@@ -9,10 +9,9 @@ use crate::config::dotted_key::join;
 use crate::config::gravity::gravity_of;
 use crate::config::origin::Origin;
 use crate::config::shape_words::{any_shape, describe, fits};
+use crate::config::synonyms::nearest_name;
 use serde_json::{Map, Value as Json};
-use voussoir_core::plugin::{
-    Card, Need, Parameter, PluginKind, Quantity, Shape, Variant, candidate, candidates, card, nearest,
-};
+use voussoir_core::plugin::{Card, Need, Parameter, PluginKind, Quantity, Shape, Variant, candidate, candidates, card};
 
 /// A key that another plug-in of the same kind knows, but the chosen one does not.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -37,7 +36,7 @@ fn unknown_tag(tag: &str, tags: &[&str], what: &str) -> (String, String) {
         return (message, help);
     }
     let mut help = suggest(tag, tags, "choices");
-    if is_plugin && nearest(tag, tags.iter().copied()).is_none() {
+    if is_plugin && nearest_name(tag, tags.iter().copied()).is_none() {
         help += "; one of another crate is there only in a program that names that crate (docs/adding_a_law.md)";
     }
     (format!("there is no {what} \"{tag}\""), help)
@@ -108,6 +107,10 @@ impl<'a> Checker<'a> {
             }
             _ => {
                 let message = format!("must be {}, but is {}", describe(shape), node.describe());
+                if let (Shape::List { .. }, Some(_)) = (shape, node.table()) {
+                    let help = format!("write [[{key}]] with two brackets, or the table in brackets: [{{ … }}]");
+                    return self.wrong_with_help(&node.origin, key, message, help);
+                }
                 return self.wrong(&node.origin, key, message);
             }
         };
@@ -173,7 +176,7 @@ impl<'a> Checker<'a> {
         if !names.contains(&text) {
             let documented = if table == "vehicles" { documented_vehicles::names() } else { Vec::new() };
             let all = names.iter().copied().chain(documented.iter().map(String::as_str));
-            let help = match nearest(text, all) {
+            let help = match nearest_name(text, all) {
                 Some(name) => format!("did you mean \"{name}\"?"),
                 None => suggest(text, &names, &format!("entries of [{table}]")),
             };
@@ -315,7 +318,7 @@ impl<'a> Checker<'a> {
             let known = skip.contains(&entry.key.as_str()) || parameters.iter().any(|p| p.name == entry.key);
             if !known {
                 let names: Vec<_> = skip.iter().copied().chain(parameters.iter().map(|p| p.name)).collect();
-                let near = voussoir_core::plugin::nearest(&entry.key, names.iter().copied());
+                let near = nearest_name(&entry.key, names.iter().copied());
                 misspelt.extend(near.filter(|name| table.get(name).is_none()));
                 let elsewhere = others.iter().find(|other| other.parameters.iter().any(|p| p.name == entry.key));
                 let help = match (near, elsewhere) {
@@ -390,11 +393,11 @@ impl<'a> Checker<'a> {
             let path = join(key, &entry.key);
             if others.is_empty() {
                 let mut names: Vec<_> = std::iter::once(tag_key).chain(parameters.iter().map(|p| p.name)).collect();
-                let near = voussoir_core::plugin::nearest(&entry.key, names.iter().copied());
+                let near = nearest_name(&entry.key, names.iter().copied());
                 misspelt.extend(near);
                 if near.is_none() {
                     let all = registered.iter().flat_map(|card| card.parameters).map(|p| p.name);
-                    if let Some(name) = voussoir_core::plugin::nearest(&entry.key, all) {
+                    if let Some(name) = nearest_name(&entry.key, all) {
                         names = vec![name];
                     }
                 }

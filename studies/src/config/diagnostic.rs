@@ -2,6 +2,7 @@
 
 use crate::config::characters::quoted;
 use crate::config::origin::Origin;
+use crate::config::synonyms::{key_elsewhere, nearest_name};
 use std::fmt;
 
 /// One mistake in a study, with its place.
@@ -70,12 +71,14 @@ pub fn any_of<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
     }
 }
 
-/// Returns advice for a wrong name: the nearest valid name, or the list of all names.
+/// Returns advice for a wrong name: the nearest valid name by meaning or spelling, a key of another table, or the list of all
+/// names.
 pub fn suggest(wrong: &str, names: &[&str], what: &str) -> String {
-    match voussoir_core::plugin::nearest(wrong, names.iter().copied()) {
-        Some(name) => format!("did you mean \"{name}\"?"),
-        None if names.is_empty() => format!("there are no {what}"),
-        None => format!("{what}: {}", names.join(", ")),
+    match (nearest_name(wrong, names.iter().copied()), key_elsewhere(wrong)) {
+        (Some(name), _) => format!("did you mean \"{name}\"?"),
+        (None, Some(key)) => format!("did you mean {key}?"),
+        (None, None) if names.is_empty() => format!("there are no {what}"),
+        (None, None) => format!("{what}: {}", names.join(", ")),
     }
 }
 

@@ -204,6 +204,9 @@ impl Node {
     }
 }
 
+/// Advice for a file with wrong syntax.
+const TOML: &str = "a study file has lines KEY = VALUE, tables in [brackets] and texts in quotes";
+
 /// Reads a document. The error lists all syntax errors.
 pub fn parse(text: &str, file: &str) -> Result<Node, Vec<LocatedDiagnostic>> {
     let reader = Reader::new(text, file);
@@ -221,6 +224,10 @@ pub fn parse(text: &str, file: &str) -> Result<Node, Vec<LocatedDiagnostic>> {
     }
     if !mistakes.is_empty() {
         sort(&mut mistakes);
+        // One piece of advice is enough for all mistakes.
+        if let Some(first) = mistakes.first_mut().filter(|first| first.help.is_none()) {
+            first.help = Some(TOML.into());
+        }
         return Err(mistakes);
     }
     let node = reader.table(root.get_ref(), reader.origin(0), &mut mistakes);
@@ -333,10 +340,27 @@ impl Reader {
         let message = error.message();
         if message.contains("duplicate key") {
             let key = error.span().and_then(|span| text.get(span)).unwrap_or_default().trim();
-            return LocatedDiagnostic::new(&origin, key, "is given twice in the same table")
-                .help("keep one of the two");
+            let help = match self.is_list_of_tables(&origin) {
+                true => format!("write each entry of a list under its own [[{key}]], with two brackets"),
+                false => "keep one of the two".into(),
+            };
+            return LocatedDiagnostic::new(&origin, key, "is given twice in the same table").help(help);
         }
-        LocatedDiagnostic::new(&origin, "", format!("this is not TOML: {message}"))
+        let after = error.span().and_then(|span| text.get(span.start..)).and_then(|rest| rest.lines().next());
+        let nothing = after.is_none_or(|rest| rest.trim().is_empty());
+        let why = match message {
+            _ if message.contains("string values must be quoted") && nothing => "there is no value after =",
+            _ if message.contains("string values must be quoted") => "a text must be in quotes, as in \"arch\"",
+            _ if message.contains("key with no value") => "there is no = and no value after this key",
+            other => other,
+        };
+        LocatedDiagnostic::new(&origin, "", format!("this is not TOML: {why}"))
+    }
+
+    /// Returns true if the line begins an entry of a list of tables: `[[stages]]`.
+    fn is_list_of_tables(&self, origin: &Origin) -> bool {
+        let Origin::File { line, .. } = origin else { return false };
+        self.text.lines().nth(line - 1).is_some_and(|line| line.trim_start().starts_with("[["))
     }
 
     fn table(&self, table: &DeTable<'_>, origin: Origin, mistakes: &mut Vec<LocatedDiagnostic>) -> Node {

@@ -9,6 +9,7 @@ use crate::config::gravity::gravity_of;
 use crate::config::key_meaning::key_meaning;
 use crate::config::origin::Origin;
 use crate::config::overlay::set;
+use crate::config::synonyms::nearest_name;
 use serde_json::{Map, Value as Json};
 use voussoir_core::plugin::Parameter;
 
@@ -332,7 +333,7 @@ fn axis(node: &Node, path: &str, mistakes: &mut Vec<LocatedDiagnostic>) -> Optio
     for entry in &table.entries {
         let names = ["list", "from", "to", "step", "count"];
         if !names.contains(&entry.key.as_str()) {
-            let help = match voussoir_core::plugin::nearest(&entry.key, names) {
+            let help = match nearest_name(&entry.key, names) {
                 Some(_) => suggest(&entry.key, &names, "keys here"),
                 None => FORMS.into(),
             };

@@ -25,3 +25,4 @@ pub mod origin;
 pub mod overlay;
 pub mod shape_words;
 pub mod source_line;
+pub mod synonyms;

@@ -34,7 +34,8 @@ impl Change {
 
     /// A change of a number that is greater than the tolerance. A number that appears or disappears outweighs all others.
     fn of_number(entry: &str, a: Option<f64>, b: Option<f64>, tolerance: f64) -> Option<Self> {
-        let change = |relative: Option<f64>, weight| Change { entry: entry.into(), a: a.into(), b: b.into(), relative, weight };
+        let change =
+            |relative: Option<f64>, weight| Change { entry: entry.into(), a: a.into(), b: b.into(), relative, weight };
         match (a, b) {
             (Some(a), Some(b)) if a != b => {
                 let share = (b - a).abs() / a.abs().max(b.abs());
@@ -137,7 +138,13 @@ pub fn compare(a: &StoredRun, b: &StoredRun, tolerance: f64) -> RunDifference {
         runs: [name(a), name(b)],
         inputs: a.resolved.as_ref().zip(b.resolved.as_ref()).map(|(a, b)| key_differences(a, b)),
         compared: pairs.iter().flatten().count(),
-        only_a: a.cases.iter().zip(&pairs).filter(|(_, place)| place.is_none()).map(|(case, _)| CaseName::of(case)).collect(),
+        only_a: a
+            .cases
+            .iter()
+            .zip(&pairs)
+            .filter(|(_, place)| place.is_none())
+            .map(|(case, _)| CaseName::of(case))
+            .collect(),
         only_b: b.cases.iter().zip(only_b).filter(|(_, only)| *only).map(|(case, _)| CaseName::of(case)).collect(),
         cases,
         others,
@@ -173,13 +180,16 @@ fn changes(a: &StoredCase, b: &StoredCase, tolerance: f64) -> Vec<Change> {
     let factor = number("load_factor", a.load_factor, b.load_factor);
     // Bounds that meet differ together with the load factor.
     let [lower, upper] = [0, 1].map(|end| [a, b].map(|case| case.bounds.and_then(|bounds| bounds[end])));
-    let bounds = if factor.is_some() { [None, None] } else {
+    let bounds = if factor.is_some() {
+        [None, None]
+    } else {
         [number("lower_bound", lower[0], lower[1]), number("upper_bound", upper[0], upper[1])]
     };
     let reserve = |case: &StoredCase| case.reserve.and_then(|reserve| reserve.factor);
     let passed = |case: &StoredCase| case.certificate.map(|certificate| certificate.passed).into();
     let words = |case: &StoredCase| case.mechanism.as_ref().map(mechanism_words).into();
-    let mut found = vec![Change::of_word("status", a.status.clone().into(), b.status.clone().into(), f64::INFINITY), factor];
+    let mut found =
+        vec![Change::of_word("status", a.status.clone().into(), b.status.clone().into(), f64::INFINITY), factor];
     found.extend(bounds);
     found.push(number("first_limit_point", a.first_limit_point, b.first_limit_point));
     found.push(number("reserve", reserve(a), reserve(b)));
@@ -194,7 +204,8 @@ fn changes(a: &StoredCase, b: &StoredCase, tolerance: f64) -> Vec<Change> {
 fn mechanism_words(mechanism: &StoredMechanism) -> String {
     let lists = [("hinges", &mechanism.hinges), ("sliding", &mechanism.sliding), ("crushing", &mechanism.crushing)];
     let joints = |list: &[StoredJoint]| list.iter().map(|own| own.joint.to_string()).collect::<Vec<_>>().join(" ");
-    let lists = lists.iter().filter(|(_, list)| !list.is_empty()).map(|(name, list)| format!("{name} {}", joints(list)));
+    let lists =
+        lists.iter().filter(|(_, list)| !list.is_empty()).map(|(name, list)| format!("{name} {}", joints(list)));
     format!("{}: {}", mechanism.kind, lists.collect::<Vec<_>>().join(", "))
 }
 
@@ -205,7 +216,8 @@ fn limit_points(a: &StoredCase, b: &StoredCase, tolerance: f64) -> Option<Change
         && points.iter().zip(others).all(|(a, b)| {
             a.stage == b.stage && Change::of_number("", Some(a.factor), Some(b.factor), tolerance).is_none()
         });
-    let list = |case: &StoredCase| Json::from_iter(case.limit_points.iter().map(|point| json!([point.stage, point.factor])));
+    let list =
+        |case: &StoredCase| Json::from_iter(case.limit_points.iter().map(|point| json!([point.stage, point.factor])));
     (!same).then(|| Change { entry: "limit_points".into(), a: list(a), b: list(b), relative: None, weight: 0.0 })
 }
 
@@ -305,7 +317,10 @@ mod tests {
         assert_eq!(found.cases.iter().map(|case| case.a.id).collect::<Vec<_>>(), [2, 1, 0]);
         assert_eq!(found.cases[0].changes[0].entry, "status");
         let load = &found.cases[1].changes[0];
-        assert_eq!((load.entry.as_str(), &load.a, &load.b, load.relative), ("load_factor", &json!(2.0), &json!(3.0), Some(0.5)));
+        assert_eq!(
+            (load.entry.as_str(), &load.a, &load.b, load.relative),
+            ("load_factor", &json!(2.0), &json!(3.0), Some(0.5))
+        );
         assert_eq!(found.inputs.as_ref().map(|keys| keys[0].words()), Some(["0.6".into(), "0.5".into()]));
         assert_eq!(compare(&a, &b, 0.02).cases.len(), 2, "1 % is within 2 %");
         let text = found.text();
@@ -339,7 +354,10 @@ mod tests {
                 "rows": [[0.0, 1e-9 * traction], [1e-5, traction]] }])
         };
         let found = compare(&run(point(1e6), ""), &run(point(1.1e6), ""), 1e-6);
-        assert_eq!(found.cases[0].changes.iter().map(|change| change.entry.as_str()).collect::<Vec<_>>(), ["traction [Pa]"]);
+        assert_eq!(
+            found.cases[0].changes.iter().map(|change| change.entry.as_str()).collect::<Vec<_>>(),
+            ["traction [Pa]"]
+        );
         assert!(compare(&run(point(1e6), ""), &run(point(1.1e6), ""), 0.1).is_equal());
     }
 

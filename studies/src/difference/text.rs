@@ -61,9 +61,11 @@ impl RunDifference {
             return format!("\n{}: equal within {:e}\n", count(self.compared, "case"), self.tolerance);
         }
         let mut parts = vec![format!("{} equal", count(same, "case")), format!("{} differ", self.cases.len())];
-        parts.extend([("A", &self.only_a), ("B", &self.only_b)].iter().filter_map(|(side, cases)| {
-            (!cases.is_empty()).then(|| format!("{} only in {side}", cases.len()))
-        }));
+        parts.extend(
+            [("A", &self.only_a), ("B", &self.only_b)]
+                .iter()
+                .filter_map(|(side, cases)| (!cases.is_empty()).then(|| format!("{} only in {side}", cases.len()))),
+        );
         format!("\n{}\n", parts.join(", "))
     }
 }
@@ -118,7 +120,13 @@ fn cases_table(cases: &[&CaseDifference]) -> String {
 fn change_cells(change: &Change) -> [String; 5] {
     let difference = change.a.as_f64().zip(change.b.as_f64()).map(|(a, b)| signed(b - a, ""));
     let relative = change.relative.map(|share| signed(100.0 * share, " %"));
-    [change.entry.replace('_', " "), value(&change.a), value(&change.b), difference.unwrap_or_default(), relative.unwrap_or_default()]
+    [
+        change.entry.replace('_', " "),
+        value(&change.a),
+        value(&change.b),
+        difference.unwrap_or_default(),
+        relative.unwrap_or_default(),
+    ]
 }
 
 fn signed(x: f64, unit: &str) -> String {
@@ -132,10 +140,14 @@ fn value(value: &Json) -> String {
         Json::Bool(truth) => if *truth { "yes" } else { "no" }.into(),
         Json::String(text) => text.clone(),
         Json::Array(items) if items.is_empty() => "-".into(),
-        Json::Array(items) => items.iter().map(|item| match item {
-            Json::Array(pair) => pair.iter().map(self::value).collect::<Vec<_>>().join(" "),
-            item => self::value(item),
-        }).collect::<Vec<_>>().join(", "),
+        Json::Array(items) => items
+            .iter()
+            .map(|item| match item {
+                Json::Array(pair) => pair.iter().map(self::value).collect::<Vec<_>>().join(" "),
+                item => self::value(item),
+            })
+            .collect::<Vec<_>>()
+            .join(", "),
         other => other.as_f64().map_or_else(|| other.to_string(), |x| format_short(x, DIGITS)),
     }
 }
@@ -147,6 +159,8 @@ fn table<const N: usize>(header: [&str; N], rows: Vec<[String; N]>) -> String {
 fn lines(header: &[&str], rows: &[Vec<String>]) -> String {
     let mut table = Table::new();
     table.load_style(presets::NOTHING).set_content_arrangement(ContentArrangement::Disabled).set_header(header);
-    rows.iter().for_each(|row| drop(table.add_row(row)));
+    for row in rows {
+        table.add_row(row);
+    }
     table.to_string().lines().map(|line| line.trim_end().to_string() + "\n").collect()
 }

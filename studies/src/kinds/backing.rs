@@ -31,8 +31,10 @@ impl Study {
     /// The findings in words.
     pub fn backing(&self, result: &CaseResult) -> Result<Backing, Vec<String>> {
         let check = || match self.case_of(&result.label) {
-            None => Err(vec!["the study has no such case".into()]),
-            Some(case) if case.hash() != result.label.case_hash => Err(vec!["it is not this study's".into()]),
+            None => Err(vec!["the study has no case with this id, variant and these parameters".into()]),
+            Some(case) if case.hash() != result.label.case_hash => {
+                Err(vec!["case_hash differs from the hash of this case of the study".into()])
+            }
             Some(case) => match verify_case(&case, result) {
                 findings if findings.is_empty() => match &result.stored_path {
                     Some(path) => {

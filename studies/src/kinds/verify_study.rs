@@ -11,7 +11,7 @@ use crate::side_by_side::{in_order, side_by_side};
 use crate::solve::{Observer, solve_followed};
 use crate::study::Study;
 use crate::verify::path_proofs::{NumberedLine, PathProofLines, ProvedCase};
-use crate::verify::{Agreement, CheckedCase, against, by_itself};
+use crate::verify::{Agreement, COMPARISON, CheckedCase, added, against, by_itself};
 use serde::Deserialize;
 use serde_json::{Map, Value as Json, json};
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
@@ -179,8 +179,11 @@ impl Check<'_> {
     fn place(&mut self, id: usize) {
         let next = self.ids.last().map_or(0, |last| last + 1);
         if id < next || self.made.bases > 0 {
-            let appears =
-                if self.ids.binary_search(&id).is_ok() { "appears twice" } else { "the cases are not in their order" };
+            let appears = if self.ids.binary_search(&id).is_ok() {
+                "appears twice"
+            } else {
+                "the entries of cases are not in the order of their ids"
+            };
             self.found.findings.push((id, appears.into()));
         } else {
             self.missing.extend(next..id);
@@ -204,7 +207,7 @@ impl Check<'_> {
             };
             let differences = match again {
                 Some(again) => self.how().against((entry, result), &again, self.how().agreement),
-                None => vec!["is not among the cases that were asked for, or appears twice".into()],
+                None => vec!["is in the results, but the study does not make this case, or it appears twice".into()],
             };
             self.found.paths[0] += usize::from(checked.proved);
             self.found.findings.extend(checked.wrong.into_iter().chain(differences).map(|why| (id, why)));
@@ -237,16 +240,18 @@ impl Check<'_> {
         let mut wrong = Vec::new();
         if self.origin.format > FORMAT {
             let format = self.origin.format;
-            wrong.push(format!("format {format}; this program reads format {FORMAT} and older"));
+            wrong.push(format!("format is {format}, but this program reads formats up to {FORMAT}"));
         }
         let study = beside.get("study").unwrap_or(&Json::Null);
         if study.as_str() != Some(&self.study.name) {
-            wrong.push(format!("results of {study}, study \"{}\"", self.study.name));
+            wrong.push(format!("study is {study}, but the name in resolved.toml is \"{}\"", self.study.name));
         }
         match beside.get("only_cases") {
             None => self.found.findings.extend(self.missing.iter().map(|id| (*id, "is missing".into()))),
             Some(only) if self.missing.is_empty() || *only != Json::from(self.ids.clone()) => {
-                wrong.push("only_cases is no choice of the study's cases, or some of them are missing".into());
+                wrong.push(
+                    "only_cases must list the ids of all entries of cases, and not all cases of the study".into(),
+                );
             }
             Some(_) => {}
         }
@@ -254,14 +259,14 @@ impl Check<'_> {
             Ok(own) => {
                 let comparison = own.comparison.map(|own| json!(own)).unwrap_or_default();
                 if !agreement.same(beside.get("comparison").unwrap_or(&Json::Null), &comparison) {
-                    wrong.push("the comparison is not that of the cases".into());
+                    wrong.push(COMPARISON.into());
                 }
-                let added =
+                let is_added =
                     |(key, _): &(&String, &Json)| !OWN_KEYS.contains(&key.as_str()) && !HEAD.contains(&key.as_str());
                 let stored: Map<String, Json> =
-                    beside.iter().filter(added).map(|(key, value)| (key.clone(), value.clone())).collect();
+                    beside.iter().filter(is_added).map(|(key, value)| (key.clone(), value.clone())).collect();
                 if !agreement.same(&stored, &own.other) {
-                    wrong.push(format!("what kind = \"{}\" adds is not that of the cases", self.study.kind));
+                    wrong.push(added(&self.study.kind));
                 }
             }
             Err(why) => wrong.push(why),

@@ -46,7 +46,12 @@ pub fn read(
     for entry in entries {
         let body = assembly.body(&entry.body).ok_or(format!("yielded: no block \"{}\"", entry.body))?;
         let index = problem.body_of[body];
-        let misfit = || format!("yielded: \"{}\" does not fit its mesh", entry.body);
+        let misfit = || {
+            format!(
+                "yielded: the entry of \"{}\" has another number of nodes or points than its mesh, or a number that is not finite",
+                entry.body
+            )
+        };
         let inelastic = problem.bodies[index].inelastic.as_ref().ok_or_else(misfit)?;
         let mut state: InelasticState = inelastic.initial();
         let size = inelastic.state_size();
@@ -64,7 +69,10 @@ pub fn read(
         }
         state.yielded = true;
         if inelastic.by_element(&state.equivalent) != entry.elements {
-            return Err(format!("yielded: the elements of \"{}\" are not those of its points", entry.body));
+            return Err(format!(
+                "yielded: the values in elements of \"{}\" differ from those that its points give",
+                entry.body
+            ));
         }
         out[index] = Some(Yielded { displacement: Arc::new(entry.displacement.clone()), state: Arc::new(state) });
     }

@@ -1,7 +1,8 @@
 //! Names and numbers in a scene's table, and the messages for wrong ones.
 
+use crate::config::synonyms::nearest_name;
 use voussoir_core::model::Catalogue;
-use voussoir_core::plugin::{Diagnostic, Range, nearest};
+use voussoir_core::plugin::{Diagnostic, Range};
 
 /// Returns the index of a material, or a mistake at `path`.
 pub(super) fn material(catalogue: &Catalogue, name: &str, path: &str) -> Result<usize, Diagnostic> {
@@ -20,7 +21,7 @@ pub(super) fn law(catalogue: &Catalogue, name: &str, path: &str) -> Result<usize
 /// Reports an unknown name, with the nearest valid name.
 pub(crate) fn unknown<'a>(path: &str, kind: &str, name: &str, names: impl Iterator<Item = &'a str>) -> Diagnostic {
     let diagnostic = Diagnostic::new(path, format!("there is no {kind} called \"{name}\""));
-    match nearest(name, names) {
+    match nearest_name(name, names) {
         Some(near) => diagnostic.help(format!("did you mean \"{near}\"?")),
         None => diagnostic,
     }

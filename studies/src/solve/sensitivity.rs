@@ -85,7 +85,7 @@ pub fn sensitivities(case: &Case, result: &CaseResult) -> Result<Vec<Sensitivity
     }
     let last = case.stages.last().filter(|stage| stage.target == Target::Collapse);
     if last.is_none_or(|stage| result.stages.last().is_none_or(|done| done.name != stage.name)) {
-        return Err("the collapse is not that of the last stage".into());
+        return Err("the structure collapses in an earlier stage than the last".into());
     }
     let problem = problem_of(case)?;
     if problem.non_associated {

@@ -87,8 +87,8 @@ pub(super) fn falls_by_statics(input: &CaseInput) -> Option<CaseResult> {
     // This result does not depend on the reading of flow and of blocks: it holds for all of them.
     result.flow_read_as = None;
     result.notes = vec![
-        "in the undeformed geometry no admissible field is in equilibrium with any share of gravity, whatever the flow of \
-         joints and the stiffness of blocks: no path begins, and where the blocks come to rest is not said"
+        "the blocks fall under their own weight: in the undeformed geometry no contact forces within the strengths of the \
+         joints balance any share of gravity. No load path was computed; the motion after the fall is not computed either"
             .into(),
     ];
     Some(result)

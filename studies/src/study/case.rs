@@ -17,9 +17,10 @@ use crate::config::common_keys::own_keys;
 use crate::config::diagnostic::{LocatedDiagnostic, suggest};
 use crate::config::document::Node;
 use crate::config::expand::{Expanded, Expansion};
+use crate::config::synonyms::nearest_name;
 use serde_json::Value as Json;
 use std::sync::Arc;
-use voussoir_core::plugin::{PluginKind, card, cards_of, nearest};
+use voussoir_core::plugin::{PluginKind, card, cards_of};
 
 /// The load factor is not differentiated with respect to longer lists of numbers: they are data, not parameters.
 const LONGEST: usize = 12;
@@ -112,7 +113,7 @@ fn check_keys(root: &Node, known: &KnownKeys<'_>) -> Result<Checked, Vec<Located
     // A misspelt key is not reported as missing too.
     let mut misspelt = Vec::new();
     for entry in table.entries.iter().filter(|entry| !names.contains(&entry.key.as_str())) {
-        misspelt.extend(nearest(&entry.key, names.iter().copied()));
+        misspelt.extend(nearest_name(&entry.key, names.iter().copied()));
         let help = suggest(&entry.key, &names, "keys here");
         let wrong = LocatedDiagnostic::new(&entry.origin, &entry.key, "is not a key of a study").help(help);
         checker.diagnostics.push(wrong);

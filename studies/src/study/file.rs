@@ -3,11 +3,11 @@
 use super::case::{build_case, shared_key};
 use super::diagnostics::located;
 use super::error::StudyError;
-use super::keys::{kind_tables, study_keys};
+use super::keys::{RECORD, kind_tables, study_keys, tables_apart};
 use super::model::{Case, Drawn, Output, Study};
 use super::outline::Outline;
 use super::source::{FILE_NAME, StudySource, kind_of, no_file_name};
-use super::tables::{OutputKeys, VariantTable, WriterKeys};
+use super::tables::{OutputKeys, RecordTable, VariantTable, WriterKeys};
 use crate::config::check::Checker;
 use crate::config::checked_keys::CheckedKeys;
 use crate::config::common_keys::own_keys;
@@ -42,6 +42,7 @@ pub struct StudyFile {
     expansion: Expansion,
     checked: CheckedKeys,
     outline: Outline,
+    record: Option<RecordTable>,
     /// Mistakes so far.
     diagnostics: Vec<LocatedDiagnostic>,
 }
@@ -60,7 +61,8 @@ impl StudyFile {
         let before = diagnostics.len();
         let table = kind_table(&root, &mut diagnostics);
         let table_is_fine = diagnostics.len() == before;
-        let expansion = match Expansion::new(&root, kind_tables(), study_keys()) {
+        let record = record(&root, &mut diagnostics);
+        let expansion = match Expansion::new(&root, tables_apart(), study_keys()) {
             Ok(expansion) => expansion,
             Err(wrong) => {
                 diagnostics.extend(wrong);
@@ -69,13 +71,17 @@ impl StudyFile {
             }
         };
         check_sets(&sets, &expansion, &mut diagnostics);
+        if expansion.changes(RECORD) {
+            let message = "is the same for all cases; a sweep or a variant cannot change it";
+            diagnostics.push(LocatedDiagnostic::new(&root.place(RECORD), RECORD, message));
+        }
         let outline =
             Outline { variants: expansion.variants(), scenes: expansion.scenes(), axes: expansion.axes(), table };
         // If the table has mistakes, its content is not checked further.
         if table_is_fine {
             check_outline(&root, &outline, &mut diagnostics);
         }
-        Ok(StudyFile { root, expansion, checked: CheckedKeys::default(), outline, diagnostics })
+        Ok(StudyFile { root, expansion, checked: CheckedKeys::default(), outline, record, diagnostics })
     }
 
     /// Returns the number of cases.
@@ -142,6 +148,7 @@ impl StudyFile {
             name: text_of("name"),
             kind: text_of("kind"),
             outline: self.outline,
+            record: self.record,
             output: first.and_then(|case| output(case.get("output")?, self.expansion.count())).unwrap_or_default(),
             cases: Vec::new(),
             notes: Vec::new(),
@@ -238,6 +245,15 @@ fn kind_table(root: &Node, diagnostics: &mut Vec<LocatedDiagnostic>) -> Map<Stri
         }
     }
     own
+}
+
+/// Returns the checked table of the people who sign the report.
+fn record(root: &Node, diagnostics: &mut Vec<LocatedDiagnostic>) -> Option<RecordTable> {
+    let node = root.table()?.get(RECORD)?;
+    let mut checker = Checker::new(root);
+    let value = checker.check(node, &RecordTable::SHAPE, RECORD);
+    diagnostics.append(&mut checker.diagnostics);
+    own_keys(&value?)
 }
 
 /// Adds the mistakes that the study's kind finds in its axes and its table.

@@ -1,7 +1,7 @@
 //! The keys of a study file.
 
 use super::partial_factors::Factors;
-use super::tables::{Axes, OutputKeys, StageTable, VariantTable, WriterKeys};
+use super::tables::{Axes, OutputKeys, RecordTable, StageTable, VariantTable, WriterKeys};
 use crate::kinds::kinds;
 use crate::loads::{VehicleAxles, load_shape};
 use serde_json::Value as Json;
@@ -47,9 +47,19 @@ pub fn kind_tables() -> &'static [&'static str] {
     &TABLES
 }
 
+/// The table of the people who sign the report.
+pub const RECORD: &str = "record";
+
+/// Returns the names of the tables that are not part of a case: those of study kinds and [`RECORD`].
+pub fn tables_apart() -> &'static [&'static str] {
+    static TABLES: LazyLock<Vec<&'static str>> =
+        LazyLock::new(|| kind_tables().iter().copied().chain([RECORD]).collect());
+    &TABLES
+}
+
 /// Returns the top-level keys that are part of a case.
 pub fn case_keys() -> impl Iterator<Item = &'static Parameter> {
-    let apart = |name: &str| ["sweep", "variants"].contains(&name) || kind_tables().contains(&name);
+    let apart = |name: &str| ["sweep", "variants"].contains(&name) || tables_apart().contains(&name);
     study_keys().iter().filter(move |parameter| !apart(parameter.name))
 }
 
@@ -89,6 +99,9 @@ struct StudyTable {
     /// what is done with the cases
     #[key(default = "run")]
     kind: String,
+    /// head of the report: project, author, checker, date and version
+    #[key(optional = "the report has no head")]
+    record: Option<RecordTable>,
     /// the geometry
     scene: Box<dyn Scene>,
     /// materials of blocks by name

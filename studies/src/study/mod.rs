@@ -46,4 +46,4 @@ pub(crate) use survey::read_bounded;
 pub use survey::{ReadFile, beside, no_files};
 pub use swept_keys::{SweptKeys, meaning_in};
 pub(crate) use tables::stage_tables;
-pub use tables::{OutputKeys, VariantTable};
+pub use tables::{OutputKeys, RecordTable, VariantTable};

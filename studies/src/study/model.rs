@@ -4,7 +4,7 @@ use super::numeric_keys::NumericKey;
 use super::outline::Outline;
 use super::resolved::Resolved;
 use super::resolved::hash_of;
-use super::tables::{DrawnWord, Figures};
+use super::tables::{DrawnWord, Figures, RecordTable};
 use crate::config::checked_keys::CheckedKeys;
 use crate::config::expand::Expansion;
 use crate::results::{Origin, this_program};
@@ -168,6 +168,8 @@ pub struct Study {
     pub kind: String,
     /// Axes of the study and the table of its kind.
     pub outline: Outline,
+    /// Head of the report, if the study has one.
+    pub record: Option<RecordTable>,
     /// Output settings.
     pub output: Output,
     /// All cases in order, if they are kept in memory. The list is empty if the study was read one case at a time:

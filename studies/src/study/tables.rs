@@ -50,6 +50,26 @@ impl Until {
     }
 }
 
+/// `[record]`: the head of the report, for the people who sign it.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Keys)]
+pub struct RecordTable {
+    /// project, shown at the head of the report
+    #[key(optional = "not shown")]
+    pub project: Option<String>,
+    /// author of the calculation
+    #[key(optional = "an empty field")]
+    pub author: Option<String>,
+    /// person who checks the calculation
+    #[key(optional = "an empty field")]
+    pub checker: Option<String>,
+    /// date of the calculation, in quotes
+    #[key(optional = "the day of the run")]
+    pub date: Option<String>,
+    /// version of the document
+    #[key(optional = "not shown")]
+    pub version: Option<String>,
+}
+
 /// `[[stages]]`: plug-ins in it are read one by one, so that a mistake is reported at its key.
 #[derive(Debug, Clone, Keys)]
 pub struct StageTable {

@@ -20,14 +20,23 @@ pub(super) fn verify(case: &Case, result: &CaseResult, findings: &mut Findings) 
     let field = contacts(&case.assembly, result.proof.field.as_deref().filter(|_| asked).unwrap_or_default())?;
     let expected = joint_entries(&case.assembly, &field);
     let same = carried.joints.len() == expected.len() && same_forces(&carried.joints, &expected);
-    findings.expect(same, "the forces of the joints are not those of the field");
-    let inside = carried.joints.iter().all(|entry| zone_fits(case, entry));
-    findings.expect(inside, "a zone of thrust does not contain the eccentricity of its joint");
+    findings.expect(
+        same,
+        "joints: N, V, M or the values made from them differ from those that the stored forces in field give",
+    );
+    for entry in carried.joints.iter().filter(|entry| !zone_fits(case, entry)) {
+        let words = format!("the zone of joint {}", entry.joint);
+        findings.expect_entry(false, &words, (entry.zone, "it must contain the eccentricity", entry.eccentricity));
+    }
     if let Some(reserve) = &carried.reserve {
-        findings.expect(asked && reserve_fits(case, reserve), "the reserve does not fit its stage and its bounds");
+        findings.expect(
+            asked && reserve_fits(case, reserve),
+            "reserve: its stage, its target or its factor contradicts the study or its own bounds",
+        );
     }
     let expected = carried.reserve.as_ref().and_then(|reserve| permissible(&case.assembly, reserve));
-    findings.expect(carried.permissible == expected, "the permissible limit state does not follow from the reserve");
+    let values = (&carried.permissible, "the stored reserve gives", &expected);
+    findings.expect_entry(carried.permissible == expected, "permissible", values);
     Ok(())
 }
 

@@ -21,7 +21,7 @@ pub fn contacts(assembly: &Assembly, field: &[FieldEntry]) -> Result<Vec<Contact
     field
         .iter()
         .map(|entry| {
-            let joint = assembly.joints.get(entry.joint).ok_or(format!("field: no joint {}", entry.joint))?;
+            let joint = assembly.joints.get(entry.joint).ok_or(format!("field: there is no joint {}", entry.joint))?;
             let point = Vec2::from(entry.point);
             // The comparison is false for NaN.
             let on_joint = distance_to_segment(point, joint.ends[0], joint.ends[1]) <= EQUAL * size;
@@ -48,7 +48,7 @@ pub fn path_forces(
             .zip(joints)
             .all(|(f, c)| f.joint == c.joint && (f.point - c.position).norm() <= 1e-9 * problem.length);
     if !same {
-        return Err("field: not the contact points of the scene".into());
+        return Err("field: there must be one force for each contact point of the study, in its order".into());
     }
     // Contact points of the fill are last. A field that balances the live load alone has no forces of the fill.
     let pressed = beside.iter().map(|c| {
@@ -65,14 +65,18 @@ pub fn path_motion(
     result: &CaseResult,
     finite: bool,
 ) -> Result<Vec<[f64; 3]>, String> {
-    let displaced = result.path.displacements.as_ref().ok_or("no displacements")?;
+    let displaced = result.path.displacements.as_ref().ok_or("displacements is missing")?;
     if displaced.len() != assembly.bodies.len() {
-        return Err("displacements: not one per block".into());
+        return Err("displacements: there must be one entry for each block".into());
     }
     let mut motion = vec![[0.0; 3]; problem.bodies.len()];
     for (block, entry) in displaced.iter().enumerate() {
-        if entry.body != assembly.bodies[block].name {
-            return Err("displacements: another block".into());
+        let name = &assembly.bodies[block].name;
+        if entry.body != *name {
+            return Err(format!(
+                "displacements: entry {block} belongs to \"{}\", but this block is called \"{name}\"",
+                entry.body
+            ));
         }
         motion[problem.body_of[block]] = motion_of_body(assembly, problem, block, entry.displacement, finite);
     }
@@ -82,7 +86,7 @@ pub fn path_motion(
 /// Returns the velocities of a stored motion, one for each body, or the reason why it is not valid.
 pub fn velocities(assembly: &Assembly, motion: &[MotionEntry]) -> Result<Vec<CentroidVelocity>, String> {
     if motion.len() != assembly.bodies.len() {
-        return Err("motion: not one velocity for each body".into());
+        return Err("motion: there must be one velocity for each block".into());
     }
     assembly
         .bodies
@@ -90,8 +94,10 @@ pub fn velocities(assembly: &Assembly, motion: &[MotionEntry]) -> Result<Vec<Cen
         .zip(motion)
         .map(|(body, entry)| {
             let fine = body.name == entry.body && entry.velocity.iter().all(|v| v.is_finite());
-            fine.then_some(entry.velocity)
-                .ok_or(format!("motion: \"{}\" is not the velocity of \"{}\"", entry.body, body.name))
+            fine.then_some(entry.velocity).ok_or(format!(
+                "motion: the entry of \"{}\" is not finite or has the name \"{}\"",
+                body.name, entry.body
+            ))
         })
         .collect()
 }

@@ -53,12 +53,14 @@ impl Fit<'_> {
 
     fn numbers(&mut self, what: &str, numbers: impl IntoIterator<Item = f64>) {
         let fits = numbers.into_iter().all(in_range);
-        self.expect(fits, || format!("{what}: a number is not finite, or too great to be checked"));
+        self.expect(fits, || format!("{what}: a number is not finite, or it is too large for the check"));
     }
 
     fn joint(&mut self, what: &str, index: usize) {
         let count = self.case.assembly.joints.len();
-        self.expect(index < count, || format!("{what}: there is no joint {index}, the scene has {count}"));
+        self.expect(index < count, || {
+            format!("{what}: there is no joint {index}; the scene has {count} joints, from 0")
+        });
     }
 
     /// Checks the index of a joint and the names of its blocks.
@@ -68,7 +70,10 @@ impl Fit<'_> {
         let Some(joint) = assembly.joints.get(index) else { return };
         let own = [joint.minus, joint.plus].map(|body| assembly.bodies[body].name.as_str());
         self.expect(own == names.each_ref().map(String::as_str), || {
-            format!("{what}: joint {index} lies between \"{}\" and \"{}\"", own[0], own[1])
+            format!(
+                "{what}: joint {index} is between \"{}\" and \"{}\", but the study has it between \"{}\" and \"{}\"",
+                names[0], names[1], own[0], own[1]
+            )
         });
     }
 
@@ -90,7 +95,9 @@ impl Fit<'_> {
 
     fn stages(&mut self, result: &CaseResult) {
         let count = self.case.stages.len();
-        self.expect(result.stages.len() <= count, || format!("stages: the study has {count}"));
+        self.expect(result.stages.len() <= count, || {
+            format!("stages has {} entries, but the study has {count} stages", result.stages.len())
+        });
         for stage in &result.stages {
             self.hinges("hinges of a stage", &stage.hinges);
             self.numbers("factor of a stage", stage.factor);
@@ -108,7 +115,7 @@ impl Fit<'_> {
     fn bodies<'a>(&mut self, what: &str, names: impl ExactSizeIterator<Item = &'a String>) {
         let bodies = &self.case.assembly.bodies;
         let fits = names.len() == bodies.len() && names.zip(bodies).all(|(name, body)| *name == body.name);
-        self.expect(fits, || format!("{what}: not one entry for each block of the scene, in its order"));
+        self.expect(fits, || format!("{what}: there must be one entry for each block of the scene, in its order"));
     }
 
     fn proof(&mut self, result: &CaseResult) {
@@ -173,7 +180,7 @@ impl Fit<'_> {
         for crushing in &mechanism.crushing {
             self.between("crushing", crushing.joint, &crushing.between);
             let share = (0.0..=1.0).contains(&crushing.share);
-            self.expect(share, || format!("crushing: {} is no share of a joint", crushing.share));
+            self.expect(share, || format!("crushing: the share {} of a joint is not between 0 and 1", crushing.share));
         }
     }
 

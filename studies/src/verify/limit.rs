@@ -2,7 +2,7 @@
 
 use super::fields::{EQUAL, close, contacts, velocities};
 use super::findings::Findings;
-use super::mechanism::{differences, same_line};
+use super::mechanism::{differences, joints, same_line};
 use super::tolerances::GEOMETRY;
 use crate::results::load_entries::fill_entries;
 use crate::results::stage_start::search_start;
@@ -56,8 +56,9 @@ pub(super) fn verify(case: &Case, result: &CaseResult, last: usize, findings: &m
     let loads = &stage_loads(assembly, &case.stages)[last];
     let fill: Vec<f64> = result.proof.fill.iter().map(|entry| entry.force).collect();
     let expected = if stored.field.is_some() { fill_entries(assembly, &fill, &loads.fill_bounds) } else { Vec::new() };
+    let same = same_fill(&result.proof.fill, &expected);
     findings
-        .expect(same_fill(&result.proof.fill, &expected), "the forces of the fill do not stand where the fill presses");
+        .expect(same, "fill: places, directions or bounds of the stored forces differ from those that the study gives");
     let start = match stage.target {
         Target::Collapse => search_start(stage),
         // A stage with decreasing loads is checked at its end, any other stage at its start.
@@ -66,7 +67,10 @@ pub(super) fn verify(case: &Case, result: &CaseResult, last: usize, findings: &m
     let non_associated = non_associated(assembly);
     let associated_factor = result.non_associated.associated_load_factor;
     let own = (non_associated && result.flow_read_as.is_none()) || associated_factor.is_some();
-    findings.expect(!own || result.flow_read_as.is_none(), "flow_read_as does not fit the associated load factor");
+    findings.expect(
+        !own || result.flow_read_as.is_none(),
+        "flow_read_as and associated_load_factor are both given; a result has only one of them",
+    );
     // If no motion refutes the loads, the motion of the supports is refuted.
     let blocked = result.status == Status::NoEquilibrium && stored.motion.is_none();
     let supports = blocked.then(|| support_motions(assembly, &case.stages, last)).transpose()?;
@@ -103,7 +107,7 @@ pub(super) fn verify(case: &Case, result: &CaseResult, last: usize, findings: &m
     let reading = if own { FlowRule::NonAssociated } else { FlowRule::Associated };
     verify_mechanism(assembly, result, &stored, reading, last, findings);
     let fits = result.flow_read_as.as_deref().is_none_or(|word| word == "associated" && non_associated);
-    findings.expect(fits, "flow_read_as does not fit the laws");
+    findings.expect(fits, "flow_read_as must be \"associated\", and only if some law of the study has another flow");
     if verdict.status != result.status {
         findings.0.extend(verdict.certificate.failures);
     }
@@ -118,29 +122,37 @@ fn same_fill(stored: &[FillEntry], expected: &[FillEntry]) -> bool {
     stored.iter().map(words).eq(expected.iter().map(words)) && GEOMETRY.same_rows(&numbers(stored), &numbers(expected))
 }
 
+/// The source of values that are recomputed from the stored forces and motion.
+const EVIDENCE: &str = "the stored forces and motion give";
+
 /// Compares the stored status, certificate and bounds with those that the stored evidence proves.
 fn verify_verdict(result: &CaseResult, verdict: &Verdict, findings: &mut Findings) {
     let Verdict { certificate, status, bounds, greatest, .. } = verdict;
-    findings.expect(*status == result.status, "the stored evidence does not prove the stored status");
-    findings.expect(*greatest == result.greatest, "greatest does not fit the bounds");
-    findings.expect(certificate.passed == result.certificate.passed, "the stored verdict is not the recomputed one");
-    let same = certificate.residuals.iter().all(|(name, value)| {
-        result.certificate.residuals.get(name).is_some_and(|stored| (stored - value).abs() <= EQUAL)
-    });
-    findings.expect(same, "stored residuals are not the recomputed ones");
+    findings.expect_entry(*status == result.status, "status", (result.status, EVIDENCE, status));
+    findings.expect_entry(*greatest == result.greatest, "greatest", (result.greatest, EVIDENCE, greatest));
+    let passed = result.certificate.passed;
+    findings.expect_entry(certificate.passed == passed, "certificate.passed", (passed, EVIDENCE, certificate.passed));
+    for (name, value) in &certificate.residuals {
+        let stored = result.certificate.residuals.get(name);
+        let same = stored.is_some_and(|stored| (stored - value).abs() <= EQUAL);
+        findings.expect_entry(same, &format!("certificate.residuals.{name}"), (stored, EVIDENCE, value));
+    }
     let fits = match result.status {
         Status::Collapse => result.load_factor.is_some(),
         Status::Open => true,
         _ => result.load_factor.is_none(),
     };
-    findings.expect(fits, "only a collapse or an open result has a load factor");
+    let entry = "load_factor";
+    let words = "with this status it must be";
+    let expected = if result.status == Status::Collapse { "a number" } else { "null" };
+    findings.expect_entry(fits, entry, (result.load_factor, words, expected));
     let stored = result.bounds.unwrap_or_default();
     let bounds_match = (0..2).all(|end| match (stored[end], bounds[end]) {
         (Some(a), Some(b)) => close(a, b),
         (None, None) => true,
         _ => false,
     });
-    findings.expect(bounds_match, "bounds are not those of field and mechanism");
+    findings.expect_entry(bounds_match, "bounds", (result.bounds, EVIDENCE, bounds));
 }
 
 /// Checks the curve of the bracket: its width never grows, and it ends at the bounds.
@@ -161,7 +173,8 @@ fn verify_bracket(result: &CaseResult, findings: &mut Findings) {
         let near = 2e-6 * factor.abs();
         (end.lower - lower).abs() <= near && end.found.is_some_and(|found| (found - factor).abs() <= near)
     });
-    findings.expect(closes && ends, "the curve of the bracket does not close to its bounds");
+    findings
+        .expect(closes && ends, "bracket: its two loads must approach each other and end at bounds and load_factor");
 }
 
 /// Checks the factors of the last stage, of the field and of the feasible interval.
@@ -172,19 +185,26 @@ fn verify_factors(
     last: usize,
     findings: &mut Findings,
 ) {
-    let start = claim.start;
+    let (start, last) = (claim.start, &result.stages[last]);
+    let entry = format!("the factor of stage \"{}\"", last.name);
     if let Some([Some(low), Some(high)]) = result.feasible_interval {
         let apart = low <= high && !(low <= start && start <= high);
-        findings.expect(apart, "the feasible interval holds the start");
+        let words = format!(
+            "feasible_interval is [{low}, {high}], but it must not contain the factor {start} at which the stage begins"
+        );
+        findings.expect(apart, &words);
     }
-    if let (Some(reached), Target::Factor(factor)) = (result.stages[last].factor, stage.target) {
+    if let (Some(reached), Target::Factor(factor)) = (last.factor, stage.target) {
         let found = matches!(result.status, Status::Collapse | Status::Open);
-        let expected = if found { result.load_factor.unwrap_or(f64::NAN) } else { factor };
-        findings.expect(close(reached, expected), "the factor of the last stage is not the load factor");
+        let (source, expected) = match found {
+            true => ("load_factor is", result.load_factor.unwrap_or(f64::NAN)),
+            false => ("the study asks for", factor),
+        };
+        findings.expect_entry(close(reached, expected), &entry, (reached, source, expected));
     }
     if let (Status::Collapse | Status::Open, Target::Collapse) = (result.status, stage.target) {
-        let same = result.stages[last].factor == result.load_factor;
-        findings.expect(same, "the factor of the last stage is not the load factor");
+        let same = last.factor == result.load_factor;
+        findings.expect_entry(same, &entry, (last.factor, "load_factor is", result.load_factor));
     }
     if result.status == Status::Stands {
         let reached = match stage.target {
@@ -193,7 +213,12 @@ fn verify_factors(
         };
         let idle = loads.varying.iter().all(|w| *w == [0.0; 3]);
         let there = idle || close(claim.field_factor, reached);
-        findings.expect(there, "the field is not at the factor the stage goes to");
+        let entry = "field_factor";
+        findings.expect_entry(
+            there,
+            entry,
+            (claim.field_factor, "the case stands, so it must be the target of the stage,", reached),
+        );
     }
 }
 
@@ -211,13 +236,23 @@ fn verify_mechanism(
     match (&result.mechanism, &recomputed) {
         (Some(stored), Some(recomputed)) => findings.0.extend(differences(stored, recomputed)),
         (None, None) => {}
-        _ => findings.expect(false, "there is a motion without a mechanism, or a mechanism without a motion"),
+        (Some(_), None) => findings.expect(false, "mechanism is given, but motion is missing or moves no joint"),
+        (None, Some(_)) => findings.expect(false, "motion is given, but mechanism is missing"),
     }
     let hinges: Vec<Hinge> = result.mechanism.iter().flat_map(|m| &m.hinges).cloned().collect();
     // If supports have moved, the hinges follow from the displacements. They are compared with solving again.
     let settled = result.path.displacements.is_some() && result.mechanism.is_none();
-    let same = settled || result.stages[last].hinges == hinges;
-    findings.expect(same, "hinges of the last stage are not those of the mechanism");
+    let own = &result.stages[last];
+    if !settled && own.hinges != hinges {
+        let entry = format!("stage \"{}\": the list of joints with hinges", own.name);
+        let lists = (joints(&own.hinges), "mechanism.hinges has", joints(&hinges));
+        let numbers = "hinges differ from mechanism.hinges in side, point or rotation";
+        match lists.0 == lists.2 {
+            true => findings.expect(false, &format!("stage \"{}\": {numbers}", own.name)),
+            false => findings.expect_entry(false, &entry, lists),
+        }
+    }
     let line = stored.field.as_ref().and_then(|field| thrust_line(assembly, field));
-    findings.expect(same_line(&line, &result.proof.thrust_line), "the thrust line is not that of the field");
+    let same = same_line(&line, &result.proof.thrust_line);
+    findings.expect(same, "thrust_line: its points differ from those that the stored forces give");
 }

@@ -1,17 +1,26 @@
 //! Compares a stored mechanism and thrust line with those computed from the stored motion and forces.
 
 use super::fields::{EQUAL, close};
-use voussoir_core::certificate::Mechanism;
+use super::findings::mismatch;
+use voussoir_core::certificate::{Hinge, Mechanism};
 use voussoir_core::model::geometry::Vec2;
+
+/// The source of values that are recomputed from the stored motion.
+const MOTION: &str = "the stored motion gives";
+
+/// The joints of hinges.
+pub(super) fn joints(hinges: &[Hinge]) -> Vec<usize> {
+    hinges.iter().map(|hinge| hinge.joint).collect()
+}
 
 /// Returns the differences between a stored mechanism and the recomputed one.
 pub(super) fn differences(stored: &Mechanism, recomputed: &Mechanism) -> Vec<String> {
     let mut wrong = Vec::new();
     if stored.kind != recomputed.kind {
-        wrong.push(format!("kind {:?}, by the motion {:?}", stored.kind, recomputed.kind));
+        wrong.push(mismatch("mechanism.kind", (stored.kind, MOTION, recomputed.kind)));
     }
     if stored.hinge_count != recomputed.hinge_count {
-        wrong.push(format!("hinge_count {}, by the motion {}", stored.hinge_count, recomputed.hinge_count));
+        wrong.push(mismatch("mechanism.hinge_count", (stored.hinge_count, MOTION, recomputed.hinge_count)));
     }
     let hinges = stored.hinges.len() == recomputed.hinges.len()
         && stored.hinges.iter().zip(&recomputed.hinges).all(|(a, b)| {
@@ -20,7 +29,13 @@ pub(super) fn differences(stored: &Mechanism, recomputed: &Mechanism) -> Vec<Str
                 && (Vec2::from(a.point) - Vec2::from(b.point)).norm() <= EQUAL * (1.0 + Vec2::from(b.point).norm())
         });
     if !hinges {
-        wrong.push("hinges are not those of the motion".into());
+        let lists = (joints(&stored.hinges), MOTION, joints(&recomputed.hinges));
+        wrong.push(match lists.0 == lists.2 {
+            true => {
+                "mechanism.hinges: sides, points or rotations differ from those that the stored motion gives".into()
+            }
+            false => mismatch("the list of joints in mechanism.hinges", lists),
+        });
     }
     let sliding = stored.sliding.len() == recomputed.sliding.len()
         && stored
@@ -35,7 +50,7 @@ pub(super) fn differences(stored: &Mechanism, recomputed: &Mechanism) -> Vec<Str
             .zip(&recomputed.crushing)
             .all(|(a, b)| (a.joint, &a.between) == (b.joint, &b.between) && close(a.share, b.share));
     if !sliding || !crushing {
-        wrong.push("sliding or crushing joints are not those of the motion".into());
+        wrong.push("mechanism: sliding or crushing joints differ from those that the stored motion gives".into());
     }
     wrong
 }

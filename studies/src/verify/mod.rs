@@ -30,4 +30,4 @@ pub mod tolerances;
 pub use agreement::Agreement;
 pub use fit::misfits;
 pub use same_study::{KeyDifference, first_difference, key_differences};
-pub use study::{CheckedCase, against, by_itself, solve_again, verify, verify_against};
+pub use study::{COMPARISON, CheckedCase, added, against, by_itself, solve_again, verify, verify_against};

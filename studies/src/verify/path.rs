@@ -22,6 +22,21 @@ use voussoir_core::model::Assembly;
 use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::path::{LimitPointEnd, LoadStepEnd, PathObserver, PathProblem, PathState};
 
+/// Returns the condition that a residual measures.
+fn residual_words(name: &str) -> String {
+    match name {
+        "path_equilibrium" => "equilibrium",
+        "path_strength" => "the strength of the joints",
+        "path_complementarity" => "contact, which presses only at closed points",
+        "path_kinematics" => "compatibility of gaps and displacements",
+        "path_penetration" => "contact without penetration",
+        "path_law" => "the law of a joint",
+        "path_yield" => "the yield surface of a material",
+        other => return format!("the condition {other}"),
+    }
+    .to_string()
+}
+
 /// Checks the result of a case that was solved by a path solver.
 pub(super) fn verify(case: &Case, result: &CaseResult, findings: &mut Findings) -> Result<(), String> {
     let assembly = &case.assembly;
@@ -32,30 +47,41 @@ pub(super) fn verify(case: &Case, result: &CaseResult, findings: &mut Findings) 
     checker.state(&problem, &state);
     // The energies of a path do not follow from one state.
     for (name, value) in checker.worst.iter().filter(|(name, _)| **name != "path_energy") {
-        findings.expect(small(name, *value), &format!("{name} is {value:.2e}"));
+        let words =
+            format!("the stored forces and displacements violate {}: {value:.2e} instead of 0", residual_words(name));
+        findings.expect(small(name, *value), &words);
     }
     if matches!(result.status, Status::Collapse | Status::LimitPoint) && result.load_factor.is_some() {
         let same = result.load_factor == result.proof.field_factor;
-        findings.expect(same, "the load factor is not that of the field");
+        let factors =
+            (result.load_factor, "field_factor, the factor of the stored forces, is", result.proof.field_factor);
+        findings.expect_entry(same, "load_factor", factors);
     }
     verify_status(case, &problem, &state, result, findings);
     verify_range(case, &problem, &state, result, findings);
     let place = result.path.followed_to.as_ref().map(|end| MechanismPlace::of(state.factor, end.factor));
     if let (Some(mechanism), Some(place)) = (&result.mechanism, place) {
-        findings.expect(mechanism.at == Some(place), "the place of the mechanism does not fit the end of the path");
+        let places = (mechanism.at, "by field_factor and followed_to it must be", place);
+        findings.expect_entry(mechanism.at == Some(place), "mechanism.at", places);
     }
     let rest = forces_rest(&problem, finite, place);
     if result.status == Status::Collapse && rest {
-        findings.expect(result.proof.motion.is_some(), "a collapse without a mechanism");
+        findings.expect(result.proof.motion.is_some(), "motion is missing, but the status is collapse");
     }
     if let (Some(motion), true) = (&result.proof.motion, rest) {
         let velocities = velocities(assembly, motion)?;
         verify_motion((assembly, &problem), &state, &velocities, result, findings);
     }
     if result.status == Status::Unbounded {
-        let ray = path_forces(assembly, &problem, result.proof.ray.as_deref().ok_or("unbounded without a ray")?, &[])?;
+        let ray = path_forces(
+            assembly,
+            &problem,
+            result.proof.ray.as_deref().ok_or("ray is missing, but the status is unbounded")?,
+            &[],
+        )?;
         let residual = ray_residual(&problem, &problem.load_steps[state.load_step].loading, &ray);
-        findings.expect(small("path_ray", residual), "the ray does not carry the load");
+        let words = format!("ray: its forces do not balance the live load; the relative residual is {residual:.2e}");
+        findings.expect(small("path_ray", residual), &words);
     }
     Ok(())
 }
@@ -82,7 +108,7 @@ fn verify_status(case: &Case, problem: &PathProblem, state: &PathState, result: 
             (Some(stored), Some(met)) => close(stored[0], met[0]) && close(stored[1], met[1]),
             (stored, met) => stored.is_none() && met.is_none(),
         };
-        findings.expect(same, "the state and limit analysis do not prove the bounds");
+        findings.expect_entry(same, "bounds", (result.bounds, "the stored state and limit analysis prove", met));
     }
     match result.status {
         Status::Stands => {
@@ -90,7 +116,11 @@ fn verify_status(case: &Case, problem: &PathProblem, state: &PathState, result: 
                 LoadStepEnd::Factor(end) => close(state.factor, end),
                 LoadStepEnd::Collapse(end) => end.is_finite() && (state.factor >= end || close(state.factor, end)),
             });
-            findings.expect(at_target, "the state is not at the target of the last stage");
+            let words = format!(
+                "the status is stands, but the stored state at the factor {} is not at the target of the last stage",
+                state.factor
+            );
+            findings.expect(at_target, &words);
         }
         Status::Open => {
             let upper = associated_load(&input).filter(|_| is_last).map(|load| load.factor);
@@ -101,11 +131,11 @@ fn verify_status(case: &Case, problem: &PathProblem, state: &PathState, result: 
                 (a, b) => a == b,
             };
             let [lower, upper] = ordered(lower, upper);
-            findings.expect(
-                same(stored[0], lower) && same(result.load_factor, lower),
-                "the state does not prove the lower end",
-            );
-            findings.expect(same(stored[1], upper), "limit analysis does not prove the upper end");
+            let proves = "the stored state proves";
+            findings.expect_entry(same(stored[0], lower), "the lower end of bounds", (stored[0], proves, lower));
+            findings.expect_entry(same(result.load_factor, lower), "load_factor", (result.load_factor, proves, lower));
+            let ends = (stored[1], "limit analysis proves", upper);
+            findings.expect_entry(same(stored[1], upper), "the upper end of bounds", ends);
         }
         _ => {}
     }
@@ -114,7 +144,8 @@ fn verify_status(case: &Case, problem: &PathProblem, state: &PathState, result: 
         (_, Some(_)) => Greatest::ProvedOptimal,
         _ => Greatest::ProvedOnThePath,
     };
-    findings.expect(result.greatest == greatest, "greatest does not fit the status");
+    let values = (result.greatest, "with this status and these bounds it must be", greatest);
+    findings.expect_entry(result.greatest == greatest, "greatest", values);
 }
 
 /// Checks limit points, the reason why the path ends at one, and the end of its range.
@@ -130,18 +161,24 @@ fn verify_range(case: &Case, problem: &PathProblem, state: &PathState, result: &
     let ends = matches!(result.status, Status::Collapse | Status::LimitPoint);
     let first = own.first().copied().or(result.load_factor.filter(|_| ends));
     let has_factor = result.status != Status::Stands && result.load_factor.is_some();
-    findings.expect(!has_factor || path.first_limit_point == first, "first_limit_point is not the first limit point");
+    let fits = !has_factor || path.first_limit_point == first;
+    let values = (path.first_limit_point, "the first entry of limit_points, or load_factor, is", first);
+    findings.expect_entry(fits, "first_limit_point", values);
     if let Some(greatest) = result.load_factor.filter(|_| ends) {
         let rises = |factor: &f64| (factor - greatest) * (greatest - step.start) > 0.0 && !close(*factor, greatest);
-        findings.expect(!own.iter().any(rises), "a limit point lies above the load factor");
+        if let Some(above) = own.iter().find(|factor| rises(factor)) {
+            findings.expect_entry(false, "load_factor", (greatest, "limit_points has a greater factor,", above));
+        }
     }
     let asked = asked_end(&case.solver.settings, step);
     let fits = match path.continuation {
         Some(LimitPointEnd::JointLost | LimitPointEnd::None) => result.status == Status::LimitPoint,
         asked_for => asked_for == asked.filter(|_| result.status == Status::LimitPoint),
     };
-    findings.expect(fits, "continuation does not fit the status and the question");
-    findings.expect(path.followed_to.is_some(), "a path without followed_to");
+    let expected = asked.filter(|_| result.status == Status::LimitPoint);
+    let values = (path.continuation, "with this status and these stages it must be", expected);
+    findings.expect_entry(fits, "continuation", values);
+    findings.expect(path.followed_to.is_some(), "followed_to is missing; every path has it");
 }
 
 /// Builds the end state of a result from its entries.
@@ -152,14 +189,19 @@ fn stored_state(
     finite: bool,
 ) -> Result<PathState, String> {
     let stage = result.stages.len() - 1;
-    let load_step = problem.load_steps.iter().rposition(|d| d.stage <= stage).ok_or("no load")?;
+    let load_step = problem
+        .load_steps
+        .iter()
+        .rposition(|d| d.stage <= stage)
+        .ok_or("the study has no loads for the stages of this result")?;
     let load_step = match result.status {
         Status::NoEquilibrium => problem.load_steps.iter().position(|d| d.stage == stage).unwrap_or(load_step),
         _ => load_step,
     };
-    let force = path_forces(assembly, problem, result.proof.field.as_deref().ok_or("no field")?, &result.proof.fill)?;
+    let force =
+        path_forces(assembly, problem, result.proof.field.as_deref().ok_or("field is missing")?, &result.proof.fill)?;
     let motion = path_motion(assembly, problem, result, finite)?;
-    let factor = result.proof.field_factor.ok_or("no factor of the field")?;
+    let factor = result.proof.field_factor.ok_or("field_factor is missing")?;
     let mut state = PathState { load_step, factor, force, motion, ..PathState::default() };
     state.gap = vec![[0.0; 2]; problem.contacts.len()];
     state.memory = result.path.joint_states.clone().unwrap_or_default();
@@ -183,13 +225,21 @@ fn verify_motion(
         rates[body] = [v.x, v.y, *omega];
     }
     let flow = flow_residual(problem, &state.force, &rates);
-    findings.expect(small("path_flow", flow), &format!("the mechanism leaves the flow of the laws by {flow:.2e}"));
+    findings.expect(
+        small("path_flow", flow),
+        &format!(
+            "motion: the joints move in directions that their laws do not allow; the relative residual is {flow:.2e}"
+        ),
+    );
     if result.status == Status::Collapse {
         let power = power_residual(problem, &problem.load_steps[state.load_step].loading, &rates);
-        findings.expect(small("path_power", power), "the mechanism is not scaled to p·q̇ = 1");
+        let words =
+            format!("motion: the live load at factor 1 must do the work 1 on it; the difference is {power:.2e}");
+        findings.expect(small("path_power", power), &words);
     }
     let unique = result.mechanism.as_ref().and_then(|m| m.unique);
     let found = mechanism_of((assembly, problem), state, velocities, unique, false);
     let kind = |m: &Option<Mechanism>| m.as_ref().map(|m| (m.kind, m.hinge_count));
-    findings.expect(kind(&found) == kind(&result.mechanism), "the mechanism is not that of the motion");
+    let kinds = (kind(&result.mechanism), "the stored motion gives", kind(&found));
+    findings.expect_entry(kinds.0 == kinds.2, "mechanism (kind and hinge_count)", kinds);
 }

@@ -46,7 +46,8 @@ fn at(path: &str, a: Option<&Value>, b: Option<&Value>, found: &mut Vec<KeyDiffe
             keys.for_each(|key| at(&join(path, key), a.get(key), b.get(key), found));
         }
         (Some(Value::Array(a)), Some(Value::Array(b))) => {
-            (0..a.len().max(b.len())).for_each(|index| at(&join(path, &index.to_string()), a.get(index), b.get(index), found));
+            (0..a.len().max(b.len()))
+                .for_each(|index| at(&join(path, &index.to_string()), a.get(index), b.get(index), found));
         }
         _ if same(a, b) => {}
         _ => found.push(KeyDifference { key: path.into(), a: a.cloned(), b: b.cloned() }),

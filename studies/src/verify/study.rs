@@ -2,6 +2,7 @@
 
 use super::agreement::Agreement;
 use super::case::verify_case;
+use super::findings::mismatch;
 use crate::caught::caught;
 use crate::kinds::kind;
 use crate::results::{CaseResult, FORMAT, Origin, StudyResults};
@@ -11,6 +12,14 @@ use serde::Deserialize;
 use serde_json::{Value as Json, json};
 use std::borrow::Cow;
 use std::collections::BTreeSet;
+
+/// The finding about a wrong comparison.
+pub const COMPARISON: &str = "comparison: its entries differ from those that the stored cases give";
+
+/// The finding about wrong entries that a kind of study makes from its cases.
+pub fn added(kind: &str) -> String {
+    format!("the entries of kind = \"{kind}\" beside the cases differ from those that the stored cases give")
+}
 
 /// Solves all cases again and returns the findings by case; empty if all results are confirmed.
 pub fn verify(study: &Study, results: &StudyResults) -> Vec<(usize, String)> {
@@ -70,7 +79,7 @@ pub fn by_itself<'a>(study: &'a Study, origin: &Origin, result: &CaseResult) -> 
     let case = study.case_of(&result.label);
     let wrong = match &case {
         Some(case) => verify_case(case, result).into_iter().chain(hash_finding(case, result, origin)).collect(),
-        None => vec!["the study has no such case".into()],
+        None => vec!["the study has no case with this id, variant and these parameters".into()],
     };
     CheckedCase { case, wrong }
 }
@@ -88,7 +97,7 @@ pub fn against(
     if agreement != Agreement::Bits && result.label.parameters != again.label.parameters {
         let parameters = |case: &CaseResult| json!({ "parameters": case.label.parameters });
         if !agreement.differences(&parameters(result), &parameters(again)).is_empty() {
-            found.push("the search does not try this case".into());
+            found.push("the search of the study does not try these parameters".into());
         }
         at_stored_values = study.case_of(&result.label).map(|case| solve_case(&case));
     }
@@ -102,17 +111,17 @@ pub fn against(
 /// Finds a wrong hash of a case in results of this origin. Results of another origin have another hash.
 fn hash_finding(case: &Case, result: &CaseResult, origin: &Origin) -> Option<String> {
     let fine = origin.format == 0 || case.hash_in(origin) == result.label.case_hash;
-    (!fine).then(|| "case_hash does not match the case".into())
+    (!fine).then(|| "case_hash differs from the hash of this case of the study".into())
 }
 
 /// Checks the entries beside the cases.
 fn study_findings(study: &Study, results: &StudyResults, agreement: Agreement) -> Vec<(usize, String)> {
     let mut wrong = Vec::new();
     if results.origin.format > FORMAT {
-        wrong.push((0, format!("format {}; this program reads format {FORMAT} and older", results.origin.format)));
+        wrong.push((0, format!("format is {}, but this program reads formats up to {FORMAT}", results.origin.format)));
     }
     if results.study != study.name {
-        wrong.push((0, format!("results of \"{}\", study \"{}\"", results.study, study.name)));
+        wrong.push((0, mismatch("study", (&results.study, "the name in resolved.toml is", &study.name))));
     }
     let own = || kind(&study.kind).map(|kind| kind.own_results(study, &results.cases)).unwrap_or_default();
     let own = match caught(own) {
@@ -123,10 +132,10 @@ fn study_findings(study: &Study, results: &StudyResults, agreement: Agreement) -
         }
     };
     if !agreement.same(&results.comparison, &own.comparison) {
-        wrong.push((0, "the comparison is not that of the cases".into()));
+        wrong.push((0, COMPARISON.into()));
     }
     if !agreement.same(&results.own, &own.other) {
-        wrong.push((0, format!("what kind = \"{}\" adds is not that of the cases", study.kind)));
+        wrong.push((0, added(&study.kind)));
     }
     wrong
 }
@@ -143,17 +152,20 @@ fn id_findings(study: &Study, results: &StudyResults, again: &[CaseResult]) -> V
         }
     }
     if !ids.is_sorted() {
-        wrong.push((ids[0], "the cases are not in their order".into()));
+        wrong.push((ids[0], "the entries of cases are not in the order of their ids".into()));
     }
     let missing = again.iter().map(|case| case.label.id).filter(|id| !seen.contains(id));
     wrong.extend(missing.map(|id| (id, "is missing".into())));
     let expected: BTreeSet<usize> = again.iter().map(|case| case.label.id).collect();
-    wrong.extend(seen.difference(&expected).map(|id| (*id, "is not among the cases that were asked for".into())));
+    wrong.extend(
+        seen.difference(&expected)
+            .map(|id| (*id, "is in the results, but the study or only_cases does not have it".into())),
+    );
     if let Some(only) = &results.only_cases {
         let ordered = only.windows(2).all(|pair| pair[0] < pair[1]);
         let whole = only.is_empty() || only.len() >= study.count();
         if whole || !ordered || only.iter().any(|id| *id >= study.count()) {
-            wrong.push((0, "only_cases is no choice of the study's cases".into()));
+            wrong.push((0, "only_cases must list some, not all, ids of the study in rising order".into()));
         }
     }
     wrong

@@ -95,7 +95,7 @@ enum Source {
 }
 
 /// The columns after those that identify a case: name, unit, value.
-const FIELDS: [(&str, &str, Value); 19] = [
+const FIELDS: [(&str, &str, Value); 22] = [
     ("status", "", |case| word(status_word(case.status))),
     ("load_factor", "-", |case| Cell::Number(case.load_factor)),
     ("first_limit_point", "-", |case| Cell::Number(case.path.first_limit_point)),
@@ -103,6 +103,9 @@ const FIELDS: [(&str, &str, Value); 19] = [
     ("lower_bound", "-", |case| Cell::Number(case.bounds.and_then(|bounds| bounds[0]))),
     ("upper_bound", "-", |case| Cell::Number(case.bounds.and_then(|bounds| bounds[1]))),
     ("associated_load_factor", "-", |case| Cell::Number(case.non_associated.associated_load_factor)),
+    ("reserve_factor", "-", |case| Cell::Number(case.carried.reserve.as_ref().and_then(|reserve| reserve.factor))),
+    ("permissible_share_used", "-", |case| Cell::Number(case.carried.permissible.as_ref().map(|check| check.used))),
+    ("permissible_holds", "", |case| Cell::Truth(case.carried.permissible.as_ref().and_then(|check| check.holds))),
     ("kind", "", |case| Cell::Text(case.mechanism.as_ref().map(|found| kind_word(found.kind).into()))),
     ("hinge_count", "", |case| count(case.mechanism.as_ref().map(|found| found.hinge_count))),
     ("hinge_joints", "", |case| {

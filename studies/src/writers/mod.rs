@@ -32,6 +32,7 @@ pub mod results_text;
 pub mod sensitivities_csv;
 mod study_output;
 pub mod table;
+pub(crate) mod title_block;
 pub mod vtu;
 mod writer;
 

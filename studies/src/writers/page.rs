@@ -1,6 +1,6 @@
 //! Parts of every page: head, style, scripts and tables.
 
-mod sha256;
+pub(crate) mod sha256;
 #[cfg(test)]
 mod tests;
 
@@ -19,27 +19,37 @@ const SCRIPT: &str = include_str!("page/script.js");
 /// The script of a served page, which follows its sliders.
 const LIVE: &str = include_str!("page/live.js");
 
-/// Creates a complete page from its title, its body, and the cases that the script draws.
+/// Creates a complete page from its title, its body, and the cases that the script draws. Each printed page shows the title.
 pub(crate) fn whole(title: &str, body: &Markup, cases: &[Json]) -> String {
-    page((title, None), body, cases, SCRIPT, &policy(&[SCRIPT], &[]))
+    let styles = [STYLE.as_str(), &title_in_margin(title)];
+    page((title, None), body, cases, (&styles, SCRIPT), &policy(&styles, &[SCRIPT], &[]))
+}
+
+/// The rule that prints a title in the lower margin of each page.
+fn title_in_margin(title: &str) -> String {
+    // Every other character is escaped by its number, so that a title cannot end the text or the style sheet.
+    let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, ' ' | '-' | '_' | ',');
+    let escaped = title.chars().map(|c| if plain(c) { c.to_string() } else { format!("\\{:x} ", u32::from(c)) });
+    format!("@page {{ @bottom-left {{ content: \"{}\"; }} }}\n", escaped.collect::<String>())
 }
 
 /// Creates a page that requests its drawings from the server.
 pub(crate) fn served(title: &str, body: &Markup) -> String {
     // An empty icon, so that browsers do not request one from the server.
-    page((title, Some("data:,")), body, &[], LIVE, &served_policy())
+    page((title, Some("data:,")), body, &[], (&[STYLE.as_str()], LIVE), &served_policy())
 }
 
 /// The Content-Security-Policy of a served page. The report that it opens is a `blob:`, which inherits this policy. The
 /// script of reports is therefore allowed as well.
 pub(crate) fn served_policy() -> String {
-    policy(&[LIVE, SCRIPT], &["connect-src 'self'", "img-src data:"])
+    policy(&[STYLE.as_str()], &[LIVE, SCRIPT], &["connect-src 'self'", "img-src data:"])
 }
 
-/// A policy that allows these scripts and the page's style sheet by their hashes, and no external sources.
-fn policy(scripts: &[&str], more: &[&str]) -> String {
-    let hashes: Vec<String> = scripts.iter().map(|script| sha256::source(&element(script))).collect();
-    let own = [format!("script-src {}", hashes.join(" ")), format!("style-src {}", sha256::source(&STYLE))];
+/// A policy that allows these style sheets and scripts by their hashes, and no external sources.
+fn policy(styles: &[&str], scripts: &[&str], more: &[&str]) -> String {
+    let scripts: Vec<String> = scripts.iter().map(|script| sha256::source(&element(script))).collect();
+    let styles: Vec<String> = styles.iter().map(|style| sha256::source(style)).collect();
+    let own = [format!("script-src {}", scripts.join(" ")), format!("style-src {}", styles.join(" "))];
     let fixed = ["base-uri 'none'", "form-action 'none'"];
     let all = own.iter().map(String::as_str).chain(more.iter().copied()).chain(fixed);
     ["default-src 'none'"].into_iter().chain(all).collect::<Vec<_>>().join("; ")
@@ -55,7 +65,13 @@ fn unix(text: &str) -> String {
     text.replace("\r\n", "\n")
 }
 
-fn page((title, icon): (&str, Option<&str>), body: &Markup, cases: &[Json], script: &str, policy: &str) -> String {
+fn page(
+    (title, icon): (&str, Option<&str>),
+    body: &Markup,
+    cases: &[Json],
+    (styles, script): (&[&str], &str),
+    policy: &str,
+) -> String {
     // The data cannot contain the end of the script element.
     let data = Json::from_iter(cases.iter().cloned()).to_string().replace('<', "\\u003c");
     let page = html! {
@@ -67,7 +83,7 @@ fn page((title, icon): (&str, Option<&str>), body: &Markup, cases: &[Json], scri
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 title { (title) }
                 @if let Some(icon) = icon { link rel="icon" href=(icon); }
-                style { (PreEscaped(STYLE.as_str())) }
+                @for style in styles { style { (PreEscaped(style)) } }
             }
             body {
                 (body)

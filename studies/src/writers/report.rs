@@ -12,6 +12,7 @@ use super::page::{self, figure};
 use super::record::record;
 use super::register::register;
 use super::study_output::StudyOutput;
+use super::title_block::{ReportOrigin, title_block};
 use super::writer::Writer;
 use super::{joints_csv, sensitivities_csv};
 use crate::config::common_keys::own_keys;
@@ -46,8 +47,16 @@ impl Writer for Report {
 pub fn report_html(study: &StudyOutput, drawn: usize) -> String {
     let worst = answer::worst(study);
     let figures = study.output.figures.anything();
+    let origin = study.inputs.map(|inputs| ReportOrigin {
+        version: &study.results.version,
+        commit: &study.results.origin.commit,
+        date: study.results.date.as_deref(),
+        study: &inputs.resolved,
+    });
+    let signed = study.inputs.and_then(|inputs| inputs.record.as_ref());
     let body = html! {
         h1 { (study.name) }
+        @if let Some(origin) = origin { (title_block(study.name, signed, origin)) }
         (answer::answer(study))
         div class="first" {
             @if figures && drawn > 0 && let Some(place) = worst { (pictures::of_case(study, place)) }
@@ -74,9 +83,8 @@ pub fn report_html(study: &StudyOutput, drawn: usize) -> String {
         }
         (cases::certificates(&study.results.cases))
         footer {
-            "Written by Voussoir " (study.results.version)
-            @if let Some(date) = &study.results.date { ", " (date) }
-            ". SI units; forces in N, kN or MN as marked. The numbers to the last bit are in results.json and results.csv \
+            @if let Some(origin) = origin { (origin.sentence()) }
+            "SI units; forces in N, kN or MN as marked. The numbers to the last bit are in results.json and results.csv \
              beside this page."
         }
     };

@@ -9,7 +9,7 @@ use super::types::Type;
 use super::typing::type_of;
 use crate::config::diagnostic::suggest;
 use crate::kinds::kind::Part;
-use crate::study::{DiagnosticList, OutputKeys};
+use crate::study::{DiagnosticList, OutputKeys, RecordTable};
 use crate::writers::markdown::images;
 use std::collections::BTreeMap;
 use voussoir_core::plugin::Keys;
@@ -206,6 +206,9 @@ pub struct ReportFile {
     pub name: String,
     /// kind of the study
     pub kind: ReportKind,
+    /// head of the report: project, author, checker, date and version
+    #[key(optional = "the report has no head")]
+    pub record: Option<RecordTable>,
     /// studies, and claims about them
     pub report: Contents,
     /// what is written besides the results

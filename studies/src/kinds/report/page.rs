@@ -7,8 +7,10 @@ use super::parts::Parts;
 use crate::figures::format::format_seconds;
 use crate::figures::plot::svg::own_ids;
 use crate::kinds::kind::{Part, Piece};
+use crate::study::RecordTable;
 use crate::writers::markdown::markdown;
 use crate::writers::page;
+use crate::writers::title_block::{ReportOrigin, title_block};
 use maud::{Markup, PreEscaped, html};
 
 /// Returns the page as HTML.
@@ -17,7 +19,7 @@ pub fn results_page(
     contents: &Contents,
     parts: &Parts,
     answers: &[Answer],
-    (version, date): (&str, Option<&str>),
+    (record, origin): (Option<&RecordTable>, ReportOrigin),
 ) -> String {
     let title = contents.title.as_deref().unwrap_or(name);
     let drawn = std::cell::Cell::new(0);
@@ -30,6 +32,7 @@ pub fn results_page(
     let last = contents.text.get(parts.list().len());
     let body = html! {
         h1 { (title) }
+        (title_block(name, record, origin))
         (text(&contents.introduction))
         (claims(answers, &text))
         @for (place, part) in parts.list().iter().enumerate() {
@@ -45,8 +48,7 @@ pub fn results_page(
         p { "Time of each study's cases, summed; studies with several jobs take less." }
         (times(parts))
         footer {
-            "Written by Voussoir " (version) @if let Some(date) = date { ", " (date) }
-            ". Each study has a folder beside this page with its results, tables and figures."
+            (origin.sentence()) "Each study has a folder beside this page with its results, tables and figures."
         }
     };
     page::whole(title, &body, &[])

@@ -15,10 +15,11 @@ use crate::figures::plot::svg::as_file;
 use crate::kinds::kind::{LoadedStudy, Part, RunOutput, RunRequest, Verification};
 use crate::kinds::read::read_source;
 use crate::kinds::stored_results::StoredResults;
-use crate::results::{head, without_origin};
+use crate::results::{head, this_program, without_origin};
 use crate::solve::Observer;
-use crate::study::{DiagnosticList, Drawn, ReadFile, StudyError, StudySource};
+use crate::study::{DiagnosticList, Drawn, ReadFile, RecordTable, StudyError, StudySource};
 use crate::verify::Agreement;
+use crate::writers::title_block::ReportOrigin;
 use serde::Deserialize;
 use serde_json::{Value as Json, json};
 use std::collections::BTreeMap;
@@ -31,6 +32,8 @@ pub struct ReportStudy {
     pub name: String,
     /// Its content.
     pub contents: Contents,
+    /// Head of the page.
+    record: Option<RecordTable>,
     /// True if figures are drawn.
     figures: bool,
     parts: Vec<Part>,
@@ -48,7 +51,7 @@ impl ReportStudy {
         let file = ReportFile::deserialize(&table).map_err(|error| {
             vec![LocatedDiagnostic::new(&root.place("report"), "report", format!("cannot be read: {error}"))]
         })?;
-        let ReportFile { name, report: contents, output, .. } = file;
+        let ReportFile { name, report: contents, output, record, .. } = file;
         let mut diagnostics = DiagnosticList::new(&root, found);
         let parts = read_parts(&mut diagnostics, &contents, &root, read);
         contents.check(&mut diagnostics, &parts);
@@ -63,7 +66,7 @@ impl ReportStudy {
             report.insert("studies".into(), own.collect::<Vec<_>>().into());
         }
         let figures = Drawn::of(output.figures, 1).anything();
-        Ok(ReportStudy { name, contents, figures, parts, resolved })
+        Ok(ReportStudy { name, contents, record, figures, parts, resolved })
     }
 
     /// Returns the page and all other output made from the results of the parts.
@@ -84,7 +87,10 @@ impl ReportStudy {
             };
             files.extend(self.contents.charts.iter().map(chart));
         }
-        files.push(("report.html".into(), results_page(&self.name, &self.contents, &parts, &answers, (version, date))));
+        let commit = &this_program().commit;
+        let origin = ReportOrigin { version, commit, date, study: &self.resolved };
+        let page = results_page(&self.name, &self.contents, &parts, &answers, (self.record.as_ref(), origin));
+        files.push(("report.html".into(), page));
         let mut names: Vec<String> = files.iter().map(|(name, _)| name.clone()).collect();
         names.sort();
         let mut whole = Json::Object(head((&self.name, &self.resolved), version, &names));

@@ -79,6 +79,11 @@ pub(crate) fn source(text: &str) -> String {
     format!("'sha256-{}'", base64(&sha256(text.as_bytes())))
 }
 
+/// The hash of a text in hexadecimal digits, as `sha256sum` prints it.
+pub(crate) fn hexadecimal(text: &str) -> String {
+    sha256(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
