@@ -149,7 +149,7 @@ enum Command {
     Explain {
         /// Tag of a plug-in, key of a study file, a word such as `units`, or a study file
         what: String,
-        /// Print the study's first case in another form, with every block by its vertices
+        /// Print the first case as a study with every block by its vertices
         #[arg(long, value_name = "FORM", value_parser = commands::explain::EXPORTS)]
         export: Option<String>,
     },

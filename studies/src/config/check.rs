@@ -31,8 +31,13 @@ fn unknown_tag(tag: &str, tags: &[&str], what: &str) -> (String, String) {
     let is_plugin = PluginKind::ALL.iter().any(|kind| kind.describe() == what);
     let other = PluginKind::ALL.into_iter().find(|kind| is_plugin && card(*kind, tag).is_some());
     if let Some(other) = other {
-        let message = format!("\"{tag}\" is a {}, not a {what}", other.describe());
-        let help = format!("choose it by {} = \"{tag}\"; choices here: {}", other.tag_key(), tags.join(", "));
+        let message = format!("\"{tag}\" is {}, not {}", with_article(other.describe()), with_article(what));
+        let place = match other {
+            PluginKind::InterfaceLaw => "it belongs in [joints.NAME]".into(),
+            PluginKind::BulkMaterial => "it belongs in [materials.NAME]".into(),
+            _ => format!("choose it by {} = \"{tag}\"", other.tag_key()),
+        };
+        let help = format!("{place}; choices here: {}", tags.join(", "));
         return (message, help);
     }
     let mut help = suggest(tag, tags, "choices");
@@ -40,6 +45,11 @@ fn unknown_tag(tag: &str, tags: &[&str], what: &str) -> (String, String) {
         help += "; one of another crate is there only in a program that names that crate (docs/adding_a_law.md)";
     }
     (format!("there is no {what} \"{tag}\""), help)
+}
+
+/// `a scene`, `an interface law`.
+fn with_article(word: &str) -> String {
+    format!("{} {word}", if word.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" })
 }
 
 /// A check in progress.

@@ -349,6 +349,9 @@ impl Reader {
         let after = error.span().and_then(|span| text.get(span.start..)).and_then(|rest| rest.lines().next());
         let nothing = after.is_none_or(|rest| rest.trim().is_empty());
         let why = match message {
+            _ if after.is_some_and(|rest| rest.contains(" //")) => "a comment begins with #, not with //",
+            _ if message.contains("expected nothing") => "there is more text after the value",
+            _ if message.contains("invalid boolean") => "true and false have small letters",
             _ if message.contains("string values must be quoted") && nothing => "there is no value after =",
             _ if message.contains("string values must be quoted") => "a text must be in quotes, as in \"arch\"",
             _ if message.contains("key with no value") => "there is no = and no value after this key",

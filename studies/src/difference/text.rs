@@ -61,11 +61,9 @@ impl RunDifference {
             return format!("\n{}: equal within {:e}\n", count(self.compared, "case"), self.tolerance);
         }
         let mut parts = vec![format!("{} equal", count(same, "case")), format!("{} differ", self.cases.len())];
-        parts.extend(
-            [("A", &self.only_a), ("B", &self.only_b)]
-                .iter()
-                .filter_map(|(side, cases)| (!cases.is_empty()).then(|| format!("{} only in {side}", cases.len()))),
-        );
+        let only = [("A", &self.only_a), ("B", &self.only_b)];
+        let only = only.iter().filter(|(_, cases)| !cases.is_empty());
+        parts.extend(only.map(|(side, cases)| format!("{} only in {side}", cases.len())));
         format!("\n{}\n", parts.join(", "))
     }
 }

@@ -13,6 +13,7 @@ use crate::config::checked_keys::CheckedKeys;
 use crate::config::common_keys::own_keys;
 use crate::config::diagnostic::{LocatedDiagnostic, sort};
 use crate::config::document::Node;
+use crate::config::dotted_key::segments;
 use crate::config::expand::{Expanded, Expansion};
 use crate::config::origin::Origin;
 use crate::kinds::kind;
@@ -73,7 +74,9 @@ impl StudyFile {
         check_sets(&sets, &expansion, &mut diagnostics);
         if expansion.changes(RECORD) {
             let message = "is the same for all cases; a sweep or a variant cannot change it";
-            diagnostics.push(LocatedDiagnostic::new(&root.place(RECORD), RECORD, message));
+            let swept = expansion.swept().any(|key| segments(key).first().is_some_and(|first| first == RECORD));
+            let table = if swept { "sweep" } else { "variants" };
+            diagnostics.push(LocatedDiagnostic::new(&root.place(table), RECORD, message));
         }
         let outline =
             Outline { variants: expansion.variants(), scenes: expansion.scenes(), axes: expansion.axes(), table };

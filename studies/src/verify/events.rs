@@ -29,7 +29,11 @@ pub(super) fn differences(stored: &Json, again: &Json, route: Route, steps_diffe
     // Both runs must agree up to the greatest factor.
     let peak = theirs.iter().enumerate().max_by(|a, b| a.1.1.total_cmp(&b.1.1)).map_or(0, |(index, _)| index + 1);
     if ours.len() < peak {
-        return vec![format!("{} events, the second solution gives {} up to the greatest factor", ours.len(), peak)];
+        return vec![format!(
+            "{} events, but solving the case again gives {} up to the greatest factor",
+            ours.len(),
+            peak
+        )];
     }
     let mut found: Vec<String> = strict(&ours[..peak], &theirs[..peak], near).into_iter().collect();
     let share = BEYOND.of(route);
@@ -72,18 +76,18 @@ impl Identities {
 /// order.
 fn strict(stored: &[Event], again: &[Event], near: f64) -> Option<String> {
     if stored.len() != again.len() {
-        return Some(format!("{} events, the second solution gives {}", stored.len(), again.len()));
+        return Some(format!("{} events, but solving the case again gives {}", stored.len(), again.len()));
     }
     let mut places: BTreeMap<usize, std::collections::VecDeque<usize>> = BTreeMap::new();
     again.iter().enumerate().for_each(|(index, (id, _))| places.entry(*id).or_default().push_back(index));
     let mut last: Option<usize> = None;
     for (index, (id, factor)) in stored.iter().enumerate() {
         let Some(place) = places.get_mut(id).and_then(std::collections::VecDeque::pop_front) else {
-            return Some(format!("events[{index}]: the second solution gives no such event"));
+            return Some(format!("events[{index}]: solving the case again gives no such event"));
         };
         let other = again[place].1;
         if (factor - other).abs() > near {
-            return Some(format!("events[{index}].factor is {factor}, the second solution gives {other}"));
+            return Some(format!("events[{index}].factor is {factor}, but solving the case again gives {other}"));
         }
         let before = last.filter(|last| *last > place);
         if before.is_some_and(|before| (again[before].1 - other).abs() > near) {

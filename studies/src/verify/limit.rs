@@ -142,10 +142,8 @@ fn verify_verdict(result: &CaseResult, verdict: &Verdict, findings: &mut Finding
         Status::Open => true,
         _ => result.load_factor.is_none(),
     };
-    let entry = "load_factor";
-    let words = "with this status it must be";
     let expected = if result.status == Status::Collapse { "a number" } else { "null" };
-    findings.expect_entry(fits, entry, (result.load_factor, words, expected));
+    findings.expect(fits, &format!("load_factor must be {expected} with this status"));
     let stored = result.bounds.unwrap_or_default();
     let bounds_match = (0..2).all(|end| match (stored[end], bounds[end]) {
         (Some(a), Some(b)) => close(a, b),

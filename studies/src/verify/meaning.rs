@@ -147,7 +147,7 @@ impl<'a> Comparison<'a> {
             (Rule::Any, ..) if stored.is_null() == again.is_null() => {}
             (Rule::Curve, Json::Array(_), Json::Array(_)) => {
                 if !same_curve(stored, again, self.route) {
-                    self.found.push("the second solution gives another curve".into());
+                    self.found.push("solving the case again gives another curve".into());
                 }
             }
             (Rule::Events, Json::Array(_), Json::Array(_)) => {

@@ -179,7 +179,7 @@ pub fn check_stored_path(case: &Case, result: &CaseResult, path: &StoredPath) ->
     }
     let (all, stored) = (value(&again)?, value(result)?);
     match meaning::differences(&stored, &all).first() {
-        Some(why) => Err(why.replace("the second solution gives", "the states give")),
+        Some(why) => Err(why.replace("solving the case again gives", "the states give")),
         None => Ok(ProvedCase { result: again, whole: meaning::differences(&all, &proved).is_empty() }),
     }
 }

@@ -42,7 +42,7 @@ pub(super) fn shown(value: &Json) -> String {
 
 /// The message for a value that differs.
 pub(super) fn differs(path: &str, stored: &Json, again: &Json) -> String {
-    format!("{path} is {}, the second solution gives {}", shown(stored), shown(again))
+    format!("{path} is {}, but solving the case again gives {}", shown(stored), shown(again))
 }
 
 /// The pairs of values below two maps, each with its path, and messages for keys that only one of them has.
@@ -53,12 +53,14 @@ pub(super) fn pairs<'a>(
 ) -> Vec<(String, &'a Json, &'a Json)> {
     let place = |key: &str| if path.is_empty() { key.to_string() } else { format!("{path}.{key}") };
     let foreign = stored.keys().filter(|key| !again.contains_key(*key));
-    found.extend(foreign.map(|key| format!("{}: the second solution gives no such value", place(key))));
+    found.extend(foreign.map(|key| format!("{}: solving the case again gives no such value", place(key))));
     let mut both = Vec::new();
     for (key, again) in again {
         match stored.get(key) {
             Some(stored) => both.push((place(key), stored, again)),
-            None => found.push(format!("there is no {}, the second solution gives {}", place(key), shown(again))),
+            None => {
+                found.push(format!("there is no {}, but solving the case again gives {}", place(key), shown(again)))
+            }
         }
     }
     both

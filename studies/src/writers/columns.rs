@@ -222,6 +222,8 @@ impl Labels<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::results::carried::{PermissibleEntry, ReserveEntry, ReserveFlow};
+    use voussoir_core::limit::Status;
 
     #[test]
     fn a_cell_without_a_value_has_the_kind_of_its_column() {
@@ -233,6 +235,26 @@ mod tests {
         }
         let names: Vec<String> = labels.with_results().iter().map(Column::header).collect();
         assert_eq!(names[..6], ["id", "variant", "scene", "a.b", "status", "load_factor [-]"]);
+    }
+
+    /// A load that is carried has the collapse factor of its loads and the permissible limit state in the table.
+    #[test]
+    fn the_reserve_and_the_permissible_limit_state_have_columns() {
+        let mut case = CaseResult::stalled("a note");
+        let (stage, flow) = ("live".to_string(), ReserveFlow::Associated);
+        let (status, factor) = (Status::Collapse, Some(4.0));
+        case.carried.reserve =
+            Some(ReserveEntry { stage, target: 1.0, status, factor, bounds: Some([factor, factor]), flow });
+        case.carried.permissible =
+            Some(PermissibleEntry { rule: "rule".into(), share: 0.5, used: 0.25, holds: Some(true) });
+        let labels = Labels { swept: &[], keys: &SweptKeys::default(), variants: false, scenes: false };
+        let cell = |name: &str| {
+            let columns = labels.with_results();
+            columns.iter().find(|column| column.header() == name).map(|column| column.cell(&case).text())
+        };
+        assert_eq!(cell("reserve_factor [-]").as_deref(), Some("4"));
+        assert_eq!(cell("permissible_share_used [-]").as_deref(), Some("0.25"));
+        assert_eq!(cell("permissible_holds").as_deref(), Some("true"));
     }
 
     /// Every bit is kept in both notations.

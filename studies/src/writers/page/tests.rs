@@ -4,7 +4,7 @@ use super::sha256::source;
 use crate::kinds::{RunRequest, read_source_beside};
 use crate::serve::{Asked, Session};
 use crate::solve::Unobserved;
-use crate::study::StudySource;
+use crate::study::{Study, StudySource};
 
 const ARCH: &str = r#"
 name = "arch"
@@ -115,4 +115,22 @@ fn scripts_of_every_page_match_its_policy() {
     for script in elements(&opened, "script") {
         assert!(directive(&policy, "script-src").contains(&source(script)), "{policy}");
     }
+}
+
+/// `[record]` gives a report its head, with the names as text; it belongs to no case, so a new checker changes no case.
+#[test]
+fn a_record_is_the_head_of_the_report_and_of_no_case() {
+    let signed = |checker: &str| {
+        ARCH.replacen("[scene]", &format!("[record]\nauthor = \"<i>A</i>\"\nchecker = \"{checker}\"\n[scene]"), 1)
+    };
+    let head = "<table class=\"title-block\">";
+    let page = &written(&signed("C. Wright"))[0];
+    for part in [head, "&lt;i&gt;A&lt;/i&gt;", "C. Wright", "Date, signature", "SHA-256 of the study"] {
+        assert!(page.contains(part), "{part}");
+    }
+    assert!(!written(ARCH)[0].contains(head));
+    let hash = |text: &str| Study::from_toml(text).unwrap_or_else(|wrong| panic!("{wrong}")).cases[0].hash();
+    assert_eq!(hash(&signed("C. Wright")), hash(ARCH));
+    let swept = signed("C. Wright") + "[sweep]\n\"record.author\" = { list = [\"a\", \"b\"] }\n";
+    assert!(Study::from_toml(&swept).expect_err("a mistake").to_string().contains("is the same for all cases"));
 }
