@@ -70,14 +70,15 @@ fn sentence(study: &StudyOutput) -> String {
     let own = format!("{words}{mechanism}");
     let at = whereabouts(study, case);
     let worst = found(study, "worsts").and_then(|all| all.iter().find(|entry| entry["case"] == case.label.id));
-    match cases.len() {
+    match study.totals.cases {
         1 => format!("{}.", capital(&own)),
         _ if let Some(entry) = worst => {
             format!("The most onerous position of the load is {}: {own}.", position(study, entry))
         }
         _ if found(study, "optima").is_some() => format!("The best that was found is {at}: {own}."),
-        _ if at.is_empty() => format!("The least of {} cases: {own}.", study.totals.cases),
-        _ => format!("The least of {} cases is at {at}: {own}.", study.totals.cases),
+        count if case.load_factor.is_none() => format!("The worst of {count} cases is {at}: {own}."),
+        count if at.is_empty() => format!("The least load factor of {count} cases: {own}."),
+        count => format!("The least load factor of {count} cases is at {at}: {own}."),
     }
 }
 
@@ -137,7 +138,7 @@ fn counts(study: &StudyOutput) -> Markup {
     html! {
         (totals.cases) " cases:"
         @for (i, status) in STATUSES.into_iter().filter(|status| of(*status) > 0).enumerate() {
-            @if i > 0 { ";" } " " (of(status)) " " (status_word(status).replace('_', " ")) " (" (status_meaning(status)) ")"
+            @if i > 0 { ";" } " " (of(status)) " × " (status_word(status).replace('_', " ")) " (" (status_meaning(status)) ")"
         } "."
         @if let Some(lowest) = totals.lowest_snap {
             " " strong { (totals.snapping) " of " (totals.cases) " cases snap before they reach their load factor" }
