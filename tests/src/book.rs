@@ -64,7 +64,6 @@ const PARTS: [(&str, &[(&str, &str)]); 6] = [
             ("theory/flow_rule.md", "Non-associated friction"),
             ("theory/sensitivities.md", "Sensitivities of limit loads"),
             ("theory/carried_loads.md", "Loads that are carried"),
-            ("theory/carried_loads.md", "Loads that are carried"),
             ("theory/event_paths.md", "Elastic paths from event to event"),
             ("theory/paths.md", "Ends of a path and limit points"),
             ("theory/finite_displacements.md", "Finite displacements"),

@@ -22,6 +22,23 @@ fn nothing(found: &[String]) {
     assert!(found.is_empty(), "{} found:\n{}", found.len(), found.join("\n"));
 }
 
+/// No crate with mechanics reads an environment variable: results depend on the study alone.
+#[test]
+fn results_do_not_depend_on_environment_variables() {
+    let mut found = Vec::new();
+    for krate in ["core", "laws", "solvers"] {
+        for (module, source) in Graph::of(krate).files {
+            let texts: Vec<&str> = source.tokens.iter().map(|token| token.text.as_str()).collect();
+            for (at, _) in
+                texts.windows(4).enumerate().filter(|(_, part)| matches!(part, ["env", ":", ":", "var" | "var_os"]))
+            {
+                found.push(format!("{krate}/src/{}.rs:{}", module.join("/"), source.tokens[at].line));
+            }
+        }
+    }
+    nothing(&found);
+}
+
 /// No two files of a crate import each other, directly or in a circle. A name re-exported by a parent counts as the
 /// file that defines it; paths from `crate`, `super`, `self` and a child module count.
 #[test]
