@@ -1,79 +1,112 @@
 //! The tolerances of limit analysis.
 
-/// Tolerances of limit analysis. Forces are in units of the loads, factors in the unit in which both loads have the
-/// same size, multipliers and motions in units of their greatest entry.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LimitSettings {
-    /// Error of sums over a scene: a residual below it is rounding.
-    pub rounding: f64,
-    /// Accepted error of fields and motions: a tenth of the tolerance of certificates.
-    pub admissible: f64,
-    /// Size above which multipliers, slacks and singular values count as non-zero.
-    pub active: f64,
-    /// Residual below which a correction gains nothing.
-    pub exhausted: f64,
-    /// Factor that counts as zero.
-    pub zero: f64,
-    /// Share of a sum that is rounding of its terms; also the error of a field on the yield surface.
-    pub balanced: f64,
-    /// Share of the greatest entry below which an entry is negligible and rank ends.
-    pub negligible: f64,
-    /// Accepted error of a field that only shows that loads are carried: half of the tolerance of certificates.
-    pub carried: f64,
-    /// Error of an iterate of the interior point method that ends it.
-    pub settled: f64,
-    /// Gap of the interior point method below which only rounding errors of the motion remain.
-    pub exhausted_gap: f64,
-    /// Residuals of the interior point method above which no polish is tried.
-    pub unpolished: f64,
-    /// Gap below which a polish is tried.
-    pub close_gap: f64,
-    /// Ratio of a multiplier to its slack, or the reverse, that decides which of them is zero.
-    pub clear: f64,
-    /// Factor in its unit below which it counts as zero.
-    pub least_factor: f64,
-    /// Factor in its unit above which it may have no bound.
-    pub greatest_factor: f64,
-    /// Accepted error of the equilibrium of a direction, relative to the gap.
-    pub missed: f64,
-    /// Addition to each pivot, relative to it.
-    pub pivot: f64,
-    /// Weight of a force without a bound.
-    pub unbounded: f64,
-    /// Part of a row that is independent of others, relative to the row.
-    pub independent: f64,
-    /// Shift of singular systems.
-    pub shift: f64,
-    /// Shift that is tried if the smaller one leaves no pivot.
-    pub great_shift: f64,
-    /// Share of the greatest jump, slack or multiplier below which a joint of a mechanism counts as not moving.
-    pub moves: f64,
-    /// Relative width of a closed bracket, and error of a converged sequence.
-    pub closed: f64,
-    /// Relative distance below a known state at which a search ends.
-    pub below_state: f64,
-    /// Relative distance above a known state at which the program of all products ends.
-    pub above_state: f64,
-    /// Second difference of data, relative to the greatest of their kind, above which data jump.
-    pub jump: f64,
-    /// Relative distance above which two solutions are distinct.
-    pub apart: f64,
-    /// Change of forces below which the end of a sequence is solved directly.
-    pub close_forces: f64,
-    /// Strength in units of the loads above which tangents replace a stress block.
-    pub flat: f64,
-    /// Strength in units of the loads above which programs are also tried in the unit of the strength.
-    pub strong: f64,
-    /// Growth of the error beyond the least one after which the tangents count as divergent.
-    pub diverged: f64,
-    /// Loss of a bound by products per residual.
-    pub product_margin: f64,
-    /// Size of negative multipliers of products up to which they are corrected.
-    pub nearly: f64,
-    /// Share of the residual that remains after a correction of products.
-    pub left: f64,
-    /// Greatest residual of exact multipliers of products.
-    pub exact: f64,
+/// Defines the struct of tolerances with the value of each. Shares are less than 1, ratios greater.
+macro_rules! tolerances {
+    (
+        from($($given:ident),*)
+        shares { $($(#[$share_doc:meta])* $share:ident = $share_value:expr,)* }
+        ratios { $($(#[$ratio_doc:meta])* $ratio:ident = $ratio_value:expr,)* }
+    ) => {
+        /// Tolerances of limit analysis. Forces are in units of the loads, factors in the unit in which both loads have
+        /// the same size, multipliers and motions in units of their greatest entry.
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        pub struct LimitSettings {
+            $($(#[$share_doc])* pub $share: f64,)*
+            $($(#[$ratio_doc])* pub $ratio: f64,)*
+        }
+
+        impl LimitSettings {
+            /// Derives all tolerances from three of them.
+            pub const fn derived($($given: f64),*) -> Self {
+                LimitSettings { $($share: $share_value,)* $($ratio: $ratio_value,)* }
+            }
+
+            /// Returns the first tolerance that is not positive and finite, or a share or ratio on the wrong side of 1.
+            const fn out_of_range(&self) -> Option<&'static str> {
+                $(if !(self.$share > 0.0 && self.$share < 1.0) { return Some(stringify!($share)); })*
+                $(if !(self.$ratio > 1.0 && self.$ratio < f64::INFINITY) { return Some(stringify!($ratio)); })*
+                None
+            }
+        }
+    };
+}
+
+tolerances! {
+    from(rounding, admissible, active)
+    shares {
+        /// Error of sums over a scene: a residual below it is rounding.
+        rounding = rounding,
+        /// Accepted error of fields and motions: a tenth of the tolerance of certificates.
+        admissible = admissible,
+        /// Size above which multipliers, slacks and singular values count as non-zero.
+        active = active,
+        /// Residual below which a correction gains nothing.
+        exhausted = 1e-3 * rounding,
+        /// Factor that counts as zero.
+        zero = 1e-2 * rounding,
+        /// Share of a sum that is rounding of its terms; also the error of a field on the yield surface.
+        balanced = 10.0 * rounding,
+        /// Share of the greatest entry below which an entry is negligible and rank ends.
+        negligible = 0.1 * active,
+        /// Accepted error of a field that only shows that loads are carried: half of the tolerance of certificates.
+        carried = 5.0 * admissible,
+        /// Error of an iterate of the interior point method that ends it.
+        settled = 2.0 * rounding,
+        /// Gap of the interior point method below which only rounding errors of the motion remain.
+        exhausted_gap = 0.5 * rounding,
+        /// Residuals of the interior point method above which no polish is tried.
+        unpolished = 1e-4,
+        /// Gap below which a polish is tried.
+        close_gap = 1e-5,
+        /// Factor in its unit below which it counts as zero.
+        least_factor = 1e3 * active,
+        /// Accepted error of the equilibrium of a direction, relative to the gap.
+        missed = 1e-4,
+        /// Addition to each pivot, relative to it.
+        pivot = 0.1 * rounding,
+        /// Weight of a force without a bound.
+        unbounded = active,
+        /// Part of a row that is independent of others, relative to the row.
+        independent = 1e3 * active,
+        /// Shift of singular systems.
+        shift = 10.0 * active,
+        /// Shift that is tried if the smaller one leaves no pivot.
+        great_shift = 1e3 * active,
+        /// Share of the greatest jump, slack or multiplier below which a joint of a mechanism counts as not moving.
+        moves = 10.0 * active,
+        /// Relative width of a closed bracket, and error of a converged sequence.
+        closed = 1e3 * active,
+        /// Relative distance below a known state at which a search ends.
+        below_state = 10.0 * active,
+        /// Relative distance above a known state at which the program of all products ends.
+        above_state = 1e-5,
+        /// Second difference of data, relative to the greatest of their kind, above which data jump.
+        jump = 1e3 * active,
+        /// Relative distance above which two solutions are distinct.
+        apart = 1e2 * active,
+        /// Change of forces below which the end of a sequence is solved directly.
+        close_forces = 1e-4,
+        /// Size of negative multipliers of products up to which they are corrected.
+        nearly = 1e3 * active,
+        /// Share of the residual that remains after a correction of products.
+        left = 1e2 * active,
+        /// Greatest residual of exact multipliers of products.
+        exact = 0.1 * rounding,
+    }
+    ratios {
+        /// Ratio of a multiplier to its slack, or the reverse, that decides which of them is zero.
+        clear = 1e2,
+        /// Factor in its unit above which it may have no bound.
+        greatest_factor = 1e7,
+        /// Strength in units of the loads above which tangents replace a stress block.
+        flat = 1e6,
+        /// Strength in units of the loads above which programs are also tried in the unit of the strength.
+        strong = 1e2,
+        /// Growth of the error beyond the least one after which the tangents count as divergent.
+        diverged = 10.0,
+        /// Loss of a bound by products per residual.
+        product_margin = 1e4,
+    }
 }
 
 /// The tolerances that all solvers of limit analysis share, validated by the compiler.
@@ -83,101 +116,10 @@ pub const SETTINGS: LimitSettings = match LimitSettings::derived(1e-13, 1e-11, 1
 };
 
 impl LimitSettings {
-    /// Derives all tolerances from three of them.
-    pub const fn derived(rounding: f64, admissible: f64, active: f64) -> Self {
-        LimitSettings {
-            rounding,
-            admissible,
-            active,
-            exhausted: 1e-3 * rounding,
-            zero: 1e-2 * rounding,
-            balanced: 10.0 * rounding,
-            negligible: 0.1 * active,
-            carried: 5.0 * admissible,
-            settled: 2.0 * rounding,
-            exhausted_gap: 0.5 * rounding,
-            unpolished: 1e-4,
-            close_gap: 1e-5,
-            clear: 1e2,
-            least_factor: 1e3 * active,
-            greatest_factor: 1e7,
-            missed: 1e-4,
-            pivot: 0.1 * rounding,
-            unbounded: active,
-            independent: 1e3 * active,
-            shift: 10.0 * active,
-            great_shift: 1e3 * active,
-            moves: 10.0 * active,
-            closed: 1e3 * active,
-            below_state: 10.0 * active,
-            above_state: 1e-5,
-            jump: 1e3 * active,
-            apart: 1e2 * active,
-            close_forces: 1e-4,
-            flat: 1e6,
-            strong: 1e2,
-            diverged: 10.0,
-            product_margin: 1e4,
-            nearly: 1e3 * active,
-            left: 1e2 * active,
-            exact: 0.1 * rounding,
-        }
-    }
-
-    /// Refuses numbers that are not positive and finite, and inconsistent bounds. The error is the tolerance's name.
+    /// Refuses tolerances out of their range, and inconsistent bounds. The error is the tolerance's name.
     pub const fn validated(self) -> Result<Self, &'static str> {
-        let shares = [
-            ("rounding", self.rounding),
-            ("admissible", self.admissible),
-            ("active", self.active),
-            ("exhausted", self.exhausted),
-            ("zero", self.zero),
-            ("balanced", self.balanced),
-            ("negligible", self.negligible),
-            ("carried", self.carried),
-            ("settled", self.settled),
-            ("exhausted_gap", self.exhausted_gap),
-            ("unpolished", self.unpolished),
-            ("close_gap", self.close_gap),
-            ("least_factor", self.least_factor),
-            ("missed", self.missed),
-            ("pivot", self.pivot),
-            ("unbounded", self.unbounded),
-            ("independent", self.independent),
-            ("shift", self.shift),
-            ("great_shift", self.great_shift),
-            ("moves", self.moves),
-            ("closed", self.closed),
-            ("below_state", self.below_state),
-            ("above_state", self.above_state),
-            ("jump", self.jump),
-            ("apart", self.apart),
-            ("close_forces", self.close_forces),
-            ("nearly", self.nearly),
-            ("left", self.left),
-            ("exact", self.exact),
-        ];
-        let mut k = 0;
-        while k < shares.len() {
-            if !(shares[k].1 > 0.0 && shares[k].1 < 1.0) {
-                return Err(shares[k].0);
-            }
-            k += 1;
-        }
-        let ratios = [
-            ("clear", self.clear),
-            ("greatest_factor", self.greatest_factor),
-            ("flat", self.flat),
-            ("strong", self.strong),
-            ("diverged", self.diverged),
-            ("product_margin", self.product_margin),
-        ];
-        k = 0;
-        while k < ratios.len() {
-            if !(ratios[k].1 > 1.0 && ratios[k].1 < f64::INFINITY) {
-                return Err(ratios[k].0);
-            }
-            k += 1;
+        if let Some(name) = self.out_of_range() {
+            return Err(name);
         }
         // Each value is less than the next one.
         let ordered = [
@@ -191,7 +133,7 @@ impl LimitSettings {
             ("close_gap", self.close_gap, self.unpolished),
             ("below_state", self.below_state, self.closed),
         ];
-        k = 0;
+        let mut k = 0;
         while k < ordered.len() {
             if ordered[k].1 >= ordered[k].2 {
                 return Err(ordered[k].0);

@@ -21,9 +21,9 @@ use voussoir_core::limit::{LimitProblem, SettlementAnswer, Velocity};
 use voussoir_core::model::Wrenches;
 
 /// Greatest number of linear programs of a sequence.
-const PROGRAMS: usize = 60;
+const MAX_PROGRAMS: usize = 60;
 /// Number of first programs that start from the forces of the previous one; later programs move half of the way.
-const FULL: usize = 24;
+const FULL_STEPS: usize = 24;
 
 /// Solves the settlement with this flow, or with the laws' own flow if no motion exists with associated flow.
 pub fn settle(problem: &LimitProblem, loads: &Wrenches, openings: &[[f64; 3]], flow: FlowRule) -> SettlementAnswer {
@@ -123,7 +123,7 @@ fn own_flow(systems: &Systems, driven: &[f64]) -> Result<Vec<f64>, String> {
     let start = field(systems, &vec![0.0; systems.forces])?.ok_or("no field carries the loads")?;
     let mut reference = start.clone();
     let mut change = f64::INFINITY;
-    for step in 0..PROGRAMS {
+    for step in 0..MAX_PROGRAMS {
         let program = fictitious(systems, &reference);
         let Ok(Some(force)) = field(&program, driven) else {
             // The forces may violate the strengths so much that no field carries the loads in the next program.
@@ -141,11 +141,11 @@ fn own_flow(systems: &Systems, driven: &[f64]) -> Result<Vec<f64>, String> {
         {
             return Ok(force);
         }
-        let share = if step < FULL { 1.0 } else { 0.5 };
+        let share = if step < FULL_STEPS { 1.0 } else { 0.5 };
         reference.iter_mut().zip(&force).for_each(|(old, new)| *old += share * (new - *old));
     }
     Err(format!(
-        "no associated flow lets rigid blocks follow their supports, and {PROGRAMS} linear programs with the laws' own flow did \
+        "no associated flow lets rigid blocks follow their supports, and {MAX_PROGRAMS} linear programs with the laws' own flow did \
          not converge: forces still change by {change:.1e}. Such blocks may jam, with forces as great as joints are stiff: give \
          joints a stiffness, and a path follows them"
     ))

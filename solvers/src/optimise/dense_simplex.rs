@@ -9,7 +9,7 @@
 use crate::settings::SETTINGS;
 
 /// Number of pivots after which the dictionary is compared with its original.
-const AUDIT: u64 = 64;
+const PIVOTS_BETWEEN_AUDITS: u64 = 64;
 
 /// The place of a variable.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -298,7 +298,7 @@ impl Dictionary {
     }
 
     fn audit(&mut self) {
-        if self.since_audit >= AUDIT {
+        if self.since_audit >= PIVOTS_BETWEEN_AUDITS {
             self.since_audit = 0;
             if self.drift() > SETTINGS.shift() {
                 self.restore();

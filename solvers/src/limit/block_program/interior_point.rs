@@ -14,21 +14,21 @@ use crate::limit::settings::SETTINGS;
 use voussoir_core::limit::JointForce;
 
 /// Greatest number of iterations.
-const MOST: u64 = 250;
+const MAX_ITERATIONS: u64 = 250;
 /// Greatest number of iterations until the fixed load is carried.
-const MOST_HELD: u64 = 25;
+const MAX_ITERATIONS_OF_FIXED_LOAD: u64 = 25;
 /// Step length relative to the distance to the nearest bound.
-const SHORT: f64 = 0.995;
+const SHARE_OF_DISTANCE_TO_BOUNDS: f64 = 0.995;
 /// Greatest number of correctors of one direction, the step length that needs no corrector, and the least gain of one.
-const CORRECTORS: usize = 4;
-const LONG: f64 = 0.9;
-const GAIN: f64 = 0.005;
+const MAX_CORRECTORS: usize = 4;
+const LENGTH_WITHOUT_CORRECTOR: f64 = 0.9;
+const LEAST_GAIN_OF_CORRECTOR: f64 = 0.005;
 /// Target of a corrector: factor on the present step length, and addition to it.
-const BEYOND: [f64; 2] = [1.5, 0.1];
+const CORRECTOR_TARGET: [f64; 2] = [1.5, 0.1];
 /// Ratio of the gap to the gap of the last polish, below which the next polish is tried.
-const SOONEST: f64 = 1e-2;
+const GAP_RATIO_OF_POLISHES: f64 = 1e-2;
 /// Number of iterations after which the method stops if neither the gap nor the error of equilibrium was halved.
-const IDLE: u32 = 12;
+const MAX_IDLE_ITERATIONS: u32 = 12;
 
 /// The result of a program, with the work done.
 pub struct Solved {
@@ -96,7 +96,7 @@ impl Method<'_> {
     /// Iterates at θ = 0 until equilibrium is exact.
     fn carry_fixed(&mut self) -> Option<()> {
         let mean = self.state.gap() / self.products();
-        for _ in 0..MOST_HELD {
+        for _ in 0..MAX_ITERATIONS_OF_FIXED_LOAD {
             self.residuals.update(self.program, &self.state);
             if self.residuals.greatest()[0] < SETTINGS.balanced && self.inside() {
                 return Some(());
@@ -125,7 +125,7 @@ impl Method<'_> {
         let mut best: Option<(f64, Solution)> = None;
         let mut nearest: Option<(f64, State)> = None;
         let (mut least, mut idle, mut polished) = ([f64::INFINITY; 2], 0, f64::INFINITY);
-        for _ in 0..MOST {
+        for _ in 0..MAX_ITERATIONS {
             self.residuals.update(self.program, &self.state);
             let [statics, kinematics] = self.residuals.greatest();
             let gap = self.state.gap() / (1.0 + self.state.theta.abs());
@@ -147,14 +147,14 @@ impl Method<'_> {
                 nearest = Some((error, self.state.clone()));
             }
             if statics.max(kinematics) < SETTINGS.unpolished
-                && gap < SETTINGS.close_gap.min(SOONEST * polished)
+                && gap < SETTINGS.close_gap.min(GAP_RATIO_OF_POLISHES * polished)
                 && self.clear()
             {
                 polished = gap;
                 self.polished(&mut best);
             }
             let settled = best.as_ref().is_some_and(|best| best.0 < SETTINGS.settled);
-            if settled || done || idle > IDLE || self.improve().is_none() {
+            if settled || done || idle > MAX_IDLE_ITERATIONS || self.improve().is_none() {
                 break;
             }
         }
@@ -208,15 +208,15 @@ impl Method<'_> {
         wanted.but(state, mean);
         wanted.and_second_order(step);
         directions.towards(state, residuals, wanted, true, step);
-        for _ in 0..CORRECTORS {
+        for _ in 0..MAX_CORRECTORS {
             let lengths = step.longest;
-            if lengths[0].min(lengths[1]) > LONG {
+            if lengths[0].min(lengths[1]) > LENGTH_WITHOUT_CORRECTOR {
                 break;
             }
-            let aim = lengths.map(|length| (BEYOND[0] * length + BEYOND[1]).min(1.0));
+            let aim = lengths.map(|length| (CORRECTOR_TARGET[0] * length + CORRECTOR_TARGET[1]).min(1.0));
             centred.centre(wanted, state, step, aim, mean);
             directions.towards(state, residuals, centred, true, other);
-            if other.longest[0] + other.longest[1] < lengths[0] + lengths[1] + GAIN {
+            if other.longest[0] + other.longest[1] < lengths[0] + lengths[1] + LEAST_GAIN_OF_CORRECTOR {
                 break;
             }
             std::mem::swap(wanted, centred);
@@ -230,7 +230,7 @@ impl Method<'_> {
     /// Moves along the step, up to a fixed share of the distance to the nearest bounds.
     fn go(&mut self) {
         let [step, _] = &self.steps;
-        self.state.go(step, step.longest.map(|l| if l < 1.0 { SHORT * l } else { 1.0 }));
+        self.state.go(step, step.longest.map(|l| if l < 1.0 { SHARE_OF_DISTANCE_TO_BOUNDS * l } else { 1.0 }));
         self.iterations += 1;
     }
 }

@@ -15,11 +15,11 @@ use crate::limit::settings::SETTINGS;
 use crate::linear::inner;
 
 /// Greatest number of sets of carrying rows.
-const SETS: usize = 6;
+const MAX_SETS: usize = 6;
 /// Number of sets after which all wrong rows change at once; after later sets only the worst row changes.
-const TOGETHER: usize = 3;
+const SETS_CHANGED_TOGETHER: usize = 3;
 /// Greatest number of corrections of one set.
-const CORRECTIONS: usize = 12;
+const MAX_CORRECTIONS: usize = 12;
 
 /// The free directions of the forces of one joint, with its carrying rows and their multipliers.
 struct Frame {
@@ -89,14 +89,14 @@ pub fn polish(
     let capped = program.cap.is_some() && start.cap[1] > start.cap[0];
     let mut polish = Polish { program, state: start.clone(), carrying, capped, frames: Vec::new() };
     let mut best: Option<(f64, State, bool)> = None;
-    for round in 0..SETS {
-        if round < TOGETHER {
+    for round in 0..MAX_SETS {
+        if round < SETS_CHANGED_TOGETHER {
             polish.state = start.clone();
         }
         let v = polish.factorise(stiffness)?;
         *corrections += polish.statics(stiffness, &v) + polish.kinematics(stiffness, &v);
         let capped = polish.capped;
-        let (error, changed) = polish.judge(round >= TOGETHER);
+        let (error, changed) = polish.judge(round >= SETS_CHANGED_TOGETHER);
         if best.as_ref().is_none_or(|best| error < best.0) {
             best = Some((error, polish.state.clone(), capped));
         }
@@ -148,7 +148,7 @@ impl Polish<'_> {
         }
         let mut best = f64::INFINITY;
         let mut count = 0;
-        for _ in 0..CORRECTIONS {
+        for _ in 0..MAX_CORRECTIONS {
             for index in 0..self.frames.len() {
                 self.onto_rows(index);
             }
@@ -213,7 +213,7 @@ impl Polish<'_> {
         normalise(&mut self.state.q, self.capped);
         let mut best = f64::INFINITY;
         let mut count = 0;
-        for _ in 0..CORRECTIONS {
+        for _ in 0..MAX_CORRECTIONS {
             let mut resisted = vec![0.0; self.state.q.len()];
             let mut error = 0.0f64;
             for (member, frame) in program.members.iter().zip(&self.frames) {

@@ -17,9 +17,9 @@ use crate::limit::settings::SETTINGS;
 use crate::linear::inner;
 
 /// Greatest number of corrections of a direction, and its accepted error of equilibrium relative to the gap.
-const MOST: usize = 12;
+const MAX_CORRECTIONS: usize = 12;
 /// Number of successive corrections that do not halve the error, after which the refinement stops.
-const IDLE: usize = 2;
+const MAX_IDLE_CORRECTIONS: usize = 2;
 
 /// A change of velocities and of θ, with r·c of its residual r.
 struct Correction {
@@ -39,14 +39,14 @@ impl Directions<'_> {
         let stiff = cap_stiffness(program, state);
         let mut before: Option<Correction> = None;
         let (mut least, mut idle) = (f64::INFINITY, 0);
-        for _ in 0..MOST {
+        for _ in 0..MAX_CORRECTIONS {
             let mut left: Vec<f64> =
                 residuals.equilibrium.iter().zip(&program.varying).map(|(r, p)| r + step.theta * p).collect();
             program.members.iter().zip(&step.x).for_each(|(member, x)| program.press(member, x, &mut left));
             let error = greatest(&left);
             idle = if error < 0.5 * least { 0 } else { idle + 1 };
             least = least.min(error);
-            if error < aim || idle == IDLE {
+            if error < aim || idle == MAX_IDLE_CORRECTIONS {
                 break;
             }
             let correction = self.conjugate(&left, stiff, moves, before.as_ref());

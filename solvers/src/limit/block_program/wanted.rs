@@ -5,7 +5,7 @@ use super::state::{State, Step};
 
 /// Range of the products s z after a step, relative to their mean, outside which a corrector moves them. The upper
 /// value also limits the change of one product.
-const CENTRED: [f64; 2] = [0.1, 10.0];
+const PRODUCT_RANGE: [f64; 2] = [0.1, 10.0];
 
 /// Required decrease of the products s z; 0 for rows that a joint does not have.
 #[derive(Debug, Clone)]
@@ -49,8 +49,8 @@ impl Wanted {
         let off = |s: f64, ds: f64, z: f64, dz: f64| {
             let product = (s + lengths[0] * ds) * (z + lengths[1] * dz);
             // No clamp: without rows the mean is NaN, and clamp panics.
-            let near = product.max(CENTRED[0] * mean).min(CENTRED[1] * mean);
-            let moved = (near - product).max(-CENTRED[1] * mean);
+            let near = product.max(PRODUCT_RANGE[0] * mean).min(PRODUCT_RANGE[1] * mean);
+            let moved = (near - product).max(-PRODUCT_RANGE[1] * mean);
             if z > 0.0 { moved } else { 0.0 }
         };
         let states = state.slacks.iter().zip(&state.multipliers);

@@ -10,7 +10,7 @@ use voussoir_core::limit::{LimitJoint, LimitProblem};
 use voussoir_core::model::Wrenches;
 
 /// Greatest number of closing joints: with more, sparse programs are faster.
-const MOST_CUTS: usize = 8;
+const MAX_CLOSING_JOINTS: usize = 8;
 
 /// A joint of a tree.
 #[derive(Debug, Clone, Copy)]
@@ -35,7 +35,9 @@ pub struct Trees {
 
 /// Returns the problem's bodies as trees, if few joints close them.
 pub fn trees(problem: &LimitProblem) -> Option<Trees> {
-    if problem.joints.len() > problem.groups + MOST_CUTS || problem.joints.iter().any(|joint| joint.fill.is_some()) {
+    if problem.joints.len() > problem.groups + MAX_CLOSING_JOINTS
+        || problem.joints.iter().any(|joint| joint.fill.is_some())
+    {
         return None;
     }
     let mut queue: VecDeque<(usize, Option<usize>)> = VecDeque::new();
@@ -67,7 +69,7 @@ pub fn trees(problem: &LimitProblem) -> Option<Trees> {
         }
     }
     // Groups that are not reached have no support.
-    (reached.iter().all(|&r| r) && trees.cuts.len() <= MOST_CUTS).then_some(trees)
+    (reached.iter().all(|&r| r) && trees.cuts.len() <= MAX_CLOSING_JOINTS).then_some(trees)
 }
 
 /// The joints of every group, group by group.

@@ -16,14 +16,14 @@ use crate::linear::inner;
 use voussoir_core::linear::{Entries, SparseLdlt};
 
 /// Least factor, in its unit, to which a gap is related.
-const LEAST: f64 = 1e-3;
+const LEAST_FACTOR: f64 = 1e-3;
 /// If residuals decrease by a ratio in this range from step to step, the geometric series of the steps is summed.
-const SLOW: f64 = 0.5;
-const STILL: f64 = 1.0 - 1e-6;
+const SERIES_RATIO_MIN: f64 = 0.5;
+const SERIES_RATIO_MAX: f64 = 1.0 - 1e-6;
 /// Number of steps without gain after which the iteration stops; one of three may be a sum that went too far.
-const IDLE: usize = 4;
+const MAX_STEPS_WITHOUT_GAIN: usize = 4;
 /// Greatest number of single exchanges of rows.
-const EXCHANGES: usize = 40;
+const MAX_EXCHANGES: usize = 40;
 
 /// A polished pair.
 pub struct Polished {
@@ -131,7 +131,7 @@ fn polish_with(system: &System, approximate: &Pair, delta: f64) -> Option<Polish
             best = exchanged;
         }
     }
-    let error = best.error.max(gap(system, &best.pair) / best.pair.x[system.theta].abs().max(LEAST));
+    let error = best.error.max(gap(system, &best.pair) / best.pair.x[system.theta].abs().max(LEAST_FACTOR));
     Some(Polished { factorisations, iterations, error, ..best })
 }
 
@@ -155,7 +155,7 @@ fn exchanged(system: &System, start: &Pair, (items, active): (&[Item], &[Item]),
     let mut chosen: Vec<Item> =
         active.iter().copied().filter(|item| multiplier(start, *item) > 1e-10 * scale).collect();
     let (mut pair, mut factorisations, mut iterations) = (start.clone(), 0, 0);
-    for _ in 0..EXCHANGES {
+    for _ in 0..MAX_EXCHANGES {
         let within: Vec<bool> = items.iter().map(|item| chosen.contains(item)).collect();
         let mut newton = Newton { system, active: &chosen, pair: clipped(&pair, items, &within), delta };
         let work = newton.run()?;
@@ -265,7 +265,7 @@ impl Newton<'_> {
             if error < best.0 {
                 best = (error, self.pair.clone());
             }
-            if error <= 1e-16 || iterations >= 40 || without_gain >= IDLE {
+            if error <= 1e-16 || iterations >= 40 || without_gain >= MAX_STEPS_WITHOUT_GAIN {
                 break;
             }
             if factorised.is_none() || (curved && iterations < 12) {
@@ -277,7 +277,7 @@ impl Newton<'_> {
             // Along a direction as soft as the regularisation, residuals decrease by the same ratio in every step:
             // two steps give the sum of the series.
             let share = size / last;
-            further = !further && (SLOW..STILL).contains(&share);
+            further = !further && (SERIES_RATIO_MIN..SERIES_RATIO_MAX).contains(&share);
             if further {
                 step.iter_mut().for_each(|s| *s /= 1.0 - share);
             }

@@ -20,7 +20,7 @@ use voussoir_core::model::Wrenches;
 use voussoir_core::plugin::{Capability, Card, Keys, PluginKind};
 
 /// If the polish does not converge, other units of force are tried in scenes with at most this many bodies.
-const MOST_IN_UNITS: usize = 500;
+const MAX_BODIES_FOR_OTHER_UNITS: usize = 500;
 
 /// Limit analysis of any scene.
 #[derive(Debug, Clone, Default, Keys)]
@@ -333,7 +333,7 @@ impl Engine for ConicEngine<'_> {
             self.attempt(question, weakest, &mut tried);
         }
         // Another unit changes the path of the interior point; the polish may converge from its end.
-        for scale in [0.1, 10.0].into_iter().filter(|_| self.problem.groups <= MOST_IN_UNITS) {
+        for scale in [0.1, 10.0].into_iter().filter(|_| self.problem.groups <= MAX_BODIES_FOR_OTHER_UNITS) {
             if tried.may_gain() {
                 self.attempt(question, force * scale, &mut tried);
             }

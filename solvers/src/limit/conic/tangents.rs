@@ -14,7 +14,7 @@ use voussoir_core::limit::{JointForce, LimitProblem};
 use voussoir_core::model::Wrenches;
 
 /// Greatest number of programs.
-const MOST: usize = 12;
+const MAX_PROGRAMS: usize = 12;
 
 /// Returns the tangent of a stress block at one end for the normal force N̄ = `pressed`: 2 ū (N + F_t) − ū² ≤
 /// F (2 N_i + F_t), ū = N̄ + F_t, over F.
@@ -52,7 +52,7 @@ pub fn by_tangents(
 ) -> Vec<Solved> {
     let mut touched: Vec<f64> = start.iter().map(pressed).collect();
     let (mut all, mut least) = (Vec::new(), f64::INFINITY);
-    while all.len() < MOST {
+    while all.len() < MAX_PROGRAMS {
         let flat = flattened(problem, &touched);
         let loads = Loads { fixed: Some(fixed), varying, cap, strengths: true };
         let Some(program) = Program::new(&flat, loads) else { break };

@@ -12,7 +12,7 @@ use crate::optimise::dense_simplex::{Dictionary, Feasibility};
 use voussoir_core::limit::BracketWork;
 
 /// Ends of the ranges as shares of the open interval; the ranges need about equal work.
-const SHARES: [f64; 8] = [0.3, 0.6, 0.77, 0.85, 0.92, 0.96, 0.985, 1.0];
+const RANGE_ENDS: [f64; 8] = [0.3, 0.6, 0.77, 0.85, 0.92, 0.96, 0.985, 1.0];
 
 /// If this share of the open interval is not closed with that share of the work, the proof is given up.
 const PROBE: [f64; 2] = [0.01, 0.1];
@@ -173,7 +173,7 @@ pub fn in_parts(systems: &Systems, [mut proved, top]: [f64; 2], most: u64, work:
     let first = proved;
     let left = most.saturating_sub(work.entries);
     work.given_up = false;
-    for share in std::iter::once(PROBE[0]).chain(SHARES) {
+    for share in std::iter::once(PROBE[0]).chain(RANGE_ENDS) {
         let end = if share == 1.0 { top } else { first + share * (top - first) };
         let probes = share == PROBE[0];
         let most = if probes { (PROBE[1] * left as f64) as u64 } else { most.saturating_sub(work.entries) };

@@ -21,13 +21,13 @@ use voussoir_core::linear::{Entries, SparseLdlt};
 type Form = Vec<(usize, f64)>;
 
 /// Multipliers below this share of the greatest are set to zero; the values are tried in order.
-const SUPPORTS: [f64; 5] = [1e-6, 1e-5, 1e-4, 1e-7, 1e-3];
+const SUPPORT_THRESHOLDS: [f64; 5] = [1e-6, 1e-5, 1e-4, 1e-7, 1e-3];
 /// Regularisations of the interior-point method; they are tried in order.
 const REGULARISATIONS: [f64; 2] = [SETTINGS.apart, SETTINGS.great_shift];
 /// Distance of the upper bound of θ in the program above the known state, relative to it.
 const MARGIN_ABOVE: f64 = 0.05;
 /// The largest neighbourhood that is tried first.
-const NEAREST: usize = 3;
+const MAX_REACH: usize = 3;
 
 /// Minimise x_0 subject to equations row·x = h and rows row·x ≥ h.
 struct Program {
@@ -456,7 +456,7 @@ impl Program {
     /// Multipliers below one of several thresholds are set to zero; the others are corrected to satisfy the equation to
     /// rounding.
     fn bound(&self, z: &[f64]) -> Option<Bound> {
-        SUPPORTS.into_iter().find_map(|least| self.bound_on(least, z.to_vec()))
+        SUPPORT_THRESHOLDS.into_iter().find_map(|least| self.bound_on(least, z.to_vec()))
     }
 
     fn bound_on(&self, least: f64, mut z: Vec<f64>) -> Option<Bound> {
@@ -511,8 +511,8 @@ pub fn lower_bound(
     // A margin above the known state gives the program an interior, which the method needs.
     let above = t * (1.0 + MARGIN_ABOVE);
     let fits = |reach: usize| Program::new(systems, problem, above, reach, most);
-    let least = if widest_only { NEAREST } else { 0 };
-    let Some(program) = (least..=NEAREST).rev().find_map(fits) else { return (None, 0) };
+    let least = if widest_only { MAX_REACH } else { 0 };
+    let Some(program) = (least..=MAX_REACH).rev().find_map(fits) else { return (None, 0) };
     let mut work = 0;
     for regularisation in REGULARISATIONS {
         let Some((z, iterations)) = program.multipliers(regularisation) else { continue };

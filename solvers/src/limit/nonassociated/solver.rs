@@ -21,7 +21,7 @@ use voussoir_core::model::Wrenches;
 use voussoir_core::plugin::{Capability, Card, Keys, PluginKind};
 
 /// Greatest number of rows of products that are solved only to make the result of the search checkable.
-const CHECKED_ROWS: usize = 5_000;
+const MAX_CHECKED_ROWS: usize = 5_000;
 /// Number of starts of the local search.
 const STARTS: usize = 24;
 
@@ -323,7 +323,7 @@ impl Least<'_> {
                     lower.search(proved);
                     if lower.products.is_none() {
                         // A bound of the search can be checked only if products prove it too.
-                        lower.product(self.products(known, limits.product_rows.min(CHECKED_ROWS), true));
+                        lower.product(self.products(known, limits.product_rows.min(MAX_CHECKED_ROWS), true));
                     }
                     return lower;
                 }

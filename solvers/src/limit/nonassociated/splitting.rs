@@ -19,35 +19,35 @@ use nalgebra::{DMatrix, DVector};
 use voussoir_core::limit::BracketWork;
 
 /// Share of the remaining work that is given to each range.
-const RANGE: f64 = 0.6;
+const WORK_SHARE_OF_RANGE: f64 = 0.6;
 /// Share of a range's work for the program itself, and for each trial of a bound.
-const SPLITTING: f64 = 0.2;
-const TRIAL: f64 = 0.08;
+const WORK_SHARE_OF_PROGRAM: f64 = 0.2;
+const WORK_SHARE_OF_TRIAL: f64 = 0.08;
 /// Least number of iterations of both.
-const FEWEST: usize = 1000;
+const MIN_ITERATIONS: usize = 1000;
 /// Number of iterations between checks of multipliers.
-const CHECKED: usize = 200;
+const ITERATIONS_BETWEEN_CHECKS: usize = 200;
 /// Greatest number of conjugate residual iterations of one correction.
-const RESIDUALS: usize = 500;
+const MAX_CONJUGATE_RESIDUALS: usize = 500;
 /// Greatest number of supports on which multipliers are corrected in one trial, and of corrections on each.
-const SUPPORTS: usize = 10;
-const CORRECTIONS: usize = 4;
+const MAX_SUPPORTS: usize = 10;
+const MAX_CORRECTIONS: usize = 4;
 /// Least distance of a trial bound above the proved one, relative to the range.
-const LEAST: f64 = 0.02;
+const LEAST_RAISE: f64 = 0.02;
 /// Multipliers below this multiple of the greatest residual, and below the second value, change in proportion.
-const FREE: [f64; 2] = [100.0, 1e-4];
+const FREE_MULTIPLIERS: [f64; 2] = [100.0, 1e-4];
 /// Over-relaxation factor.
-const RELAXATION: f64 = 1.7;
+const OVER_RELAXATION: f64 = 1.7;
 /// Initial penalty, in units of the objective.
-const PENALTY: f64 = 10.0;
+const INITIAL_PENALTY: f64 = 10.0;
 /// Number of iterations between adaptations of the penalty.
-const ADAPTED: usize = 100;
+const ITERATIONS_BETWEEN_ADAPTATIONS: usize = 100;
 /// The first bound that is tried, relative to the estimate.
 const FIRST_SHARE: f64 = 0.85;
 /// Bounds closer than this share of t count as equal.
-const CLOSE: f64 = 1e-3;
+const SAME_BOUND: f64 = 1e-3;
 /// Number of scalings of the rows.
-const SCALINGS: usize = 8;
+const ROW_SCALINGS: usize = 8;
 
 /// Returns columns that span the solutions of matrix · x = 0.
 fn null_space(matrix: &DMatrix<f64>) -> DMatrix<f64> {
@@ -76,7 +76,7 @@ fn balanced(columns: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
         by.row_iter_mut().zip(scale.iter()).for_each(|(mut row, s)| row *= *s);
         orthonormal(by)
     };
-    for _ in 0..SCALINGS {
+    for _ in 0..ROW_SCALINGS {
         let basis = scaled(&scale);
         scale.iter_mut().zip(basis.row_iter()).for_each(|(s, row)| *s /= row.norm_squared().max(1e-4).sqrt().sqrt());
     }
@@ -212,17 +212,17 @@ impl Products {
         let unit_power = &self.power / length;
         let (rows, columns) = self.power.shape();
         let mut z = DMatrix::<f64>::zeros(rows, columns);
-        let (mut w, mut penalty) = (z.clone(), PENALTY);
+        let (mut w, mut penalty) = (z.clone(), INITIAL_PENALTY);
         for iteration in 1..=iterations {
             let mut x = self.project(&(&z - &w)) - &self.objective / penalty;
             // p·q̇ = 1, scaled so that the normalisation has length one.
             let short = 1.0 - x.dot(&unit_power);
             x += &unit_power * short;
-            let y = &x * RELAXATION + &z * (1.0 - RELAXATION) + &w;
+            let y = &x * OVER_RELAXATION + &z * (1.0 - OVER_RELAXATION) + &w;
             let mut next = y.map(|y| y.max(0.0));
             (0..self.pairs).for_each(|i| next[(i, i)] = 0.0);
             w = y - &next;
-            if iteration % ADAPTED == 0 {
+            if iteration % ITERATIONS_BETWEEN_ADAPTATIONS == 0 {
                 // Errors of Z = U Y Vᵀ and of the equation of the multipliers, each relative to its data.
                 let apart = (&x - &next).norm() / next.norm().max(x.norm());
                 let by = (apart / (penalty * (&next - &z).norm())).sqrt().clamp(0.5, 2.0);
@@ -249,7 +249,7 @@ impl Products {
             let reflected = &own * 2.0 - &*near;
             *near = &own + &target - self.project(&reflected);
             let last = iteration == iterations;
-            if iteration % CHECKED == 0 || last {
+            if iteration % ITERATIONS_BETWEEN_CHECKS == 0 || last {
                 let short = &target - &own;
                 let moved = &own + self.project(&short);
                 if !moved.iter().all(|value| value.is_finite()) {
@@ -269,13 +269,13 @@ impl Products {
     /// Returns exact multipliers from nearly exact ones.
     fn corrected(&mut self, target: &DMatrix<f64>, mut own: DMatrix<f64>) -> Option<DMatrix<f64>> {
         let mut worst = f64::INFINITY;
-        for _ in 0..SUPPORTS {
+        for _ in 0..MAX_SUPPORTS {
             let first = self.inner(&(target - &own)).amax();
-            let free = (FREE[0] * first).clamp(SETTINGS.exact, FREE[1]);
+            let free = (FREE_MULTIPLIERS[0] * first).clamp(SETTINGS.exact, FREE_MULTIPLIERS[1]);
             let mut freedom = own.map(|v| (v / free).clamp(0.0, 1.0));
             (0..self.pairs).for_each(|i| freedom[(i, i)] = 1.0);
             let mut last = f64::INFINITY;
-            for _ in 0..CORRECTIONS {
+            for _ in 0..MAX_CORRECTIONS {
                 let left = self.inner(&(target - &own));
                 let size = left.amax();
                 if size <= SETTINGS.exact * own.amax() && self.least(&own) >= 0.0 {
@@ -310,7 +310,7 @@ impl Products {
         let mut image = apply(self, &residual);
         let (mut direction, mut along) = (residual.clone(), image.clone());
         let mut power = residual.dot(&image);
-        for _ in 0..RESIDUALS {
+        for _ in 0..MAX_CONJUGATE_RESIDUALS {
             let squared = along.norm_squared();
             if power <= 0.0 || squared == 0.0 {
                 break;
@@ -364,14 +364,15 @@ impl Products {
         let once = self.objective.clone();
         self.project(&once);
         let cost = (self.work - before).max(1) as f64;
-        let iterations = |share: f64| ((share * limit as f64 / cost) as usize).max(FEWEST);
+        let iterations = |share: f64| ((share * limit as f64 / cost) as usize).max(MIN_ITERATIONS);
         let width = self.range[1] - self.range[0];
-        let (mut near, estimate) = self.split(iterations(SPLITTING));
+        let (mut near, estimate) = self.split(iterations(WORK_SHARE_OF_PROGRAM));
         // The estimate may be inaccurate at first: failed values are tried again after a lower bound is proved.
         let high = if estimate > 0.0 { estimate.min(width) } else { width };
         let (mut low, mut best, mut bound) = (0.0, None, FIRST_SHARE * high);
-        while high - low > CLOSE * width && bound > low + LEAST * width.min(high - low) && self.work < limit {
-            match self.prove(bound, &mut near, iterations(TRIAL)) {
+        while high - low > SAME_BOUND * width && bound > low + LEAST_RAISE * width.min(high - low) && self.work < limit
+        {
+            match self.prove(bound, &mut near, iterations(WORK_SHARE_OF_TRIAL)) {
                 Some(exact) => {
                     low = bound;
                     raised(self.work, self.range[0] + bound);
@@ -390,11 +391,11 @@ impl Products {
 pub fn split_bound(systems: &Systems, most: f64, limit: u64, curve: &mut Curve) -> (Option<Bound>, u64) {
     let most = most * (1.0 + SETTINGS.above_state);
     let (mut steps, mut proved, mut work) = (Vec::new(), 0.0, 0u64);
-    while !systems.pairs.is_empty() && proved < most * (1.0 - CLOSE) {
+    while !systems.pairs.is_empty() && proved < most * (1.0 - SAME_BOUND) {
         let mut products = Products::new(systems, [proved, most]);
-        let own = (RANGE * limit.saturating_sub(work) as f64) as u64;
+        let own = (WORK_SHARE_OF_RANGE * limit.saturating_sub(work) as f64) as u64;
         // No motion of the flow rule has p·q̇ = 1, or too little work is left.
-        let hopeless = products.power.norm() < SETTINGS.negligible || own < (FEWEST as u64) * products.work;
+        let hopeless = products.power.norm() < SETTINGS.negligible || own < (MIN_ITERATIONS as u64) * products.work;
         let mut raised = |own: u64, theta: f64| {
             curve.proved(BracketWork::Splitting, (work + own) as f64 / 1e9, theta * (1.0 - SETTINGS.closed));
         };

@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector};
 use voussoir_core::limit::{JointForce, LimitProblem, Velocity};
 
 /// Greatest number of forces: larger scenes take too long.
-const GREATEST: usize = 900;
+const MAX_FORCES: usize = 900;
 
 /// All fields that carry the limit load, and all mechanisms at it, described by one field and one mechanism.
 #[derive(Debug)]
@@ -62,8 +62,8 @@ impl<'a> OptimalFace<'a> {
             offsets.push(offsets[offsets.len() - 1] + joint.components());
         }
         let count = offsets[problem.joints.len()];
-        if count > GREATEST {
-            return Err(format!("more than {GREATEST} forces in joints"));
+        if count > MAX_FORCES {
+            return Err(format!("more than {MAX_FORCES} forces in joints"));
         }
         let all = |force: &JointForce| [force.normal[0], force.normal[1], force.shear];
         let force = forces.iter().flat_map(all).fold(problem.magnitude(&problem.fixed), |m, x| m.max(x.abs()));

@@ -10,12 +10,12 @@ use voussoir_core::limit::{Counters, JointForce, LimitProblem, Velocity};
 use voussoir_core::model::Wrenches;
 
 /// The first programs.
-const CLOSELY: usize = 36;
+const STRICT_PROGRAMS: usize = 36;
 /// Greatest number of programs.
-const PROGRAMS: usize = 120;
+const MAX_PROGRAMS: usize = 120;
 /// Number of programs solved at vertices before fields in the middle of the optimal ones are used. If the field is not
 /// unique, vertices may jump, but the middle changes continuously with the bounds.
-const CENTRES: usize = 48;
+const VERTEX_PROGRAMS: usize = 48;
 
 /// A state with the laws' own flow.
 #[derive(Debug, Clone)]
@@ -68,9 +68,9 @@ pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], co
     let mut vertices = Vertices::new(problem, &systems);
     let mut last = f64::NAN;
     let mut course = Course::default();
-    for step in 0..PROGRAMS {
+    for step in 0..MAX_PROGRAMS {
         *counters.entry("linear_programs".into()).or_default() += 1;
-        if step == CENTRES {
+        if step == VERTEX_PROGRAMS {
             vertices = None;
         }
         let vertex = vertices.as_mut().and_then(|vertices| vertices.greatest(problem, &systems, &reference, counters));
@@ -80,7 +80,7 @@ pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], co
             Greatest::Failed(why) => return Sequence::Open(format!("linear program {}: {why}", step + 1)),
             _ => return Sequence::Open(format!("linear program {} has no bound", step + 1)),
         };
-        let asked = if step < CLOSELY { SETTINGS.negligible } else { SETTINGS.closed };
+        let asked = if step < STRICT_PROGRAMS { SETTINGS.negligible } else { SETTINGS.closed };
         let steady = (factor - last).abs() <= asked * factor.abs().max(SETTINGS.closed * systems.unit);
         last = factor;
         let z = systems.force_variables(&field);
@@ -104,7 +104,7 @@ pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], co
         {
             return Sequence::Converged(FlowState { factor, field, motion });
         }
-        let share = share(if step < CENTRES { step } else { step - CENTRES });
+        let share = share(if step < VERTEX_PROGRAMS { step } else { step - VERTEX_PROGRAMS });
         for (old, new) in reference.iter_mut().zip(&field) {
             (0..2).for_each(|k| old.normal[k] += share * (new.normal[k] - old.normal[k]));
             old.shear += share * (new.shear - old.shear);
@@ -124,7 +124,7 @@ fn share(step: usize) -> f64 {
 }
 
 /// Number of last programs whose factors are reported if the sequence does not converge.
-const TOLD: usize = 20;
+const REPORTED_PROGRAMS: usize = 20;
 
 /// Results of the last programs of a sequence.
 #[derive(Default)]
@@ -142,7 +142,7 @@ impl Course {
 
     /// Returns the reason why the sequence did not converge.
     fn verdict(&self) -> String {
-        let last = &self.factors[self.factors.len().saturating_sub(TOLD)..];
+        let last = &self.factors[self.factors.len().saturating_sub(REPORTED_PROGRAMS)..];
         let low = last.iter().copied().fold(f64::INFINITY, f64::min);
         let high = last.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let reason = if high - low > SETTINGS.closed * high.abs() {
@@ -151,7 +151,7 @@ impl Course {
             format!("their factor stays at {high:.9} above the start, but fields and mechanisms there do not fit")
         };
         format!(
-            "the sequence of {PROGRAMS} linear programs did not converge: in the last {} {reason}; the last field violates \
+            "the sequence of {MAX_PROGRAMS} linear programs did not converge: in the last {} {reason}; the last field violates \
              yield by {:.1e} of the loads, and joints move that are {:.1e} short of it (both at most {:e} at a state)",
             last.len(),
             self.violation,
@@ -250,8 +250,8 @@ mod tests {
     /// Full steps come first, then shares that decrease to zero.
     #[test]
     fn shares_fall() {
-        let shares: Vec<f64> = (0..PROGRAMS).map(share).collect();
-        assert!(shares.is_sorted_by(|a, b| a >= b) && shares[0] == 1.0 && shares[PROGRAMS - 1] < 0.01);
+        let shares: Vec<f64> = (0..MAX_PROGRAMS).map(share).collect();
+        assert!(shares.is_sorted_by(|a, b| a >= b) && shares[0] == 1.0 && shares[MAX_PROGRAMS - 1] < 0.01);
     }
 
     /// The associated row of a joint that slides without dilatancy passes through the yield point of the reference: T ≤ μ N.

@@ -69,7 +69,7 @@ pub struct Kept {
 }
 
 /// Number of stored factors: from the start and the end of a step, and between.
-const HELD: usize = 4;
+const MAX_FACTORS: usize = 4;
 
 /// Factors kept for later solutions.
 #[derive(Default)]
@@ -88,7 +88,7 @@ impl LastFactors {
     /// Stores factors.
     pub fn hold(&mut self, kept: Kept) {
         self.held.push_front(Rc::new(kept));
-        self.held.truncate(HELD);
+        self.held.truncate(MAX_FACTORS);
     }
 
     /// Returns all stored factors.

@@ -48,7 +48,7 @@ pub struct Report {
 }
 
 /// Number of states with stored equations: the start and the end of a step, and between.
-const PLACES: usize = 4;
+const MAX_EQUATIONS: usize = 4;
 
 /// Results that are computed once for many iterations.
 #[derive(Default)]
@@ -246,7 +246,7 @@ impl<'a> StepSystem<'a> {
             };
             let equations = own.1.clone();
             self.cache.at.push_front(own);
-            self.cache.at.truncate(PLACES);
+            self.cache.at.truncate(MAX_EQUATIONS);
             return equations;
         }
         let linear = || {

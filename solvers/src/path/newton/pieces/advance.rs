@@ -18,7 +18,7 @@ use crate::settings::SETTINGS;
 /// Number of points between the ends of a step at which a cubic is evaluated.
 const SAMPLES: usize = 16;
 /// Greatest number of states that are computed to locate an event.
-const MOST_TRIALS: usize = 100;
+const MAX_TRIALS: usize = 100;
 
 /// A state of a piece at the end of a step.
 pub(super) struct StepEnd {
@@ -209,7 +209,7 @@ pub(super) fn advance(
 
 /// Moves from a state next to the end of a law's branch to this end.
 fn at_branch_end(step: &mut Step, low: Trial, mut high: Trial) -> Advance {
-    for _ in 0..MOST_TRIALS {
+    for _ in 0..MAX_TRIALS {
         let left = step.branch_crossing(&high.readings);
         if high.readings.iter().any(|own| own.of_branch && own.value <= own.tolerance) {
             let monitors = high.readings.len() - 2;
@@ -241,7 +241,7 @@ pub(super) fn first_crossing(readings: &[Reading]) -> f64 {
 fn locate(step: &mut Step, mut low: Trial, mut high: Trial) -> Advance {
     let whole = high.end.length;
     let mut last = f64::INFINITY;
-    for _ in 0..MOST_TRIALS {
+    for _ in 0..MAX_TRIALS {
         let width = high.end.length - low.end.length;
         if width <= SETTINGS.rounding * whole {
             break;

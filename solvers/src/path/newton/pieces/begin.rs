@@ -15,7 +15,7 @@ use crate::settings::SETTINGS;
 use voussoir_core::limit::Status;
 
 /// Shares of the load step at which a state is computed if no rate has been found.
-const AHEAD: [f64; 3] = [1e-6, 1e-4, 1e-2];
+const TRIAL_LOADS: [f64; 3] = [1e-6, 1e-4, 1e-2];
 
 /// Returns the first piece, or the ending if the load step ends at its start.
 pub(super) fn begin(tracer: &mut Tracer, target: f64, direction: f64) -> Result<Piece, LoadStepEnding> {
@@ -77,7 +77,7 @@ fn first_rate(tracer: &mut Tracer, target: f64, direction: f64) -> Result<Start,
         }
         LimitPointTest::Unknown(why) => why,
     };
-    for share in AHEAD {
+    for share in TRIAL_LOADS {
         let ahead =
             Control::Factor(factor + share * direction * (target - factor).abs().min(tracer.system.units().factor));
         let Ok((next, _)) = solve_step(&mut tracer.system, &state, state.clone(), &ahead) else { continue };

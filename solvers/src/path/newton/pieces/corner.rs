@@ -4,7 +4,7 @@
 //! whole, the path turns sharply, and a state beyond the corner is far from any predictor. Then the step ends at the
 //! corner, which the law alone locates along the tangent.
 
-use super::monitors::BISECTIONS;
+use super::monitors::MAX_BISECTIONS;
 use crate::path::newton::model::state::{State, Tangent, moved};
 use crate::path::newton::model::system::StepSystem;
 use crate::path::newton::quantities::inelastic::update_blocks;
@@ -21,7 +21,7 @@ pub(super) fn corner(system: &mut StepSystem, state: &State, rate: &Tangent, mos
     if yielding(far).is_some_and(|there| there == before) {
         return None;
     }
-    for _ in 0..BISECTIONS {
+    for _ in 0..MAX_BISECTIONS {
         let middle = 0.5 * (near + far);
         match yielding(middle) {
             Some(there) if there == before => near = middle,

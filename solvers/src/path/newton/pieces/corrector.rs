@@ -19,7 +19,7 @@ use crate::path::newton::solve::nearby::{Accuracy, solve};
 use crate::settings::SETTINGS;
 
 /// Number of iterations after which a shorter step is cheaper.
-const MOST: u32 = 12;
+const MAX_ITERATIONS: u32 = 12;
 
 /// Computes the state on the piece that starts at `start`, from a guess with its modes. `None` without convergence.
 pub(super) fn correct(system: &mut StepSystem, start: &State, guess: State, control: &Control) -> Option<State> {
@@ -29,7 +29,7 @@ pub(super) fn correct(system: &mut StepSystem, start: &State, guess: State, cont
     let mut last = f64::INFINITY;
     let mut whole = true;
     let mut linearised = LinearisedAt::of(start, system.limits.nearby);
-    for iteration in 0..MOST {
+    for iteration in 0..MAX_ITERATIONS {
         let mut residual = residual_of(system, start, &state, &gradient);
         *residual.last_mut()? = control_value(system, start, &state, control);
         let norm = relative_residual(system, &residual, &state);

@@ -34,13 +34,13 @@ use voussoir_core::limit::Status;
 use voussoir_core::path::{Branching, LimitPointEnd, LoadStep, LoadStepEnd, ProvenPeak};
 
 /// Greatest number of pieces and steps of a load step.
-const MOST_STEPS: u64 = 6000;
+const MAX_STEPS: u64 = 6000;
 /// Greatest number of iterations of Newton's method of a load step.
-const MOST_ITERATIONS: u64 = 20_000;
+const MAX_ITERATIONS: u64 = 20_000;
 /// Lengths of steps across a corner, relative to the first step.
-const ACROSS: [f64; 4] = [1e-4, 1e-3, 1e-5, 1e-6];
+const CORNER_STEPS: [f64; 4] = [1e-4, 1e-3, 1e-5, 1e-6];
 /// Greatest number of successive pieces of almost zero length.
-const MOST_SHORT_PIECES: u32 = 50;
+const MAX_SHORT_PIECES: u32 = 50;
 
 type Ending = Option<LoadStepEnding>;
 
@@ -108,11 +108,11 @@ pub fn follow(tracer: &mut Tracer, load_step: &LoadStep, target: f64) -> LoadSte
         Err(ending) => return ending,
     };
     let before = tracer.system.report.iterations;
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_STEPS {
         if let Some(ending) = run.step(tracer) {
             return ending;
         }
-        if tracer.system.report.iterations - before > MOST_ITERATIONS {
+        if tracer.system.report.iterations - before > MAX_ITERATIONS {
             break;
         }
     }
@@ -260,7 +260,7 @@ impl<'d> Run<'d> {
     /// and branches may change in it. `None` if there is no such step.
     fn across(&mut self, tracer: &mut Tracer, facing: &State, piece: &Piece) -> Option<Ending> {
         let here = tracer.state.clone();
-        let (length, next, rate) = ACROSS.iter().map(|share| share * self.length.first).find_map(|length| {
+        let (length, next, rate) = CORNER_STEPS.iter().map(|share| share * self.length.first).find_map(|length| {
             let control = piece.control(length);
             let guess = moved(facing, &piece.tangent, length);
             let (next, _) = solve_step(&mut tracer.system, &here, guess, &control).ok()?;
@@ -286,7 +286,7 @@ impl<'d> Run<'d> {
     /// Counts a piece of almost zero length; returns true if there are too many of them.
     fn crowded(&mut self) -> bool {
         self.cluster.pieces += 1;
-        self.cluster.pieces > MOST_SHORT_PIECES
+        self.cluster.pieces > MAX_SHORT_PIECES
     }
 
     /// Accepts a state of the piece. `None` if the step must be repeated or the path ends.

@@ -15,9 +15,9 @@ use crate::path::newton::solve::tangent::tangent_of_modes;
 use crate::settings::SETTINGS;
 
 /// Greatest number of successive loading sets.
-const MOST_SETS: usize = 30;
+const MAX_SETS: usize = 30;
 /// Greatest number of combinations of tangents that are tried if the sets do not converge.
-const MOST_COMBINATIONS: usize = 256;
+const MAX_COMBINATIONS: usize = 256;
 
 /// A rate with the state that has its tangents.
 pub(super) struct LoadingRate {
@@ -60,7 +60,7 @@ pub(super) fn bond_rate(system: &mut StepSystem, state: &State, arrival: &Piece)
     }
     let mut along = Unit::of(system, &arrival.tangent)?;
     let mut seen: Vec<State> = Vec::new();
-    for _ in 0..MOST_SETS {
+    for _ in 0..MAX_SETS {
         let facing = facing_ahead(system, state, &along.rate)?;
         let found = rate_of(system, &facing, &arrival.row)?;
         let found = with_load(system, state, found);
@@ -128,7 +128,7 @@ fn combined(system: &mut StepSystem, state: &State, arrival: &Piece, seen: &[Sta
     let active: Vec<(Vec<usize>, Vec<usize>)> =
         joints.into_iter().map(options).filter(|(_, own)| own.len() > 1).collect();
     let count = active.iter().fold(1usize, |n, (_, own)| n.saturating_mul(own.len()));
-    if count > MOST_COMBINATIONS {
+    if count > MAX_COMBINATIONS {
         return None;
     }
     let mut best: Option<(f64, LoadingRate)> = None;

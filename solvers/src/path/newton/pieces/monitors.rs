@@ -21,9 +21,9 @@ use crate::settings::SETTINGS;
 use voussoir_core::law::{FacetMode, UpdateBranch};
 
 /// Greatest number of doublings of a length in the search for the end of a branch.
-const DOUBLINGS: usize = 40;
+const MAX_DOUBLINGS: usize = 40;
 /// Number of bisections between two of them.
-pub(super) const BISECTIONS: usize = 50;
+pub(super) const MAX_BISECTIONS: usize = 50;
 
 /// The quantity of a monitor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -190,14 +190,14 @@ impl Monitor {
         let inside = at_start || state.updates.points[self.contact].branch == branch || is_in(far);
         let sense = if inside { 1.0 } else { -1.0 };
         let mut near = 0.0;
-        let changed = (0..DOUBLINGS).any(|_| {
+        let changed = (0..MAX_DOUBLINGS).any(|_| {
             let changes = is_in(sense * far) != inside;
             if !changes {
                 (near, far) = (far, 2.0 * far);
             }
             changes
         });
-        for _ in 0..if changed { BISECTIONS } else { 0 } {
+        for _ in 0..if changed { MAX_BISECTIONS } else { 0 } {
             let middle = 0.5 * (near + far);
             if is_in(sense * middle) == inside {
                 near = middle

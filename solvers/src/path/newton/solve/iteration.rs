@@ -21,12 +21,12 @@ use std::rc::Rc;
 
 /// Number of contact points with wrong modes above which an iteration is given up, if the number was eight times
 /// smaller before, twice in succession: it has left the neighbourhood of a solution.
-const ASTRAY: usize = 200;
+const MAX_WRONG_MODES: usize = 200;
 
 /// Greatest number of changing points that may be in a cycle.
-const FEW: usize = 4;
+const MAX_CYCLING_POINTS: usize = 4;
 /// Greatest number of iterations with a line search.
-const SEARCHED: u64 = 30;
+const MAX_SEARCHED_ITERATIONS: u64 = 30;
 
 /// Newton's method from a guess. All modes may change at once `patience` times without a decrease of their number.
 /// Returns the result and the number of iterations.
@@ -46,7 +46,7 @@ pub fn iterate(
     let mut changes = ModeChanges::new(patience, cycle);
     let (mut unsolved, mut last_norm, mut whole) = (0, f64::INFINITY, true);
     let mut linearised = LinearisedAt::of(start, system.limits.nearby && search.is_none());
-    let most = if search.is_some() { iterations.min(SEARCHED) } else { iterations };
+    let most = if search.is_some() { iterations.min(MAX_SEARCHED_ITERATIONS) } else { iterations };
     for iteration in 0..most {
         let mut residual = residual_of(system, start, &state, &gradient);
         let last = residual.len() - 1;
@@ -216,14 +216,14 @@ impl ModeChanges {
         self.wanted = wanted;
         let count = self.differ.len();
         self.changed = count > 0 || !holds;
-        self.astray = if count > ASTRAY && count / 8 > self.fewest { self.astray + 1 } else { 0 };
+        self.astray = if count > MAX_WRONG_MODES && count / 8 > self.fewest { self.astray + 1 } else { 0 };
         self.without_gain = if count < self.least { 0 } else { self.without_gain + 1 };
         self.least = self.least.min(count);
     }
 
     /// Returns true if the iteration has left the neighbourhood of a solution, or if few points cycle.
     fn hopeless(&self) -> bool {
-        let cycles = self.changed && self.least <= FEW && self.without_gain >= self.cycle;
+        let cycles = self.changed && self.least <= MAX_CYCLING_POINTS && self.without_gain >= self.cycle;
         self.astray > 1 || cycles
     }
 

@@ -25,7 +25,7 @@ use voussoir_core::law::FacetMode;
 use voussoir_core::linear::{Entries, SparseLu};
 
 /// Greatest number of linear programs of a search.
-const MOST: u64 = 20_000;
+const MAX_PROGRAMS: u64 = 20_000;
 
 /// The active set of a state.
 pub struct ActiveSet {
@@ -57,7 +57,7 @@ pub fn limit_point_test(system: &mut StepSystem, state: &State, direction: f64) 
         return LimitPointTest::Unknown(format!("the stiffness of {count} facets of the active set was not found"));
     };
     let mut programs = 0;
-    let found = rising_rate(&rate_problem(system, &active, &responses), MOST, &mut programs);
+    let found = rising_rate(&rate_problem(system, &active, &responses), MAX_PROGRAMS, &mut programs);
     system.count("rate_programs", programs);
     match found {
         RisingRate::None => LimitPointTest::None,

@@ -23,9 +23,9 @@ use std::collections::btree_map::Entry;
 use std::rc::Rc;
 
 /// Greatest number of points with other modes for which factors count as near.
-const MOST_CHANGED: usize = 6;
+const MAX_CHANGED_POINTS: usize = 6;
 /// Greatest number of refinements.
-const MOST_REFINEMENTS: usize = 8;
+const MAX_REFINEMENTS: usize = 8;
 
 /// Factors, with the equations to solve.
 struct Nearby<'k> {
@@ -82,7 +82,7 @@ fn solve_nearby(
     }
     let changed = |kept: &Kept| (0..state.mode.len()).filter(|c| kept.modes[*c] != state.mode[*c]).collect::<Vec<_>>();
     let serving = all_kept(system).filter(|kept| kept.held.serves(control));
-    let counted = serving.map(|kept| (changed(kept), kept)).filter(|(changed, _)| changed.len() <= MOST_CHANGED);
+    let counted = serving.map(|kept| (changed(kept), kept)).filter(|(changed, _)| changed.len() <= MAX_CHANGED_POINTS);
     let nearest = counted.min_by_key(|(changed, kept)| (!Rc::ptr_eq(&kept.equations, equations), changed.len()));
     let (changed, kept) = nearest.map(|(changed, kept)| (changed, kept.clone()))?;
     let ModeEquations::Chain(factors) = kept.held.equations() else { return None };
@@ -160,7 +160,7 @@ impl<'k> Nearby<'k> {
         let norm = |v: &[f64]| v.iter().map(|x| x.abs()).fold(0.0, f64::max);
         let aim = norm(right);
         let (mut x, mut rest, mut before) = (vec![0.0; right.len()], right.to_vec(), aim);
-        for _ in 0..MOST_REFINEMENTS {
+        for _ in 0..MAX_REFINEMENTS {
             let step = self.apply(&rest)?;
             x.iter_mut().zip(&step).for_each(|(x, step)| *x += step);
             rest = self.rows.left(right, &x);

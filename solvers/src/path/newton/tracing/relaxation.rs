@@ -23,9 +23,9 @@ use crate::path::stability::SecondOrderWork;
 use crate::settings::SETTINGS;
 
 /// Greatest number of steps of a descent.
-const MOST_STEPS: usize = 400;
+const MAX_STEPS: usize = 400;
 /// Greatest number of successive increases of the damping.
-const MOST_FAILURES: u32 = 12;
+const MAX_FAILURES: u32 = 12;
 
 /// The end of a descent.
 pub struct Relaxation {
@@ -61,14 +61,14 @@ fn descent(system: &mut StepSystem, from: &State, work: &SecondOrderWork, sense:
     let mut rate = (2.0 * work.curvature.abs()).max(SETTINGS.same_rate());
     let (mut state, mut dissipated, mut failures) = (from.clone(), 0.0, 0);
     let mut last_moved = f64::INFINITY;
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_STEPS {
         system.loads.damping = Some(Damping { rate, from: anchor.clone() });
         let found = iterate(system, &state, state.clone(), &control, 8, None);
         system.count("relaxation_steps", 1);
         let Ok((mut next, iterations)) = found else {
             failures += 1;
             rate *= 4.0;
-            if failures > MOST_FAILURES {
+            if failures > MAX_FAILURES {
                 return None;
             }
             continue;
