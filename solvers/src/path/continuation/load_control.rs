@@ -33,13 +33,7 @@ impl Continuation for LoadControl {
         false
     }
 
-    fn first_step(&self) -> f64 {
-        self.first_step
-    }
-
-    fn largest_step(&self) -> f64 {
-        self.largest_step.unwrap_or(f64::INFINITY)
-    }
+    step_lengths!();
 }
 
 voussoir_core::inventory::submit! {

@@ -4,6 +4,19 @@
 //! not depend on the unit system (see [`Increment`](voussoir_core::path::Increment)). The solver
 //! keeps the length of the step.
 
+/// Implements the lengths of steps by the keys `first_step` and `largest_step`.
+macro_rules! step_lengths {
+    () => {
+        fn first_step(&self) -> f64 {
+            self.first_step
+        }
+
+        fn largest_step(&self) -> f64 {
+            self.largest_step.unwrap_or(f64::INFINITY)
+        }
+    };
+}
+
 pub mod arc_length;
 pub mod crack_opening;
 pub mod displacement_control;

@@ -63,8 +63,12 @@ pub(super) struct Reading {
 
 impl Reading {
     /// The reading of a mode that does not end.
-    pub const NEVER: Reading =
-        Reading { value: 1.0, rate: None, tolerance: 0.0, rate_tolerance: 0.0, of_branch: false };
+    pub const NEVER: Reading = Reading::of(1.0, None, [0.0; 2]);
+
+    /// Creates the reading of a value and its rate, with the tolerances of both.
+    const fn of(value: f64, rate: Option<f64>, [tolerance, rate_tolerance]: [f64; 2]) -> Self {
+        Reading { value, rate, tolerance, rate_tolerance, of_branch: false }
+    }
 
     /// Returns true if the mode has ended.
     pub fn is_violated(&self) -> bool {
@@ -209,7 +213,7 @@ impl Monitor {
             }
         }
         let value = sense * near;
-        Reading { value, rate: Some(-1.0), tolerance, rate_tolerance: 0.0, of_branch: true }
+        Reading { of_branch: true, ..Reading::of(value, Some(-1.0), [tolerance, 0.0]) }
     }
 
     fn read(&self, system: &StepSystem, (start, state): (&State, &State), tangent: &Tangent, sizes: &Sizes) -> Reading {
@@ -220,45 +224,23 @@ impl Monitor {
             What::Slack(f) => {
                 let facet = &facets[f as usize];
                 let unit = norm(facet.normal);
-                Reading {
-                    value: slack(facet, state.force[c], system.problem.contacts[c].area) / unit,
-                    rate: Some(-dot(facet.normal, tangent.force[c]) / unit),
-                    tolerance: sizes.force,
-                    rate_tolerance: sizes.force_rate,
-                    of_branch: false,
-                }
+                let value = slack(facet, state.force[c], system.problem.contacts[c].area) / unit;
+                let rate = -dot(facet.normal, tangent.force[c]) / unit;
+                Reading::of(value, Some(rate), [sizes.force, sizes.force_rate])
             }
             What::Opening => {
                 let gap = system.step_gap(state, state, c);
                 let sense = if gap[1] == 0.0 { rate[1] } else { gap[1] }.signum();
                 let by = mode.opening(facets, sense);
-                Reading {
-                    value: dot(by, gap),
-                    rate: Some(dot(by, rate)),
-                    tolerance: sizes.gap,
-                    rate_tolerance: sizes.gap_rate,
-                    of_branch: false,
-                }
+                Reading::of(dot(by, gap), Some(dot(by, rate)), [sizes.gap, sizes.gap_rate])
             }
             What::Face { forward } => {
                 let [low, high] = system.problem.contacts[c].sliding.slip;
                 let slip = state.gap[c][1];
                 let (value, rate) = if forward { (high - slip, -rate[1]) } else { (slip - low, rate[1]) };
-                Reading {
-                    value,
-                    rate: Some(rate),
-                    tolerance: sizes.gap,
-                    rate_tolerance: sizes.gap_rate,
-                    of_branch: false,
-                }
+                Reading::of(value, Some(rate), [sizes.gap, sizes.gap_rate])
             }
-            What::Flow(k) => Reading {
-                value: mode.unknowns(facets, rate)[k as usize],
-                rate: None,
-                tolerance: sizes.gap_rate,
-                rate_tolerance: sizes.gap_rate,
-                of_branch: false,
-            },
+            What::Flow(k) => Reading::of(mode.unknowns(facets, rate)[k as usize], None, [sizes.gap_rate; 2]),
             What::Branch(branch) => self.read_branch(system, (start, state), rate, branch, sizes),
         }
     }
