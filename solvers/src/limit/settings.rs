@@ -16,6 +16,9 @@ macro_rules! tolerances {
         }
 
         impl LimitSettings {
+            #[cfg(test)]
+            const NAMES: &[&str] = &[$(stringify!($share),)* $(stringify!($ratio),)*];
+
             /// Derives all tolerances from three of them.
             pub const fn derived($($given: f64),*) -> Self {
                 LimitSettings { $($share: $share_value,)* $($ratio: $ratio_value,)* }
@@ -148,10 +151,11 @@ impl LimitSettings {
 mod tests {
     use super::*;
 
-    /// The tolerances in use are consistent. Certificates allow twice the errors that these tolerances accept.
+    /// The tolerances in use are consistent, and at most forty. Certificates allow twice the errors that these tolerances accept.
     #[test]
     fn the_tolerances_in_use_are_valid() {
         assert_eq!(SETTINGS.validated(), Ok(SETTINGS));
+        assert!(LimitSettings::NAMES.len() <= 40);
         const { assert!(SETTINGS.carried <= 0.5 * voussoir_core::certificate::ROUNDING) };
     }
 

@@ -457,23 +457,14 @@ impl<'a> Program<'a> {
         }
         merged.retain(|(column, _)| !matches!(column, Column::Artificial { .. }));
         if merged.iter().any(|(column, _)| matches!(column, Column::Tangent { .. })) {
-            // Rows with zero multipliers may be active by chance; with too few rows the system is singular.
-            let mut failed = String::new();
-            let found = [SETTINGS.negligible, f64::NEG_INFINITY].iter().find_map(|&least| {
-                let mut trial: Vec<_> = merged.iter().copied().filter(|(_, weight)| *weight > least).collect();
-                let mut moved = point.clone();
-                match self.newton(&mut moved, &mut trial, work) {
-                    Ok(()) => Some((moved, trial)),
-                    Err(why) => {
-                        failed = why;
-                        None
-                    }
-                }
-            });
-            match found {
-                Some((moved, trial)) => (point, merged) = (moved, trial),
-                None if last => {}
-                None => return Outcome::Failed(failed),
+            // Rows with zero multipliers may be active by chance.
+            let mut trial: Vec<_> =
+                merged.iter().copied().filter(|(_, weight)| *weight > SETTINGS.negligible).collect();
+            let mut moved = point.clone();
+            match self.newton(&mut moved, &mut trial, work) {
+                Ok(()) => (point, merged) = (moved, trial),
+                Err(_) if last => {}
+                Err(why) => return Outcome::Failed(why),
             }
         }
         let capped = merged.iter().any(|&(column, weight)| column == Column::Cap && weight > SETTINGS.active);

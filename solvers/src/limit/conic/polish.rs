@@ -4,26 +4,18 @@
 //! the system singular but consistent. It is therefore regularised by ±δ and iterated, which converges to the solution
 //! nearest to the start.
 //!
-//! First, all rows enter and leave at once, by the signs of slacks and multipliers. This may not converge, for example
-//! on rings with many joints, whose slacks near a hinge are about 1e-9. Then single rows are exchanged as in the dual
-//! simplex method: the most violated row enters, and the row whose multiplier first becomes zero leaves.
+//! Rows enter and leave by the signs of slacks and multipliers.
 
 use super::interior_point::Pair;
 use super::system::System;
 use crate::limit::equilibrium::Row;
 use crate::limit::settings::SETTINGS;
-use crate::linear::inner;
 use voussoir_core::linear::{Entries, SparseLdlt};
 
 /// Least factor, in its unit, to which a gap is related.
 const LEAST_FACTOR: f64 = 1e-3;
-/// If residuals decrease by a ratio in this range from step to step, the geometric series of the steps is summed.
-const SERIES_RATIO_MIN: f64 = 0.5;
-const SERIES_RATIO_MAX: f64 = 1.0 - 1e-6;
-/// Number of steps without gain after which the iteration stops; one of three may be a sum that went too far.
+/// Number of steps without gain after which the iteration stops.
 const MAX_STEPS_WITHOUT_GAIN: usize = 4;
-/// Greatest number of single exchanges of rows.
-const MAX_EXCHANGES: usize = 40;
 
 /// A polished pair.
 pub struct Polished {
@@ -89,7 +81,7 @@ fn polish_with(system: &System, approximate: &Pair, delta: f64) -> Option<Polish
         (0..system.rows.len()).map(Item::Row).chain((0..system.blocks.len()).map(Item::Block)).collect();
     let mut active: Vec<bool> =
         items.iter().map(|&item| multiplier(approximate, item) > -value(system, item, &approximate.x)).collect();
-    let mut best: Option<(Polished, Vec<Item>)> = None;
+    let mut best: Option<Polished> = None;
     let (mut factorisations, mut iterations) = (0, 0);
     for _ in 0..6 {
         let chosen: Vec<Item> = items.iter().zip(&active).filter(|(_, a)| **a).map(|(item, _)| *item).collect();
@@ -113,24 +105,15 @@ fn polish_with(system: &System, approximate: &Pair, delta: f64) -> Option<Polish
                 changed = true;
             }
         }
-        if best.as_ref().is_none_or(|(b, _)| error < b.error) {
+        if best.as_ref().is_none_or(|b| error < b.error) {
             let unique = !has_kernel(system, &chosen, &pair, scale, delta).unwrap_or(true);
-            best = Some((Polished { pair, error, unique, factorisations, iterations }, chosen));
+            best = Some(Polished { pair, error, unique, factorisations, iterations });
         }
-        if !changed || best.as_ref().is_some_and(|(b, _)| b.error < SETTINGS.rounding) {
+        if !changed || best.as_ref().is_some_and(|b| b.error < SETTINGS.rounding) {
             break;
         }
     }
-    let (mut best, chosen) = best?;
-    if best.error > SETTINGS.admissible
-        && let Some(exchanged) = exchanged(system, &best.pair, (&items, &chosen), delta)
-    {
-        factorisations += exchanged.factorisations;
-        iterations += exchanged.iterations;
-        if exchanged.error < best.error {
-            best = exchanged;
-        }
-    }
+    let best = best?;
     let error = best.error.max(gap(system, &best.pair) / best.pair.x[system.theta].abs().max(LEAST_FACTOR));
     Some(Polished { factorisations, iterations, error, ..best })
 }
@@ -146,57 +129,6 @@ fn gap(system: &System, pair: &Pair) -> f64 {
 
 fn greatest_multiplier(pair: &Pair) -> f64 {
     pair.rows.iter().chain(&pair.blocks).fold(1.0f64, |m, y| m.max(y.abs()))
-}
-
-/// Exchanges single rows, starting from the active rows with positive multipliers, until no row is violated. `None` if
-/// this does not end.
-fn exchanged(system: &System, start: &Pair, (items, active): (&[Item], &[Item]), delta: f64) -> Option<Polished> {
-    let scale = greatest_multiplier(start);
-    let mut chosen: Vec<Item> =
-        active.iter().copied().filter(|item| multiplier(start, *item) > 1e-10 * scale).collect();
-    let (mut pair, mut factorisations, mut iterations) = (start.clone(), 0, 0);
-    for _ in 0..MAX_EXCHANGES {
-        let within: Vec<bool> = items.iter().map(|item| chosen.contains(item)).collect();
-        let mut newton = Newton { system, active: &chosen, pair: clipped(&pair, items, &within), delta };
-        let work = newton.run()?;
-        factorisations += work.0;
-        iterations += work.1;
-        pair = newton.pair;
-        let scale = greatest_multiplier(&pair);
-        let least = chosen.iter().copied().min_by(|a, b| multiplier(&pair, *a).total_cmp(&multiplier(&pair, *b)))?;
-        let negative = (-multiplier(&pair, least) / scale).max(0.0);
-        if negative > SETTINGS.rounding {
-            chosen.retain(|item| *item != least);
-            continue;
-        }
-        let outside = items.iter().zip(&within).filter(|(_, within)| !**within).map(|(item, _)| *item);
-        let violated = outside.max_by(|a, b| value(system, *a, &pair.x).total_cmp(&value(system, *b, &pair.x)))?;
-        let violation = value(system, violated, &pair.x).max(0.0);
-        if violation <= SETTINGS.rounding {
-            let error = work.2.max(negative).max(violation);
-            let unique = !has_kernel(system, &chosen, &pair, scale, delta).unwrap_or(true);
-            return Some(Polished { pair, error, unique, factorisations, iterations });
-        }
-        let leaving = leaving(system, &pair, &chosen, violated, delta)?;
-        factorisations += 1;
-        chosen.retain(|item| *item != leaving);
-        chosen.push(violated);
-    }
-    None
-}
-
-/// Returns the active row whose multiplier first becomes zero when the multiplier of the entering row grows. The
-/// gradient of the entering row is a sum of equations and active rows, so their multipliers decrease.
-fn leaving(system: &System, pair: &Pair, chosen: &[Item], entering: Item, delta: f64) -> Option<Item> {
-    let rows = gradients(system, chosen, &pair.x);
-    let (n, e) = (system.variables, system.equations.len());
-    let factorised = SparseLdlt::new(n + e + rows.len(), n, &saddle(system, &rows, delta))?;
-    let mut right = vec![0.0; n + e + rows.len()];
-    gradients(system, &[entering], &pair.x)[0].iter().for_each(|&(j, v)| right[j] = v);
-    let shares = factorised.solve(&right)?;
-    let relieved = chosen.iter().zip(&shares[n + e..]).filter(|(_, share)| **share > 1e-9);
-    let steps = relieved.map(|(item, share)| (*item, multiplier(pair, *item).max(0.0) / share));
-    steps.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(item, _)| item)
 }
 
 /// Returns the pair with zero multipliers of inactive rows.
@@ -251,12 +183,10 @@ impl Newton<'_> {
         let (mut factorisations, mut iterations) = (0, 0);
         let mut best = (f64::INFINITY, self.pair.clone());
         let mut without_gain = 0;
-        let (mut last, mut further) = (f64::INFINITY, false);
         loop {
             let gradients = self.gradients();
             let residual = self.residual(&gradients);
             let error = residual.iter().fold(0.0f64, |m, r| m.max(r.abs()));
-            let size = inner(&residual, &residual).sqrt();
             if error < 0.5 * best.0 {
                 without_gain = 0;
             } else {
@@ -272,16 +202,8 @@ impl Newton<'_> {
                 factorised = Some(SparseLdlt::new(residual.len(), n, &self.matrix(&gradients))?);
                 factorisations += 1;
             }
-            let mut step = factorised.as_ref()?.solve(&residual)?;
+            let step = factorised.as_ref()?.solve(&residual)?;
             iterations += 1;
-            // Along a direction as soft as the regularisation, residuals decrease by the same ratio in every step:
-            // two steps give the sum of the series.
-            let share = size / last;
-            further = !further && (SERIES_RATIO_MIN..SERIES_RATIO_MAX).contains(&share);
-            if further {
-                step.iter_mut().for_each(|s| *s /= 1.0 - share);
-            }
-            last = if further { f64::INFINITY } else { size };
             (0..n).for_each(|j| self.pair.x[j] -= step[j]);
             (0..e).for_each(|i| self.pair.equations[i] -= step[n + i]);
             for (k, item) in self.active.iter().enumerate() {

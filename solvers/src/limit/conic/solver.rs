@@ -19,9 +19,6 @@ use voussoir_core::limit::{
 use voussoir_core::model::Wrenches;
 use voussoir_core::plugin::{Capability, Card, Keys, PluginKind};
 
-/// If the polish does not converge, other units of force are tried in scenes with at most this many bodies.
-const MAX_BODIES_FOR_OTHER_UNITS: usize = 500;
-
 /// Limit analysis of any scene.
 #[derive(Debug, Clone, Default, Keys)]
 pub struct LimitConic {}
@@ -92,13 +89,6 @@ struct Tried {
     unsettled: Option<Greatest>,
     /// The reason if there is no answer.
     failed: String,
-}
-
-impl Tried {
-    /// Returns true if another unit may improve the result.
-    fn may_gain(&self) -> bool {
-        self.best.as_ref().map_or(self.unsettled.is_some(), |best| best.0 > SETTINGS.admissible)
-    }
 }
 
 /// Returns the least strength of a joint \[N\]; infinite if no joint has a finite strength.
@@ -331,12 +321,6 @@ impl Engine for ConicEngine<'_> {
         let weakest = weakest(self.problem);
         if tried.best.is_none() && weakest.is_finite() && weakest > force * SETTINGS.strong {
             self.attempt(question, weakest, &mut tried);
-        }
-        // Another unit changes the path of the interior point; the polish may converge from its end.
-        for scale in [0.1, 10.0].into_iter().filter(|_| self.problem.groups <= MAX_BODIES_FOR_OTHER_UNITS) {
-            if tried.may_gain() {
-                self.attempt(question, force * scale, &mut tried);
-            }
         }
         if !linear
             && tried.best.is_none()
