@@ -6,7 +6,8 @@
 
 use super::inelastic::{InelasticBody, Strains};
 use super::mesh::MeshDensity;
-use super::shape::{Placement, Response, Shape, agree, placed};
+use super::shape::{Form, Placement, Response, Shape, agree, placed};
+use super::shared;
 use super::stress::{Recovered, recovered};
 use crate::law::{Elasticity, PlanarUpdate, Plane, PlaneElasticity};
 use crate::model::geometry::Vec2;
@@ -29,7 +30,8 @@ pub struct Condensed {
 
 /// A shape with its computed quantities.
 struct Known {
-    shape: Arc<Shape>,
+    form: Form,
+    shape: Option<Arc<Shape>>,
     /// Flexibilities by local points.
     condensed: Vec<(Vec<Vec2>, Arc<DMatrix<f64>>)>,
     /// Strains at the quadrature points.
@@ -39,12 +41,27 @@ struct Known {
 }
 
 impl Known {
+    /// Returns the shape, which is meshed and factorised when it is needed first.
+    fn shape(&mut self) -> Result<Arc<Shape>, String> {
+        match &self.shape {
+            Some(shape) => Ok(shape.clone()),
+            None => Ok(self.shape.insert(Arc::new(Shape::new(&self.form)?)).clone()),
+        }
+    }
+
     /// Returns C̃ of points given in the frame of the shape.
     fn flexibility(&mut self, local: Vec<Vec2>, asked: &[Vec2]) -> Result<Arc<DMatrix<f64>>, String> {
         if let Some((_, flexibility)) = self.condensed.iter().find(|(points, _)| agree(points, &local)) {
             return Ok(flexibility.clone());
         }
-        let flexibility = Arc::new(self.shape.flexibility(&self.shape.places(&local, asked)?)?);
+        let form = self.form.clone();
+        let flexibility = shared::local(&form, &local, || {
+            let shape = self.shape()?;
+            let begins = |points: &[Vec2]| local.get(..points.len()).is_some_and(|first| agree(points, first));
+            let known = self.condensed.iter().find(|(points, _)| begins(points));
+            let known = known.map_or_else(|| Arc::new(DMatrix::zeros(0, 0)), |(_, known)| known.clone());
+            shape.flexibility(&shape.places(&local, asked)?, &known)
+        })?;
         self.condensed.push((local, flexibility.clone()));
         Ok(flexibility)
     }
@@ -59,40 +76,30 @@ pub struct Condenser {
     shapes: Vec<Known>,
     /// Indices of shapes by a rounded logarithm of their area.
     by_area: HashMap<i64, Vec<usize>>,
-    factorisations: u64,
 }
 
 impl Condenser {
     /// Creates a condenser for bodies of this width \[m\].
     pub fn new(plane: Plane, width: f64) -> Self {
-        Condenser { plane, width, shapes: Vec::new(), by_area: HashMap::new(), factorisations: 0 }
+        Condenser { plane, width, shapes: Vec::new(), by_area: HashMap::new() }
     }
 
-    /// Returns the number of factorised meshes.
+    /// Returns the number of different shapes: each has a mesh and its factorisation.
     pub fn factorisations(&self) -> u64 {
-        self.factorisations
+        self.shapes.len() as u64
     }
 
-    /// Returns the index of the shape of a body and creates the shape if necessary.
-    fn shape(
-        &mut self,
-        placement: &Placement,
-        elasticity: &Elasticity,
-        mesh: &MeshDensity,
-        strains: bool,
-    ) -> Result<usize, String> {
-        let elasticity = PlaneElasticity::new(elasticity, self.plane);
-        let area = (placement.size.ln() * 1e6).floor() as i64;
+    /// Returns the index of a shape.
+    fn shape(&mut self, form: Form) -> usize {
+        let area = (form.size.ln() * 1e6).floor() as i64;
         let near = (area - 1..=area + 1).filter_map(|key| self.by_area.get(&key)).flatten();
-        let known = |index: usize| self.shapes[index].shape.is(placement, &elasticity, mesh, strains);
-        if let Some(&index) = near.into_iter().find(|&&index| known(index)) {
-            return Ok(index);
+        if let Some(&index) = near.into_iter().find(|&&index| self.shapes[index].form.is_congruent(&form)) {
+            return index;
         }
-        let shape = Arc::new(Shape::new(placement, elasticity, mesh, self.plane, strains)?);
-        self.shapes.push(Known { shape, condensed: Vec::new(), strains: None, responses: Vec::new() });
-        self.factorisations += 1;
+        let (condensed, responses) = (Vec::new(), Vec::new());
+        self.shapes.push(Known { form, shape: None, condensed, strains: None, responses });
         self.by_area.entry(area).or_default().push(self.shapes.len() - 1);
-        Ok(self.shapes.len() - 1)
+        self.shapes.len() - 1
     }
 
     fn prepare(
@@ -109,7 +116,10 @@ impl Condenser {
             return Err(format!("a body's width is greater than 0, not {} m", self.width));
         }
         let placement = Placement::new(vertices)?;
-        let shape = self.shape(&placement, elasticity, mesh, strains && mesh.order == 1)?;
+        let (vertices, size, density, plane) = (placement.local.clone(), placement.size, *mesh, self.plane);
+        let elasticity = PlaneElasticity::new(elasticity, plane);
+        let of_strains = strains && mesh.order == 1;
+        let shape = self.shape(Form { vertices, size, density, elasticity, plane, of_strains });
         let local = points.iter().map(|&p| placement.local(p)).collect();
         Ok((placement, shape, local))
     }
@@ -123,10 +133,26 @@ impl Condenser {
         mesh: &MeshDensity,
         points: &[Vec2],
     ) -> Result<Condensed, String> {
+        let flexibility = Arc::unwrap_or_clone(self.flexibility(vertices, elasticity, mesh, points)?);
+        Ok(Condensed { points: points.to_vec(), flexibility })
+    }
+
+    /// The same, but returns only C, which is shared (see [`SharedFlexibilities`](super::SharedFlexibilities)).
+    ///
+    /// # Errors
+    /// Names the fault of the body, its mesh or a point.
+    pub fn flexibility(
+        &mut self,
+        vertices: &[Vec2],
+        elasticity: &Elasticity,
+        mesh: &MeshDensity,
+        points: &[Vec2],
+    ) -> Result<Arc<DMatrix<f64>>, String> {
         let (placement, index, local) = self.prepare(vertices, elasticity, mesh, points, false)?;
         let flexibility = self.shapes[index].flexibility(local, points)?;
-        let turned = placed(&flexibility, placement.rotation, 1.0 / (elasticity.modulus * self.width), true);
-        Ok(Condensed { points: points.to_vec(), flexibility: turned })
+        let (rotation, scale) = (placement.rotation, 1.0 / (elasticity.modulus * self.width));
+        let turned = || placed(&flexibility, rotation, scale, true);
+        Ok(shared::placed(&flexibility, (rotation, scale), turned))
     }
 
     /// Condenses a body whose material yields. Before yielding its flexibility is the flexibility of
@@ -145,22 +171,22 @@ impl Condenser {
         let (placement, index, local) = self.prepare(vertices, elasticity, mesh, points, true)?;
         let (plane, width) = (self.plane, self.width);
         let known = &mut self.shapes[index];
+        let shape = known.shape()?;
         let flexibility = known.flexibility(local.clone(), points)?;
         let scale = 1.0 / (elasticity.modulus * width);
         let flexibility = Arc::new(placed(&flexibility, placement.rotation, scale, true));
-        let strains = known.strains.get_or_insert_with(|| Arc::new(Strains::new(&known.shape, plane))).clone();
+        let strains = known.strains.get_or_insert_with(|| Arc::new(Strains::new(&shape, plane))).clone();
         let response = known.responses.iter().find(|(points, _)| agree(points, &local));
         let response = match response.map(|(_, response)| response.clone()) {
             Some(response) => response,
             None => {
-                let places = known.shape.places(&local, points)?;
-                let all = known.shape.displacements(known.shape.loads_at(&places))?;
+                let places = shape.places(&local, points)?;
+                let all = shape.displacements(shape.loads_at(&places))?;
                 let response = (Arc::new(places), Arc::new(all));
                 known.responses.push((local, response.clone()));
                 response
             }
         };
-        let shape = known.shape.clone();
         Ok(InelasticBody::new(shape, strains, response, flexibility, placement, elasticity, update, width))
     }
 
@@ -183,7 +209,7 @@ impl Condenser {
             return Err(format!("{} forces act at {} points", forces.len(), points.len()));
         }
         let (placement, index, local) = self.prepare(vertices, elasticity, mesh, points, false)?;
-        let shape = &self.shapes[index].shape;
+        let shape = self.shapes[index].shape()?;
         let scale = 1.0 / (elasticity.modulus * self.width * placement.size);
         let to_local = placement.rotation.transpose();
         let mut loads = DMatrix::zeros(2 * shape.mesh.nodes.len(), 1);

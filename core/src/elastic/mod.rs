@@ -47,6 +47,7 @@ mod mesh;
 mod polygon;
 mod quadrature;
 mod shape;
+mod shared;
 mod stress;
 
 pub use self::condensation::{Condensed, Condenser};
@@ -54,4 +55,5 @@ pub use self::inelastic::{InelasticBody, InelasticState, PassedStep, largest_ele
 pub use self::joint::{breaks_on_joint, joint_points, union_breaks};
 pub use self::linearisation::Linearisation;
 pub use self::mesh::{Mesh, MeshDensity, edge_breaks, edge_points};
+pub use self::shared::SharedFlexibilities;
 pub use self::stress::Recovered;

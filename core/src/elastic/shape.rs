@@ -22,7 +22,8 @@ pub(super) const SPRINGS: [usize; 3] = [0, 1, 3];
 
 /// A placed polygon: vertex i of the shape is `origin` + Q × local vertex × `size`.
 pub(super) struct Placement {
-    local: Vec<Vec2>,
+    /// The vertices in the frame of the shape.
+    pub local: Vec<Vec2>,
     pub origin: Vec2,
     pub rotation: Matrix2<f64>,
     pub size: f64,
@@ -64,14 +65,32 @@ pub(super) type Place = Vec<(usize, f64)>;
 /// Places of points, and the elastic displacements of all nodes from forces there.
 pub(super) type Response = (Arc<Vec<Place>>, Arc<DMatrix<f64>>);
 
+/// The data that determine a shape.
+#[derive(Clone, PartialEq)]
+pub(super) struct Form {
+    pub vertices: Vec<Vec2>,
+    /// √area \[m\].
+    pub size: f64,
+    pub density: MeshDensity,
+    pub elasticity: PlaneElasticity,
+    pub plane: Plane,
+    /// True if elements use strains of displacements, also if other elements are better for linear materials.
+    pub of_strains: bool,
+}
+
+impl Form {
+    /// Returns true if two bodies are congruent and have the same mesh and elements.
+    pub fn is_congruent(&self, other: &Form) -> bool {
+        self.elasticity == other.elasticity
+            && self.of_strains == other.of_strains
+            && self.density == other.density
+            && (self.size / other.size - 1.0).abs() <= CONGRUENT
+            && agree(&self.vertices, &other.vertices)
+    }
+}
+
 /// A mesh with its factorisation, for modulus 1, width 1 and area 1, centroid at the origin.
 pub(super) struct Shape {
-    vertices: Vec<Vec2>,
-    /// √area \[m\].
-    size: f64,
-    density: MeshDensity,
-    /// True if elements use strains of displacements, also if other elements are better for linear materials.
-    of_strains: bool,
     pub reference: Reference,
     pub elasticity: PlaneElasticity,
     pub mesh: Mesh,
@@ -89,23 +108,17 @@ pub(super) struct Shape {
 
 impl Shape {
     /// Meshes and factorises a shape. An error gives the reason why this is not possible.
-    pub fn new(
-        placement: &Placement,
-        elasticity: PlaneElasticity,
-        density: &MeshDensity,
-        plane: Plane,
-        of_strains: bool,
-    ) -> Result<Self, String> {
-        let mesh = Mesh::new(&placement.local, density)?;
-        let (reference, d) = (Reference::new(density.order), &elasticity.stiffness);
+    pub fn new(form: &Form) -> Result<Self, String> {
+        let mesh = Mesh::new(&form.vertices, &form.density)?;
+        let (reference, d) = (Reference::new(form.density.order), &form.elasticity.stiffness);
         let count = mesh.nodes.len();
         let mut entries: Entries = Vec::with_capacity(mesh.elements.len() * (2 * mesh.elements[0].len()).pow(2));
         entries.extend(SPRINGS.map(|dof| (dof, dof, 1.0)));
         let mut moments = vec![(0.0, Vec2::zeros()); count];
         for (index, nodes) in mesh.elements.iter().enumerate() {
             let corners = mesh.corners(index);
-            let k = match of_strains {
-                true => stiffness_of_strains(&strain_operators(&reference, &corners, plane), d),
+            let k = match form.of_strains {
+                true => stiffness_of_strains(&strain_operators(&reference, &corners, form.plane), d),
                 false => stiffness(&reference, &corners, d),
             };
             let row = |i: usize| 2 * nodes[i / 2] + i % 2;
@@ -127,35 +140,7 @@ impl Shape {
         let inertia = DMatrix::from_fn(2 * count, 3, |i, j| columns(moments[i / 2].0, moments[i / 2].1, i % 2)[j]);
         let rigid = DMatrix::from_fn(2 * count, 3, |i, j| columns(1.0, mesh.nodes[i / 2], i % 2)[j]);
         let masses = [0, 1, 2].map(|i| rigid.column(i).dot(&inertia.column(i)));
-        Ok(Shape {
-            vertices: placement.local.clone(),
-            size: placement.size,
-            density: *density,
-            of_strains,
-            reference,
-            elasticity,
-            mesh,
-            factorised,
-            stiffest,
-            inertia,
-            rigid,
-            masses,
-        })
-    }
-
-    /// Returns true if a body with these properties is congruent and has the same mesh and elements.
-    pub fn is(
-        &self,
-        placement: &Placement,
-        elasticity: &PlaneElasticity,
-        density: &MeshDensity,
-        of_strains: bool,
-    ) -> bool {
-        self.elasticity == *elasticity
-            && self.of_strains == of_strains
-            && self.density == *density
-            && (self.size / placement.size - 1.0).abs() <= CONGRUENT
-            && agree(&self.vertices, &placement.local)
+        Ok(Shape { reference, elasticity: form.elasticity, mesh, factorised, stiffest, inertia, rigid, masses })
     }
 
     /// Returns the place of a point. The shape functions of an element are also correct a little outside it, so that
@@ -252,12 +237,18 @@ impl Shape {
         Ok(all)
     }
 
-    /// Returns C̃ of places. Errors are those of [`displacements`](Self::displacements).
-    pub fn flexibility(&self, places: &[Place]) -> Result<DMatrix<f64>, String> {
-        let columns = 2 * places.len();
-        let full = at_places(places, &self.displacements(self.loads_at(places))?);
-        // Symmetric except for rounding: the two triangles come from different solutions.
-        Ok(DMatrix::from_fn(columns, columns, |i, j| 0.5 * (full[(i, j)] + full[(j, i)])))
+    /// Returns C̃ of places; `known` is C̃ of the first of them. Errors are those of
+    /// [`displacements`](Self::displacements).
+    pub fn flexibility(&self, places: &[Place], known: &DMatrix<f64>) -> Result<DMatrix<f64>, String> {
+        let (columns, first) = (2 * places.len(), known.ncols());
+        let added = at_places(places, &self.displacements(self.loads_at(&places[first / 2..]))?);
+        // Symmetric except for rounding: the two triangles of added places come from different solutions.
+        Ok(DMatrix::from_fn(columns, columns, |i, j| match (i < first, j < first) {
+            (true, true) => known[(i, j)],
+            (true, false) => added[(i, j - first)],
+            (false, true) => added[(j, i - first)],
+            (false, false) => 0.5 * (added[(i, j - first)] + added[(j, i - first)]),
+        }))
     }
 }
 
@@ -320,7 +311,9 @@ mod tests {
             let density = MeshDensity { elements: [2, 2], order, grading: [1.0; 2] };
             let placement = Placement::new(&outline).unwrap();
             let elasticity = PlaneElasticity::new(&Elasticity::isotropic(1.0, 0.25), Plane::Strain);
-            let shape = Shape::new(&placement, elasticity, &density, Plane::Strain, false).unwrap();
+            let (vertices, size, plane) = (placement.local.clone(), placement.size, Plane::Strain);
+            let form = Form { vertices, size, density, elasticity, plane, of_strains: false };
+            let shape = Shape::new(&form).unwrap();
             let n = 2 * shape.mesh.nodes.len();
             let mut system = DMatrix::zeros(n + 3, n + 3);
             for (index, nodes) in shape.mesh.elements.iter().enumerate() {
@@ -340,8 +333,11 @@ mod tests {
                 }
             }
             let expected = loads.transpose() * system.full_piv_lu().solve(&loads).unwrap();
-            let found = shape.flexibility(&places).unwrap();
+            let found = shape.flexibility(&places, &DMatrix::zeros(0, 0)).unwrap();
             assert!((&found - &expected).amax() < 1e-12 * found.amax(), "order {order}");
+            let first = found.view((0, 0), (6, 6)).into_owned();
+            let extended = shape.flexibility(&places, &first).unwrap();
+            assert!((&found - extended).amax() < 1e-12 * found.amax(), "order {order}, extended");
         }
     }
 }

@@ -261,8 +261,8 @@ fn condense(problem: &mut PathProblem, assembly: &Assembly) -> Result<(), String
         let Some(elasticity) = material.elasticity().filter(|_| assembly.is_deformable(block)) else { continue };
         let vertices = &assembly.bodies[block].vertices;
         let Some(law) = material.inelastic() else {
-            let condensed = condenser.condense(vertices, &elasticity, &assembly.mesh, &body.points)?;
-            body.flexibility = Some(Arc::new(condensed.flexibility));
+            let flexibility = condenser.flexibility(vertices, &elasticity, &assembly.mesh, &body.points)?;
+            body.flexibility = Some(flexibility);
             continue;
         };
         let index = assembly.bodies[block].material;

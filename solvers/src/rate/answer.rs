@@ -217,11 +217,7 @@ impl Inquiry<'_> {
     /// since the rate that another algorithm finds may not be the only one. Otherwise the first rate is kept.
     fn rising(&mut self, few: bool) -> (Option<NoRate>, Algorithm) {
         let trials = &mut self.counts.trials;
-        let modes = if few || self.monotone || std::env::var("NOASS").is_ok() {
-            None
-        } else {
-            associated_modes(self.problem, trials)
-        };
+        let modes = if few || self.monotone { None } else { associated_modes(self.problem, trials) };
         if let Some(rate) = modes.and_then(|modes| rising_from(self.problem, modes, trials)) {
             self.keep(vec![rate]);
             return (None, Algorithm::Pivoting);

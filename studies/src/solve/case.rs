@@ -17,6 +17,7 @@ use crate::study::{Case, Study};
 use crate::verify::case::verify_case;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::Instant;
+use voussoir_core::elastic::SharedFlexibilities;
 use voussoir_core::limit::{Greatest, Status};
 use voussoir_core::path::{PathObserver, PathProblem, PathState, Unobserved};
 use voussoir_core::plugin::{PluginKind, card};
@@ -60,6 +61,7 @@ fn caught(solve: impl FnOnce() -> CaseResult) -> CaseResult {
 
 fn solve_observed(case: &Case, observer: &mut dyn PathObserver) -> CaseResult {
     let started = Instant::now();
+    let _stored = SharedFlexibilities::new();
     let mut result = caught(|| solve_input(&CaseInput::of(case), observer));
     add_label(case, &mut result);
     add_carried(case, &mut result);

@@ -39,13 +39,14 @@ impl PathObserver for Watched<'_> {
         self.ends[problem.load_steps[state.load_step].stage] = Some(state.clone());
         self.progress.add(problem, state);
         self.recorder.state(problem, state);
+        let displaced = Displaced::new(&self.structure, state, self.input.settings.finite);
         if self.chain.broken().is_none() {
             // Gaps are not stored. The chain computes them from forces and motions, now and when it is read back.
-            let gap = Displaced::new(&self.structure, state, self.input.settings.finite).gaps();
-            self.chain.add(&PathState { gap, ..state.clone() });
+            self.chain.add(PathState { gap: displaced.gaps().to_vec(), ..state.clone() });
         }
+        self.checker.check(&displaced);
         self.ended |= !self.observer.state(problem, state);
-        self.checker.state(problem, state) && !self.ended
+        !self.ended
     }
 }
 
@@ -133,7 +134,7 @@ pub(crate) fn proved_by_stored_path(input: &CaseInput, tag: &str, path: &StoredP
     let mut states = stored_path::states(path, problem.contacts.len())?;
     for (index, state) in states.iter_mut().enumerate() {
         state.check_form(&problem).map_err(|why| format!("state {index}: {why}"))?;
-        state.gap = Displaced::new(&watched.structure, state, input.settings.finite).gaps();
+        state.gap = Displaced::new(&watched.structure, state, input.settings.finite).gaps().to_vec();
         watched.state(&problem, state);
     }
     let solved = stored_path::answer(path, &states)?;

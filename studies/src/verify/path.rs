@@ -206,7 +206,7 @@ fn stored_state(
     state.gap = vec![[0.0; 2]; problem.contacts.len()];
     state.memory = result.path.joint_states.clone().unwrap_or_default();
     state.yielded = inelastic_state::read(assembly, problem, &result.path.yielded)?;
-    state.gap = Displaced::new(problem, &state, finite).gaps();
+    state.gap = Displaced::new(problem, &state, finite).gaps().to_vec();
     Ok(state)
 }
 

@@ -5,7 +5,7 @@ use super::source::{Source, is, workspace};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Greatest number of lines of the solvers without tests.
-const LINES: usize = 26_691;
+const LINES: usize = 26_690;
 /// Greatest length of a chain of imports between files; each sub-folder counts as one file.
 const CHAIN: usize = 8;
 /// Least number of fields of a large struct.

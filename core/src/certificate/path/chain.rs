@@ -6,6 +6,7 @@
 //! With finite displacements the state midway must also be nearly in equilibrium: states of two branches are not
 //! neighbours.
 
+use super::claims::length;
 use super::displaced::Displaced;
 use super::history::{History, has_history};
 use super::increment::{Allowed, first_opening, passed};
@@ -59,7 +60,7 @@ pub(super) fn deformation(state: &PathState) -> f64 {
 }
 
 pub(super) fn greatest_force(state: &PathState) -> f64 {
-    state.force.iter().map(|r| r[0].hypot(r[1])).fold(0.0, f64::max)
+    state.force.iter().map(|r| length(*r)).fold(0.0, f64::max)
 }
 
 /// Returns true if two records describe one state.
@@ -114,10 +115,11 @@ impl PathChain {
     }
 
     /// Adds the next state of the path.
-    pub fn add(&mut self, state: &PathState) {
+    pub fn add(&mut self, state: PathState) {
         if self.broken.is_some() {
             return;
         }
+        let factor = state.factor;
         match self.links.last().map(|last| self.next(last, state)) {
             None => {}
             Some(Ok((link, drift))) => {
@@ -125,7 +127,7 @@ impl PathChain {
                 self.drift += drift;
             }
             Some(Err(why)) => {
-                self.broken = Some(format!("state {} at the factor {}: {why}", self.links.len(), state.factor));
+                self.broken = Some(format!("state {} at the factor {factor}: {why}", self.links.len()));
             }
         }
     }
@@ -135,10 +137,8 @@ impl PathChain {
         if self.links.iter().any(|link| is_same(&link.state, state)) {
             return;
         }
-        let before = (0..self.links.len()).rev().find_map(|at| {
-            let (link, _) = self.next(&self.links[at], state).ok().filter(|_| self.is_beside(at, state))?;
-            Some((at, link))
-        });
+        let mut beside = (0..self.links.len()).rev().filter(|at| self.is_beside(*at, state));
+        let before = beside.find_map(|at| Some((at, self.next(&self.links[at], state.clone()).ok()?.0)));
         if let Some((at, link)) = before {
             self.links.insert(at + 1, link);
         }
@@ -159,20 +159,20 @@ impl PathChain {
     }
 
     /// Returns the link after an increment to a state, and the drift of the increment.
-    fn next(&self, last: &Link, state: &PathState) -> Result<(Link, f64), String> {
+    fn next(&self, last: &Link, state: PathState) -> Result<(Link, f64), String> {
         let problem = &*self.structure;
         if state.load_step < last.state.load_step || state.load_step >= problem.load_steps.len() {
             return Err("its load step is not the next".into());
         }
-        self.check_factors(&last.state, state)?;
-        self.check_supports(state)?;
-        self.check_displacement(state)?;
-        let size = deformation(state).max(deformation(&last.state));
+        self.check_factors(&last.state, &state)?;
+        self.check_supports(&state)?;
+        self.check_displacement(&state)?;
+        let size = deformation(&state).max(deformation(&last.state));
         let rounding = if self.finite { 512.0 * f64::EPSILON * problem.length } else { 0.0 };
-        let force = greatest_force(state).max(greatest_force(&last.state));
+        let force = greatest_force(&state).max(greatest_force(&last.state));
         let allowed = Allowed { slack: ACTIVE * force, opening: CLOSED * size + rounding };
         let mut openings = Vec::with_capacity(last.openings.len());
-        let mut worst = (0.0, 0);
+        let mut drift = 0.0f64;
         for (index, contact) in problem.contacts.iter().enumerate() {
             let forces = [last.state.force[index], state.force[index]];
             let gaps = [last.state.gap[index], state.gap[index]];
@@ -181,23 +181,21 @@ impl PathChain {
                 continue;
             }
             let passed = passed(contact, forces, gaps, last.openings[index], allowed);
-            if passed.outside.is_nan() || passed.outside > worst.0 {
-                worst = (passed.outside, index);
+            let off = passed.outside - rounding;
+            if off.is_nan() || self.drift + off.max(0.0) > DRIFT * size {
+                return Err(format!("the gap of contact point {index} does not flow as its law says"));
             }
+            drift = drift.max(off);
             openings.push(passed.opening);
         }
-        let drift = (worst.0 - rounding).max(0.0);
-        if drift.is_nan() || self.drift + drift > DRIFT * size {
-            return Err(format!("the gap of contact point {} does not flow as its law says", worst.1));
-        }
         let history = match has_history(problem) {
-            true => last.history.after(problem, [&last.state, state], size, self.finite)?,
+            true => last.history.after(problem, [&last.state, &state], size, self.finite)?,
             false => History::default(),
         };
         if self.finite {
-            self.check_midway(&last.state, state)?;
+            self.check_midway(&last.state, &state)?;
         }
-        Ok((Link { state: state.clone(), openings, history }, drift))
+        Ok((Link { state, openings, history }, drift))
     }
 
     /// Checks that only the factor of the state's own load step changes; earlier steps have reached their ends.

@@ -99,8 +99,14 @@ impl PathChecker {
         worsen(self.worst.entry(name).or_insert(0.0), value);
     }
 
-    /// Checks one state.
-    fn check(&mut self, problem: &PathProblem, state: &PathState) {
+    /// Checks one state of the problem of `displaced`. A certificate needs the problem of
+    /// [`structure`](Self::structure).
+    pub fn check(&mut self, displaced: &Displaced) {
+        let (problem, state) = (displaced.problem, displaced.state);
+        self.states += 1;
+        if state.load_step + 1 == problem.load_steps.len() {
+            self.curve.push([state.displacement, state.factor]);
+        }
         if state.force.len() != problem.contacts.len() || state.motion.len() != problem.bodies.len() {
             return self.note("path_equilibrium", f64::NAN);
         }
@@ -124,8 +130,7 @@ impl PathChecker {
             // With finite displacements gaps are differences of positions.
             rounding: if self.finite { 512.0 * f64::EPSILON * problem.length } else { 0.0 },
         };
-        let displaced = Displaced::new(problem, state, self.finite);
-        self.check_bodies(problem, &displaced, state, &scale);
+        self.check_bodies(problem, displaced, state, &scale);
         self.check_blocks(problem, state);
         self.check_points(problem, state, &scale);
         // Use the history of the states received so far, if all states were received.
@@ -242,13 +247,9 @@ impl PathChecker {
 
 impl PathObserver for PathChecker {
     fn state(&mut self, problem: &PathProblem, state: &PathState) -> bool {
-        self.states += 1;
         let structure = self.structure.clone();
         let problem = structure.as_deref().unwrap_or(problem);
-        self.check(problem, state);
-        if state.load_step + 1 == problem.load_steps.len() {
-            self.curve.push([state.displacement, state.factor]);
-        }
+        self.check(&Displaced::new(problem, state, self.finite));
         true
     }
 }

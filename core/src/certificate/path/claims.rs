@@ -66,15 +66,14 @@ pub fn flow_residual(problem: &PathProblem, force: &[[f64; 2]], motion: &[[f64; 
             PointLaw::Response(_) => continue,
             PointLaw::Facets(facets) => facets,
         };
-        let yielding: Vec<[f64; 2]> = facets
+        let yielding = facets
             .iter()
             .filter(|f| {
                 let slack = f.bound * contact.area - f.normal[0] * force[0] - f.normal[1] * force[1];
                 slack <= YIELDING * largest
             })
-            .map(|f| f.flow.map(|d| -d))
-            .collect();
-        worst = worst.max(outside(*jump, &yielding) / size);
+            .map(|f| f.flow.map(|d| -d));
+        worst = worst.max(outside(*jump, yielding) / size);
     }
     worst
 }
@@ -82,13 +81,18 @@ pub fn flow_residual(problem: &PathProblem, force: &[[f64; 2]], motion: &[[f64; 
 /// Greatest slack, relative to the greatest contact force, of a facet that yields.
 const YIELDING: f64 = 1e-9;
 
+/// Returns the length of a vector, without the scaling of `hypot`: forces and gaps have squares.
+pub(super) fn length(v: [f64; 2]) -> f64 {
+    (v[0] * v[0] + v[1] * v[1]).sqrt()
+}
+
 /// Returns the distance of v from the cone of some directions in the plane.
-pub(super) fn outside(v: [f64; 2], cone: &[[f64; 2]]) -> f64 {
-    let mut least = v[0].hypot(v[1]);
-    for (k, a) in cone.iter().enumerate() {
+pub(super) fn outside(v: [f64; 2], mut cone: impl Iterator<Item = [f64; 2]> + Clone) -> f64 {
+    let mut least = length(v);
+    while let Some(a) = cone.next() {
         let along = ((v[0] * a[0] + v[1] * a[1]) / (a[0] * a[0] + a[1] * a[1])).max(0.0);
-        least = least.min((v[0] - along * a[0]).hypot(v[1] - along * a[1]));
-        for b in &cone[k + 1..] {
+        least = least.min(length([v[0] - along * a[0], v[1] - along * a[1]]));
+        for b in cone.clone() {
             let determinant = a[0] * b[1] - a[1] * b[0];
             if determinant != 0.0 {
                 let shares = [(v[0] * b[1] - v[1] * b[0]) / determinant, (a[0] * v[1] - a[1] * v[0]) / determinant];

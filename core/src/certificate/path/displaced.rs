@@ -12,16 +12,18 @@ use crate::law::{Facet, FacetMode};
 use crate::linear::vectors::add_product;
 use crate::model::geometry::{Vec2, cross, turned};
 use crate::path::{Attachment, Contact, PathProblem, PathState, PointLaw};
+use std::cell::OnceCell;
 
 /// A state with the deformations of its bodies.
 pub struct Displaced<'a> {
-    problem: &'a PathProblem,
-    state: &'a PathState,
+    pub(super) problem: &'a PathProblem,
+    pub(super) state: &'a PathState,
     finite: bool,
     /// Forces on the points of every body in its axes \[N\].
     forces: Vec<Vec<Vec2>>,
-    /// Deformation of the points of every body in its axes \[m\].
-    deformation: Vec<Vec<Vec2>>,
+    /// Deformation (x, y) of the points of every body in its axes \[m\].
+    deformation: Vec<Vec<f64>>,
+    gaps: OnceCell<Vec<[f64; 2]>>,
 }
 
 /// Returns v rotated by an angle \[rad\].
@@ -35,28 +37,28 @@ impl<'a> Displaced<'a> {
         let forces = problem.forces_on_points(state, finite);
         let bodies = problem.bodies.iter().zip(&forces).enumerate();
         let mut flat: Vec<f64> = Vec::new();
-        let of = |u: &[f64]| u.chunks(2).map(|u| Vec2::new(u[0], u[1])).collect();
         let deformation =
             bodies.map(|(index, (body, f))| match (&body.flexibility, &body.inelastic, state.inelastic(index)) {
                 (None, ..) => Vec::new(),
-                (Some(_), Some(inelastic), Some(recorded)) => of(&inelastic.at_points(&recorded.displacement)),
+                (Some(_), Some(inelastic), Some(recorded)) => inelastic.at_points(&recorded.displacement),
                 (Some(flexibility), ..) => {
                     flat.clear();
                     f.iter().for_each(|f| flat.extend([f.x, f.y]));
                     let mut u = vec![0.0; flat.len()];
                     add_product(&mut u, flexibility.nrows(), flexibility.as_slice(), &flat);
-                    of(&u)
+                    u
                 }
             });
         let deformation = deformation.collect();
-        Displaced { problem, state, finite, forces, deformation }
+        Displaced { problem, state, finite, forces, deformation, gaps: OnceCell::new() }
     }
 
     /// Returns the displacement of a point of a body by its rigid motion and by its deformation \[m\].
     fn parts(&self, body: usize, slot: Option<usize>, point: Vec2) -> [Vec2; 2] {
         let [x, y, theta] = self.state.motion[body];
         let arm = point - self.problem.bodies[body].pole;
-        let deformed = slot.and_then(|slot| self.deformation[body].get(slot)).copied().unwrap_or_default();
+        let own = slot.and_then(|slot| self.deformation[body].get(2 * slot..2 * slot + 2));
+        let deformed = own.map_or_else(Vec2::zeros, |own| Vec2::new(own[0], own[1]));
         let shift = Vec2::new(x, y);
         match self.finite {
             true => [shift + (rotated(arm, theta) - arm), rotated(deformed, theta)],
@@ -91,7 +93,11 @@ impl<'a> Displaced<'a> {
     }
 
     /// Returns the gaps (n, t) of all contact points from motions, forces and loads \[m\].
-    pub fn gaps(&self) -> Vec<[f64; 2]> {
+    pub fn gaps(&self) -> &[[f64; 2]] {
+        self.gaps.get_or_init(|| self.all_gaps())
+    }
+
+    fn all_gaps(&self) -> Vec<[f64; 2]> {
         let apart = |contact: &Contact| {
             if !self.finite {
                 let place = |side: Attachment| self.displacement(side.body, side.slot, contact.position);
@@ -129,10 +135,13 @@ impl<'a> Displaced<'a> {
         if self.state.yielded.iter().any(Option::is_some) || contacts.iter().any(|c| by_history(&c.law)) {
             return None;
         }
-        let points = self.forces.iter().flatten().zip(self.deformation.iter().flatten());
+        let of_body = |(forces, u): (&Vec<Vec2>, &Vec<f64>)| -> f64 {
+            forces.iter().zip(u.chunks_exact(2)).map(|(f, u)| f.x * u[0] + f.y * u[1]).sum()
+        };
+        let bodies: f64 = self.forces.iter().zip(&self.deformation).map(of_body).sum();
         let of_joint = |(c, r): (&Contact, &[f64; 2])| c.compliance[0] * r[0] * r[0] + c.compliance[1] * r[1] * r[1];
         let joints: f64 = contacts.iter().zip(&self.state.force).map(of_joint).sum();
-        Some(0.5 * (points.map(|(f, u)| f.dot(u)).sum::<f64>() + joints))
+        Some(0.5 * (bodies + joints))
     }
 
     /// Returns the unbalanced resultant of loads and contact forces on each body, about its pole \[N, N m\].

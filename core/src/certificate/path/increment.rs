@@ -5,7 +5,7 @@
 //! ends, or it is open and unloaded at both ends. An open point is described by its opening, the gap above the surface
 //! that slip with dilatancy has raised.
 
-use super::claims::outside;
+use super::claims::{length, outside};
 use super::point_modes::{active_facets, dilatancy, dot, is_apex};
 use super::rate_check::opening_of;
 use crate::law::{Facet, FacetMode};
@@ -43,10 +43,13 @@ pub(super) fn passed(
     allowed: Allowed,
 ) -> Passed {
     let moved = [0, 1].map(|i| gaps[1][i] - gaps[0][i]);
-    let stuck = Passed { opening, outside: moved[0].hypot(moved[1]) };
+    let stuck = Passed { opening, outside: length(moved) };
     let PointLaw::Facets(facets) = &contact.law else { return stuck };
     let active = active_facets(contact, facets, &forces, allowed.slack);
     let open = opening > allowed.opening;
+    if active.is_empty() && !open {
+        return stuck;
+    }
     if is_apex(facets, &active) {
         let opening = opening + moved[0] - dilatancy(facets) * moved[1].abs();
         let free = Passed { opening: opening.max(0.0), outside: (-opening).max(0.0) };
@@ -67,14 +70,14 @@ fn better(a: Passed, b: Passed) -> Passed {
 
 /// The increment of a closed point that flows along its active facets.
 fn flowing(facets: &[Facet], active: &[usize], moved: [f64; 2], stuck: Passed) -> Passed {
-    let flows: Vec<[f64; 2]> = active.iter().map(|f| facets[*f].flow.map(|d| -d)).collect();
-    let outside = outside(moved, &flows);
+    let flows = active.iter().map(|f| facets[*f].flow.map(|d| -d));
+    let outside = outside(moved, flows);
     let facet = active.iter().copied().find(|f| facets[*f].mode == FacetMode::Opening);
     let opened = facet.map_or(0.0, |facet| opened_by(facets, active, facet, moved));
     let slides = |f: &usize| facets[*f].mode != FacetMode::Opening;
     // Slip alone does not open a point above its surface.
-    let sliding: Vec<[f64; 2]> = active.iter().filter(|f| slides(f)).map(|f| facets[*f].flow.map(|d| -d)).collect();
-    let closed = super::claims::outside(moved, &sliding) <= outside;
+    let sliding = active.iter().filter(|f| slides(f)).map(|f| facets[*f].flow.map(|d| -d));
+    let closed = super::claims::outside(moved, sliding) <= outside;
     let opened = if closed { 0.0 } else { opened.max(0.0) };
     Passed { opening: stuck.opening + opened, outside }
 }
@@ -83,8 +86,7 @@ fn flowing(facets: &[Facet], active: &[usize], moved: [f64; 2], stuck: Passed) -
 fn reopened(facets: &[Facet], active: &[usize], facet: usize, moved: [f64; 2], opening: f64) -> Passed {
     let [d, back] = [facets[facet].flow.map(|d| -d), facets[facet].flow];
     let others = active.iter().filter(|f| **f != facet).map(|f| facets[*f].flow.map(|d| -d));
-    let flows: Vec<[f64; 2]> = [d, back].into_iter().chain(others).collect();
-    let off = outside(moved, &flows);
+    let off = outside(moved, [d, back].into_iter().chain(others));
     let after = opening + opened_by(facets, active, facet, moved);
     Passed { opening: after.max(0.0), outside: off.max(-after) }
 }

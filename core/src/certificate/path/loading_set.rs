@@ -10,8 +10,9 @@
 //! The multipliers are the solution of one linear system. They are checked like the multipliers of a witness.
 
 use super::chain::{Link, PathChain, deformation, greatest_force, is_same};
+use super::claims::length;
 use super::none_rises::{Products, RateProblem, Refuted};
-use super::point_modes::{ModeCone, dot, length};
+use super::point_modes::{ModeCone, dot};
 use super::rate_equations::{Column, RateEquations};
 use crate::law::Facet;
 use crate::linear::{Entries, SparseLu};

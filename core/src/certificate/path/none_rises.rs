@@ -14,7 +14,8 @@
 //! differ from these by the tolerances. The check involves no search.
 
 use super::arrival::Arrival;
-use super::point_modes::{Decided, ModeCone, length};
+use super::claims::length;
+use super::point_modes::{Decided, ModeCone};
 use super::rate_equations::{Column, RateEquations};
 use crate::path::{FarkasVector, ModeTree};
 

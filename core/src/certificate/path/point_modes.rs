@@ -11,7 +11,7 @@
 //! opening facet, whose γ may have either sign because it may close. A bonded point has ġ = 0 and any ṙ. Source: the
 //! modes of Klarbring (1990), Ing.-Arch. 60, with facets instead of Coulomb's cone.
 
-use super::claims::outside;
+use super::claims::{length, outside};
 use crate::law::{Facet, FacetMode, YieldPolygon};
 use crate::path::{Contact, PointLaw, PointMode};
 use std::collections::BTreeMap;
@@ -39,7 +39,7 @@ pub(super) struct ModeCone {
 impl ModeCone {
     /// Returns the distances of rates of force and of gap from the cones.
     pub fn distances(&self, force: [f64; 2], gap: [f64; 2]) -> [f64; 2] {
-        [outside(force, &self.force), outside(gap, &self.gap)]
+        [outside(force, self.force.iter().copied()), outside(gap, self.gap.iter().copied())]
     }
 
     /// Returns the least products of the multipliers (α, β) with the generators, each divided by the length of the
@@ -52,10 +52,6 @@ impl ModeCone {
 
 pub(super) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[0] + a[1] * b[1]
-}
-
-pub(super) fn length(a: [f64; 2]) -> f64 {
-    a[0].hypot(a[1])
 }
 
 /// Returns the slack of a facet at a contact force, divided by the length of its normal \[N\].

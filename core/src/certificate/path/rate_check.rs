@@ -1,7 +1,8 @@
 //! Checks of a rate at a state, and of a mechanism at constant load.
 
+use super::claims::length;
 use super::none_rises::RateProblem;
-use super::point_modes::{ModeCone, dilatancy, dot, length};
+use super::point_modes::{ModeCone, dilatancy, dot};
 use crate::law::Facet;
 use crate::path::{Contact, PathProblem, PathRate, PathState, PointMode};
 

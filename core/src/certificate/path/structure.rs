@@ -304,8 +304,8 @@ fn condense(read: &mut PathProblem, assembly: &Assembly) -> Result<(), String> {
         let Some(elasticity) = assembly.material(block).elasticity() else { continue };
         let body = &mut read.bodies[read.body_of[block]];
         let Some(yielding) = assembly.material(block).inelastic() else {
-            let condensed = condenser.condense(&shape.vertices, &elasticity, &assembly.mesh, &body.points)?;
-            body.flexibility = Some(Arc::new(condensed.flexibility));
+            let flexibility = condenser.flexibility(&shape.vertices, &elasticity, &assembly.mesh, &body.points)?;
+            body.flexibility = Some(flexibility);
             continue;
         };
         if !laws.iter().any(|(material, _)| *material == shape.material) {

@@ -68,7 +68,10 @@ pub fn work_state(problem: &PathProblem, state: &PathState, deformation: &Deform
     };
     let displacements = problem.load_steps.iter().map(|step| step.loading.forces.iter().map(place).collect());
     let factors = problem.applied(state.load_step, state.factor);
-    let unbalanced = unbalanced(problem, state, &factors);
+    // Only settlements do work on reactions.
+    let settles = problem.load_steps.iter().any(|step| !step.loading.settlements.is_empty());
+    let at_rest = || vec![[0.0; 3]; problem.bodies.len()];
+    let unbalanced = if settles { unbalanced(problem, state, &factors) } else { at_rest() };
     let displacements = displacements.collect();
     WorkState { factors, displacements, motion: state.motion.clone(), unbalanced }
 }

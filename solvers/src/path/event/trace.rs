@@ -165,15 +165,14 @@ impl<'a> Trace<'a> {
     }
 
     /// Returns the modes of all points from a guess and the rates in them with λ̇ = 1, by the chain of joints. `None`
-    /// if there is no chain, or if the whole system must be solved: at the unloaded state, where every point has a
-    /// choice, and with a moving support.
+    /// if there is no chain, or if the whole system must be solved: with a moving support.
     pub fn by_chain(
         &mut self,
         load: &Load,
         active: &[usize],
         guess: Vec<ContactMode>,
     ) -> Option<(Vec<ContactMode>, Rates)> {
-        if load.settles || self.state.x.iter().all(|v| *v == 0.0) {
+        if load.settles {
             return None;
         }
         let chain = self.factors.chain.as_mut()?;

@@ -39,7 +39,8 @@ pub fn unique(system: &System, points: &[Point], load: &Load, x: &[f64], gaps: &
         let rows: Vec<Vec<f64>> = (0..points.len()).flat_map(|c| constraints(system, c, flows(c))).collect();
         let height = rows.len().max(freedoms);
         let matrix = DMatrix::from_fn(height, freedoms, |i, j| rows.get(i).map_or(0.0, |row| row[j]));
-        let svd = matrix.try_svd(false, true, f64::EPSILON, 10_000)?;
+        // R of A = Q R has the same singular values and right vectors.
+        let svd = matrix.qr().unpack_r().try_svd(false, true, f64::EPSILON, 10_000)?;
         let (values, vectors) = (svd.singular_values, svd.v_t?);
         let null: Vec<usize> = (0..freedoms).filter(|k| values[*k] <= SETTINGS.admissible * values.max()).collect();
         Some(DMatrix::from_fn(freedoms, null.len(), |i, k| vectors[(null[k], i)]))

@@ -31,7 +31,7 @@ fn slipped(slip: f64, dilatancy: f64) -> PathState {
 
 fn chain(problem: &PathProblem, states: &[PathState]) -> PathChain {
     let mut chain = PathChain::new(Arc::new(problem.clone()), false);
-    states.iter().for_each(|state| chain.add(&with_displacement(problem, state)));
+    states.iter().for_each(|state| chain.add(with_displacement(problem, state)));
     chain
 }
 
@@ -48,7 +48,7 @@ fn the_displacement_of_the_load_follows_from_the_motions() {
     let problem = sliding_block(0.0);
     let state = with_displacement(&problem, &weight());
     let mut chain = PathChain::new(Arc::new(problem), false);
-    chain.add(&PathState { displacement: 2.0 * state.displacement, ..state });
+    chain.add(PathState { displacement: 2.0 * state.displacement, ..state });
     assert!(chain.broken().is_some_and(|why| why.contains("displacement of the load")), "{:?}", chain.broken());
 }
 

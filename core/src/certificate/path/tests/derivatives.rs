@@ -115,7 +115,7 @@ fn columns_are_those_of_residuals() {
     let [before, after] = [0.0, 1.0].map(|by| {
         let state = moved(&zero, &along, by);
         let displaced = Displaced::new(&problem, &state, false);
-        (displaced.gaps(), displaced.unbalanced())
+        (displaced.gaps().to_vec(), displaced.unbalanced())
     });
     // The dead load is the same in both states.
     let rows = RateEquations::new(&problem, &zero, false).expect("equations").products(&along);

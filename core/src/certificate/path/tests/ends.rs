@@ -43,7 +43,7 @@ fn chain(problem: &PathProblem, finite: bool, states: &[PathState]) -> PathChain
         let growing = (&problem.load_steps[state.load_step].loading, state.factor);
         let moved = |body, point| problem.rigid_displacement(&state.motion, body, point, finite);
         let displacement = problem.load_displacement(growing, &state.motion, moved);
-        chain.add(&PathState { displacement, ..state.clone() });
+        chain.add(PathState { displacement, ..state.clone() });
     }
     assert_eq!(chain.broken(), None);
     chain

@@ -93,8 +93,8 @@ fn weight() -> PathState {
 
 fn chain(slope: f64, openings: &[f64]) -> PathChain {
     let mut chain = PathChain::new(Arc::new(hanging(slope)), false);
-    chain.add(&weight());
-    openings.iter().for_each(|opening| chain.add(&opened(*opening, slope)));
+    chain.add(weight());
+    openings.iter().for_each(|opening| chain.add(opened(*opening, slope)));
     chain
 }
 
