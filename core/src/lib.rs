@@ -21,6 +21,7 @@ pub mod linear;
 pub mod model;
 pub mod path;
 pub mod plugin;
+pub mod random;
 
 pub use inventory;
 pub use typetag;

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use voussoir::results::sealed_line::sealed_text;
 
 fn voussoir(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_voussoir")).args(arguments).output().expect("the program starts")
@@ -59,10 +60,11 @@ fn run_verify_tamper_and_resume() {
     // A run was killed after some cases: the next run solves the rest and keeps the finished cases.
     let whole = text(&one.join("results.json"));
     let results: serde_json::Value = serde_json::from_str(&whole).expect("JSON");
-    let journal: String =
-        results["cases"].as_array().expect("cases")[..5].iter().map(|case| sealed(&case.to_string())).collect();
+    let cases = &results["cases"].as_array().expect("cases")[..5];
+    let lines = cases.iter().flat_map(|case| sealed_text(case.to_string().as_bytes()));
+    let journal: Vec<u8> = lines.chain(*b"{ \"id\": 5, \"var").collect();
     std::fs::remove_file(two.join("results.json")).expect("removed");
-    std::fs::write(two.join("unfinished.jsonl"), journal + "{ \"id\": 5, \"var").expect("written");
+    std::fs::write(two.join("unfinished.jsonl"), journal).expect("written");
     assert_eq!(code(&voussoir(&["run", study, "--out", out_two, "--resume", "--quiet"])), 0);
     assert_eq!(timeless(&one), timeless(&two));
     assert!(!two.join("unfinished.jsonl").exists());
@@ -72,13 +74,6 @@ fn run_verify_tamper_and_resume() {
     let output = voussoir(&["verify", out_one]);
     assert_eq!(code(&output), 1);
     assert!(String::from_utf8_lossy(&output.stdout).contains("case 9"));
-}
-
-/// A line of a journal or a part: a case with its checksum, 64 bits of FNV-1a.
-fn sealed(case: &str) -> String {
-    let step = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
-    let sum = case.bytes().fold(0xcbf2_9ce4_8422_2325, step);
-    format!("{{\"checksum\":\"{sum:016x}\",\"case\":{case}}}\n")
 }
 
 /// Wrong input gives exit code 2 and a message on standard error; the results of the previous run are not changed.

@@ -4,6 +4,7 @@ use serde_json::Value;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
+use voussoir::results::sealed_line::sealed_text;
 
 fn voussoir(arguments: &[&str], at: &Path) -> Output {
     Command::new(env!("CARGO_BIN_EXE_voussoir")).args(arguments).current_dir(at).output().expect("the program starts")
@@ -32,11 +33,9 @@ fn said(output: &Output) -> String {
     String::from_utf8_lossy(&[&output.stdout[..], &output.stderr[..]].concat()).into_owned()
 }
 
-/// A line of a journal: a case with its checksum, 64 bits of FNV-1a.
+/// A line of a journal: a case with its checksum.
 fn sealed(case: &str) -> String {
-    let step = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
-    let sum = case.bytes().fold(0xcbf2_9ce4_8422_2325, step);
-    format!("{{\"checksum\":\"{sum:016x}\",\"case\":{case}}}\n")
+    String::from_utf8(sealed_text(case.as_bytes())).expect("text")
 }
 
 /// A folder for one test, with a study of eight cases.

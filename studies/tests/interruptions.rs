@@ -6,7 +6,8 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use voussoir::core::random::Random;
 
 const CASES: usize = 600;
 
@@ -54,21 +55,16 @@ fn timeless(dir: &Path) -> Value {
     results
 }
 
-/// Numbers from a linear congruential generator (Knuth's constants).
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, most: u64) -> u64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) % most
-    }
+/// Returns the number of cases in the journal.
+fn stored(at: &Path) -> usize {
+    std::fs::read_to_string(at.join("out/unfinished.jsonl")).unwrap_or_default().lines().count()
 }
 
-/// Returns the result of a function and its running time \[ms\].
-fn timed<T>(what: impl FnOnce() -> T) -> (T, u64) {
-    let start = Instant::now();
-    let result = what();
-    (result, start.elapsed().as_millis() as u64)
+/// Returns when the journal has this number of cases, or all runs have ended.
+fn until_stored(at: &Path, cases: usize, runs: &mut [&mut Child]) {
+    while stored(at) < cases && runs.iter_mut().any(|run| run.try_wait().expect("a state").is_none()) {
+        sleep(Duration::from_millis(1));
+    }
 }
 
 fn reference(at: &Path, friction: f64, out: &str) -> Value {
@@ -84,22 +80,18 @@ fn reference(at: &Path, friction: f64, out: &str) -> Value {
 fn killed_twenty_times_with_the_study_edited_in_between() {
     let at = folder("killed");
     let (one, other) = (reference(&at, 0.6, "one"), reference(&at, 0.45, "other"));
-    let mut random = Random(14);
+    let mut random = Random::new(14);
     for round in 0..20 {
         let friction = if round % 5 == 3 { 0.45 } else { 0.6 };
         std::fs::write(at.join("a.toml"), study(friction)).expect("written");
         let mut run = start(&at, "out");
-        let target = random.below(CASES as u64) as usize;
-        let stored = || std::fs::read_to_string(at.join("out/unfinished.jsonl")).unwrap_or_default().lines().count();
+        let target = random.whole(0, CASES - 1);
         // Waits at least for the first case of this run, because stored cases are there from the start.
-        let before = stored();
-        while stored() < target.max(before + 1) && run.try_wait().expect("a state").is_none() {
-            sleep(Duration::from_millis(1));
-        }
-        sleep(Duration::from_micros(random.below(5000)));
+        let before = stored(&at);
+        until_stored(&at, target.max(before + 1), &mut [&mut run]);
         drop(run.kill());
         let code = run.wait().expect("it ends").code();
-        println!("round {round}: friction {friction}, ended {code:?}, {before}, then {} cases stored", stored());
+        println!("round {round}: friction {friction}, ended {code:?}, {before}, then {} cases stored", stored(&at));
     }
     for (friction, expected) in [(0.6, &one), (0.45, &other)] {
         std::fs::write(at.join("a.toml"), study(friction)).expect("written");
@@ -114,11 +106,11 @@ fn killed_twenty_times_with_the_study_edited_in_between() {
 #[ignore = "by hand: pairs of runs"]
 fn two_runs_at_once() {
     let at = folder("two");
-    let (expected, whole) = timed(|| reference(&at, 0.6, "whole"));
-    let mut random = Random(18);
+    let expected = reference(&at, 0.6, "whole");
+    let mut random = Random::new(18);
     for round in 0..10 {
         let (mut a, mut b) = (start(&at, "out"), start(&at, "out"));
-        sleep(Duration::from_millis(random.below(whole)));
+        until_stored(&at, random.whole(0, CASES - 1), &mut [&mut a, &mut b]);
         drop(if round % 2 == 0 { a.kill() } else { b.kill() });
         if round % 3 == 0 {
             drop(a.kill());

@@ -270,7 +270,7 @@ impl StudyKind for Try {
     fn own_results(&self, _: &Study, cases: &[CaseResult]) -> OwnResults {
         let stronger = cases.iter().max_by(|a, b| a.load_factor.partial_cmp(&b.load_factor).expect("numbers"));
         let mut own = OwnResults::default();
-        own.other.insert("strongest".into(), stronger.map(|case| case.label.id).into());
+        own.entries.other.insert("strongest".into(), stronger.map(|case| case.label.id).into());
         own
     }
 }

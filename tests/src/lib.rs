@@ -16,7 +16,6 @@ mod keep;
 pub mod known;
 pub mod random;
 pub mod seen;
-pub mod sequence;
 pub mod settled;
 mod wall;
 pub mod written;

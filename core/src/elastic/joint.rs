@@ -100,7 +100,7 @@ mod tests {
     /// In running bond a joint covers half of an edge, and both its ends are contact points.
     #[test]
     fn a_joint_on_half_an_edge() {
-        let density = MeshDensity { elements: [3, 2], ..MeshDensity::default() };
+        let density = MeshDensity { elements: [3, 2], order: 2, grading: [1.0; 2] };
         let (lower, upper) = (brick(0.0, 0.0), brick(0.2, 0.175));
         let ends = [lower[2], upper[0]];
         let one = breaks_on_joint(&lower, &density, ends).unwrap();

@@ -17,13 +17,6 @@ pub struct MeshDensity {
     pub grading: [f64; 2],
 }
 
-impl Default for MeshDensity {
-    /// 4 × 6 elements of order 2 with equal sizes.
-    fn default() -> Self {
-        MeshDensity { elements: [4, 6], order: 2, grading: [1.0; 2] }
-    }
-}
-
 impl MeshDensity {
     /// Greatest order of an element.
     pub const MAX_ORDER: usize = 3;

@@ -108,14 +108,6 @@ pub struct Package {
     pub version: &'static str,
 }
 
-/// The [`Package`] of the crate in which it is written.
-#[macro_export]
-macro_rules! package {
-    () => {
-        $crate::plugin::Package { name: env!("CARGO_PKG_NAME"), version: env!("CARGO_PKG_VERSION") }
-    };
-}
-
 /// The description of a plug-in. Omitted fields are those in [`Card::BLANK`].
 #[derive(Debug)]
 pub struct Card {

@@ -15,3 +15,11 @@ pub use self::keys::{KeyValue, Keys};
 pub use self::schema::{Need, Parameter, PluginKind, Range, Shape, Variant};
 pub use self::units::{Quantity, STANDARD_GRAVITY};
 pub use voussoir_keys_derive::Keys;
+
+/// The [`Package`] of the crate in which it is written.
+#[macro_export]
+macro_rules! package {
+    () => {
+        $crate::plugin::Package { name: env!("CARGO_PKG_NAME"), version: env!("CARGO_PKG_VERSION") }
+    };
+}

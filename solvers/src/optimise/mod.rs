@@ -1,6 +1,5 @@
-//! Optimisation methods: dense linear programs, linear complementarity problems, random numbers.
+//! Optimisation methods: dense linear programs and linear complementarity problems.
 
 pub(crate) mod dense_simplex;
-pub(crate) mod lcg;
 pub(crate) mod lcp;
 pub(crate) mod line_search;

@@ -14,10 +14,10 @@
 //! necessary (Hill 1958, J. Mech. Phys. Solids 6, 236-249); at limit points a real eigenvalue of K itself changes its
 //! sign.
 
-use crate::optimise::lcg::Lcg;
 use crate::settings::SETTINGS;
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::path::ProvenPeak;
+use voussoir_core::random::Random;
 
 /// Greatest number of motions for which all columns of the flexibility are computed; for more, subspace iteration
 /// computes only its greatest eigenvalues.
@@ -63,8 +63,8 @@ pub(super) fn work_by_responses(
     if motions <= ALL {
         return SecondOrderWork::of(&respond(&DMatrix::identity(motions, motions))?, SETTINGS.distinct());
     }
-    let mut random = Lcg::new(11);
-    let mut basis = DMatrix::from_fn(motions, SUBSPACE, |_, _| random.next()).qr().q();
+    let mut random = Random::from_state(11);
+    let mut basis = DMatrix::from_fn(motions, SUBSPACE, |_, _| random.signed()).qr().q();
     for _ in 0..ITERATIONS {
         basis = respond(&basis)?.qr().q();
     }

@@ -2,9 +2,9 @@
 
 use super::findings::Recorder;
 use super::point::Point;
-use super::random::Random;
 use super::subject::Subject;
 use voussoir_core::plugin::Property;
+use voussoir_core::random::Random;
 
 /// Number of closed paths of each sample, of corners of each path, and of steps between two corners.
 const CYCLES: usize = 20;

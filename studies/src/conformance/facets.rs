@@ -2,10 +2,11 @@
 
 use super::findings::Recorder;
 use super::point::Point;
-use super::random::Random;
+use super::random::random_step;
 use super::subject::Subject;
 use voussoir_core::law::{Facet, FacetMode, YieldPolygon};
 use voussoir_core::plugin::{Card, Property};
+use voussoir_core::random::Random;
 
 fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[0] + a[1] * b[1]
@@ -85,7 +86,7 @@ pub(super) fn against_response(recorder: &mut Recorder, subject: &Subject, facet
         let (mut old, mut new) = (subject.point.untouched(), vec![0.0; subject.point.state_size()]);
         let (mut gap, mut before, mut path) = ([0.0; 6], [0.0; 2], Vec::new());
         for _ in 0..25 {
-            random.step(&mut gap, 2, size);
+            random_step(&mut random, &mut gap, 2, size);
             path.push(gap);
             let Ok(said) = subject.point.update(&gap, &old, &mut new) else { break };
             let t = [said.force[0], said.force[1]];

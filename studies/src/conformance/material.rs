@@ -3,13 +3,14 @@
 use super::findings::Recorder;
 use super::options::Options;
 use super::point::Point;
-use super::random::Random;
+use super::random::random_step;
 use super::samples::{Law, laws};
 use super::subject::Subject;
 use super::walk;
 use super::{energy, sign, units};
 use voussoir_core::law::{BulkMaterial, Elasticity, PlanarPoint, PlanarUpdate, Plane, UpdateContext};
 use voussoir_core::plugin::{Capability, Card, PluginKind, Property, Sample};
+use voussoir_core::random::Random;
 
 /// Checks every sample of a material; does nothing for other plug-ins.
 pub(super) fn check(recorder: &mut Recorder, card: &Card, options: &Options) {
@@ -87,7 +88,7 @@ fn elastic_branch(recorder: &mut Recorder, subject: &Subject, elasticity: &Elast
                 format!("calls the step elastic, but its tangent is off elasticity() by {off:.1e} of the stiffness")
             });
             old.copy_from_slice(&new);
-            random.step(&mut at, 6, subject.sample.size);
+            random_step(&mut random, &mut at, 6, subject.sample.size);
         }
     }
 }

@@ -1,11 +1,12 @@
 //! Units: a joint described in other units behaves in the same way. This finds parameters with a missing or wrong unit.
 
 use super::findings::Recorder;
-use super::random::Random;
+use super::random::random_step;
 use super::samples::{Law, own_check};
 use super::subject::Subject;
 use serde_json::Value as Json;
 use voussoir_core::plugin::{Card, Parameter, Quantity, Shape};
+use voussoir_core::random::Random;
 
 /// The other units: a length and a stress. They are powers of two, so that nothing is rounded.
 pub(super) const LENGTH: f64 = 8.0;
@@ -107,7 +108,7 @@ pub(super) fn check(recorder: &mut Recorder, subject: &Subject, other: &super::p
         let (mut old, mut old_there) = (point.untouched(), other.untouched());
         let (mut at, mut path) = ([0.0; 6], Vec::new());
         for _ in 0..20 {
-            random.step(&mut at, point.components(), sample.size);
+            random_step(&mut random, &mut at, point.components(), sample.size);
             path.push(at);
             let (mut new, mut new_there) = (old.clone(), old_there.clone());
             let here = point.update(&at, &old, &mut new);

@@ -4,10 +4,11 @@
 use super::findings::Recorder;
 use super::options::{CountAllocations, Options};
 use super::point::{Point, Said};
-use super::random::Random;
+use super::random::random_step;
 use super::subject::Subject;
 use std::collections::BTreeMap;
 use voussoir_core::plugin::{Property, Sample};
+use voussoir_core::random::Random;
 
 /// Number of walks of each sample, and of steps of each walk.
 const WALKS: usize = 200;
@@ -146,7 +147,7 @@ fn walk(recorder: &mut Recorder, subject: &Subject, random: &mut Random, seen: &
     let (n, size) = (point.components(), point.state_size());
     let (mut old, mut at, mut path) = (point.untouched(), [0.0; 6], Vec::new());
     for _ in 0..STEPS {
-        random.step(&mut at, n, sample.size);
+        random_step(random, &mut at, n, sample.size);
         path.push(at);
         let (mut new, mut other) = (vec![0.0; size], vec![9.0; size]);
         let here = match point.update(&at, &old, &mut new) {
@@ -251,7 +252,7 @@ fn tangent(
     let Subject { point, sample, stiffness, .. } = subject;
     let (Some(at), n) = (path.last(), point.components()) else { return false };
     let mut direction = [0.0; 6];
-    direction[..n].iter_mut().for_each(|d| *d = random.between(-1.0, 1.0));
+    direction[..n].iter_mut().for_each(|d| *d = random.signed());
     let h = 1e-6 * (sample.size + at.iter().fold(0.0_f64, |a, b| a.max(b.abs())));
     let mut other = vec![0.0; old.len()];
     let mut ends = [here.force; 4];
@@ -286,7 +287,7 @@ fn allocations(recorder: &mut Recorder, subject: &Subject, count: CountAllocatio
         if index % STEPS == 0 {
             (old, at) = (point.untouched(), [0.0; 6]);
         }
-        random.step(&mut at, point.components(), sample.size);
+        random_step(&mut random, &mut at, point.components(), sample.size);
         allocated += count(&mut || failed |= point.update(&at, &old, &mut new).is_err());
         old.copy_from_slice(&new);
     }

@@ -65,15 +65,14 @@ fn rank(place: &Place) -> f64 {
 
 /// The places of the first line of the curve, from left to right.
 fn places<'a>(study: &StudyOutput<'a>) -> Option<Vec<Place<'a>>> {
-    let curve = study.results.own.get("curve")?.as_array()?;
+    let curve = study.results.own.curve.as_ref()?;
     let line = line_name(curve.first()?, &study.keys);
     let mut found: Vec<(f64, usize)> = curve
         .iter()
         .filter(|entry| line_name(entry, &study.keys) == line)
         .filter_map(|entry| {
-            let id = entry["case"].as_u64()? as usize;
-            let place = study.results.cases.iter().position(|case| case.label.id == id)?;
-            Some((entry["value"].as_f64()?, place))
+            let place = study.results.cases.iter().position(|case| case.label.id == entry.case)?;
+            Some((entry.value, place))
         })
         .collect();
     found.sort_by(|a, b| a.0.total_cmp(&b.0));

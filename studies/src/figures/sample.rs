@@ -2,9 +2,9 @@
 //! of a supposed four-hinge mechanism, a ring of many voussoirs, a wall with invented forces.
 
 use crate::results::{CaseLabel, CaseResult, FieldEntry, MotionEntry, ProofFields, StageResult};
+use crate::scenes::mesh::Mesh;
 use std::sync::Arc;
 use voussoir_core::certificate::{Certificate, Hinge, Mechanism, MechanismKind, Side, Sliding};
-use voussoir_core::elastic::MeshDensity;
 use voussoir_core::law::Plane;
 use voussoir_core::limit::Status;
 use voussoir_core::model::geometry::{Vec2, cross, turned};
@@ -67,7 +67,7 @@ pub fn arch(span: f64, rise: f64, voussoirs: usize) -> Assembly {
         joints,
         width: 5.81,
         plane: Plane::Strain,
-        mesh: MeshDensity::default(),
+        mesh: Mesh::default().into(),
         arch,
         bridge: None,
     }
@@ -324,7 +324,7 @@ pub fn wall(courses: usize, bricks: usize) -> (Assembly, Vec<Stage>, CaseResult)
         joints,
         width: 0.2,
         plane: Plane::Strain,
-        mesh: MeshDensity::default(),
+        mesh: Mesh::default().into(),
         arch: None,
         bridge: None,
     };

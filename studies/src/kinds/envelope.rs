@@ -105,6 +105,6 @@ impl StudyKind for Envelope {
 
     fn own_results(&self, study: &Study, cases: &[CaseResult]) -> OwnResults {
         let Some(request) = study.outline.read::<Request>() else { return OwnResults::default() };
-        OwnResults { other: worsts::entries(study, &request, cases), ..OwnResults::default() }
+        OwnResults { entries: worsts::entries(study, &request, cases), ..OwnResults::default() }
     }
 }

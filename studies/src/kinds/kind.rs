@@ -1,11 +1,10 @@
 //! The trait of a study kind: how its files are read, how its cases are solved, and what it adds to results.
 
 use super::stored_results::{RESULTS, StoredResults};
-use crate::results::{CaseLabel, CaseResult, Comparison};
+use crate::results::{CaseLabel, CaseResult, Comparison, KindEntries};
 use crate::solve::{Observer, Unobserved, solve_cases};
 use crate::study::{Case, Outline, ReadFile, Study, StudyError, StudySource};
 use crate::verify::Agreement;
-use serde_json::{Map, Value as Json};
 use std::borrow::Cow;
 use std::io::{Cursor, Read};
 use voussoir_core::plugin::{Diagnostic, Parameter};
@@ -64,8 +63,8 @@ pub trait StudyKind: Sync {
 pub struct OwnResults {
     /// Comparison of the cases.
     pub comparison: Option<Comparison>,
-    /// Other entries of results.json, by name.
-    pub other: Map<String, Json>,
+    /// Other entries of results.json.
+    pub entries: KindEntries,
 }
 
 /// A study of any kind without mistakes, as commands use it.

@@ -91,6 +91,6 @@ impl StudyKind for Optimise {
 
     fn own_results(&self, study: &Study, cases: &[CaseResult]) -> OwnResults {
         let Some(request) = study.outline.read::<Request>() else { return OwnResults::default() };
-        OwnResults { other: optima::entries(study, &request, cases), ..OwnResults::default() }
+        OwnResults { entries: optima::entries(study, &request, cases), ..OwnResults::default() }
     }
 }

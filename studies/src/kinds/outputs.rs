@@ -2,8 +2,8 @@
 
 use super::kind::{OwnResults, RunRequest, kind};
 use super::stored_results::RESULTS;
-use crate::figures::format::{format_number, snap_words};
-use crate::results::{CaseResult, FinishedCases, Origin, StudyResults, Totals, words};
+use crate::figures::format::{format_number, snap_words, status_word};
+use crate::results::{CaseResult, FinishedCases, Origin, StudyResults, Totals, WorstEntry, words};
 use crate::side_by_side::side_by_side;
 use crate::study::{Case, Drawn, Study, SweptKeys};
 use crate::writers::comparison::comparison_table;
@@ -13,7 +13,6 @@ use crate::writers::results_json::add_cases;
 use crate::writers::results_text::{ResultsHead, ResultsText};
 use crate::writers::table::results_table;
 use crate::writers::{StudyOutput, drawn, tables, written};
-use serde_json::{Map, Value as Json};
 use std::borrow::Cow;
 use std::io;
 
@@ -51,7 +50,7 @@ impl Study {
             origin: Origin::here(&words(&self.resolved)),
             only_cases: (ids.len() < self.count()).then_some(ids),
             comparison: gathered.own.comparison.clone(),
-            own: gathered.own.other.clone(),
+            own: gathered.own.entries.clone(),
             ..StudyResults::default()
         }
     }
@@ -188,26 +187,24 @@ fn table(output: &StudyOutput) -> String {
         table += "\n";
         table += &comparison_table(comparison, &output.keys);
     }
-    table + &found(&output.results.own, &output.keys)
+    table + &found(output.results.own.worsts.as_deref().unwrap_or_default(), &output.keys)
 }
 
-/// Returns the results of a kind that searches, one line each.
-fn found(own: &Map<String, Json>, keys: &SweptKeys) -> String {
-    let entries = |name: &str| own.get(name).and_then(Json::as_array).into_iter().flatten();
-    let line = |entry: &Json| {
-        let words =
-            ["variant", "vehicle", "direction"].iter().filter_map(|key| Some(format!(", {}", entry[key].as_str()?)));
-        let number = |key: &str| entry[key].as_f64().map_or("-".to_string(), |x| format_number(x, 6));
-        let snaps = snap_words(entry["result"].as_f64(), entry["first_limit_point"].as_f64(), |x| format_number(x, 6));
-        let status = entry["status"].as_str().unwrap_or_default();
-        let (key, case) = (entry["parameter"].as_str().unwrap_or_default(), &entry["case"]);
+/// Returns the results of an envelope, one line each.
+fn found(worsts: &[WorstEntry], keys: &SweptKeys) -> String {
+    let line = |WorstEntry { place, parameter: key, .. }: &WorstEntry| {
+        let words = place.names().map(|name| format!(", {name}"));
+        let number = |x: f64| format_number(x, 6);
+        let snaps = snap_words(place.result, place.first_limit_point, number);
         format!(
-            "\nworst: {} ({status}) at {key} = {}{}{} (case {case})\n",
-            snaps.unwrap_or_else(|| number("result")),
-            number("value"),
+            "\nworst: {} ({}) at {key} = {}{}{} (case {})\n",
+            snaps.unwrap_or_else(|| place.result.map_or("-".into(), number)),
+            status_word(place.status),
+            number(place.value),
             keys.unit(key).map_or(String::new(), |unit| format!(" {unit}")),
-            words.collect::<String>()
+            words.collect::<String>(),
+            place.case
         )
     };
-    entries("worsts").map(line).collect()
+    worsts.iter().map(line).collect()
 }

@@ -1,7 +1,8 @@
 //! Shared code of kinds that search a range of values: golden sections, and intervals of one status.
 
+use crate::results::IntervalEntry;
 use crate::study::{Case, Outline, Study};
-use serde_json::{Value as Json, json};
+use serde_json::Value as Json;
 use voussoir_core::plugin::Diagnostic;
 
 /// Golden section: (√5 − 1)/2.
@@ -27,10 +28,10 @@ pub(super) fn golden_section([mut low, mut high]: [f64; 2], width: f64, mut meri
 }
 
 /// Returns the intervals of one status, from their first value to their last, of (value, status) in ascending order.
-pub(super) fn intervals(tried: &[(f64, Json)]) -> Vec<Json> {
+pub(super) fn intervals(tried: &[(f64, &str)]) -> Vec<IntervalEntry> {
     let stretches = tried.chunk_by(|a, b| a.1 == b.1);
     let ends = stretches.filter_map(|stretch| Some((stretch.first()?, stretch.last()?)));
-    ends.map(|(a, b)| json!({ "from": a.0, "to": b.0, "status": a.1 })).collect()
+    ends.map(|(a, b)| IntervalEntry { from: a.0, to: b.0, status: a.1.into() }).collect()
 }
 
 /// Returns a case of a study at other values, without its own figures, with its id among all cases.

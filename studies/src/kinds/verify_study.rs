@@ -6,7 +6,7 @@ use super::stored_cases::read_stored_cases;
 use super::stored_results::{Comparison, RESULTS, StoredResults};
 use crate::caught::caught;
 use crate::results::stored_path::PATH_PROOFS;
-use crate::results::{CaseResult, FORMAT, FinishedCases, HEAD, Origin, TakeCases};
+use crate::results::{CaseResult, FinishedCases, HEAD, Origin, TakeCases};
 use crate::side_by_side::{in_order, side_by_side};
 use crate::solve::{Observer, solve_followed};
 use crate::study::Study;
@@ -237,11 +237,7 @@ impl Check<'_> {
         let next = self.ids.last().map_or(0, |last| last + 1);
         self.missing.extend(next..self.study.count());
         let agreement = self.agreement.unwrap_or_default();
-        let mut wrong = Vec::new();
-        if self.origin.format > FORMAT {
-            let format = self.origin.format;
-            wrong.push(format!("format is {format}, but this program reads formats up to {FORMAT}"));
-        }
+        let mut wrong: Vec<_> = self.origin.too_new().into_iter().collect();
         let study = beside.get("study").unwrap_or(&Json::Null);
         if study.as_str() != Some(&self.study.name) {
             wrong.push(format!("study is {study}, but the name in resolved.toml is \"{}\"", self.study.name));
@@ -265,7 +261,7 @@ impl Check<'_> {
                     |(key, _): &(&String, &Json)| !OWN_KEYS.contains(&key.as_str()) && !HEAD.contains(&key.as_str());
                 let stored: Map<String, Json> =
                     beside.iter().filter(is_added).map(|(key, value)| (key.clone(), value.clone())).collect();
-                if !agreement.same(&stored, &own.other) {
+                if !agreement.same(&Json::from(stored), &json!(own.entries)) {
                     wrong.push(added(&self.study.kind));
                 }
             }

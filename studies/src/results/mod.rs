@@ -8,6 +8,7 @@ pub mod convert;
 mod entries;
 mod finished;
 pub mod inelastic_state;
+mod kind_entries;
 mod limit_points;
 pub mod load_entries;
 mod load_factor_error;
@@ -17,6 +18,7 @@ mod rank;
 pub mod sealed_line;
 mod sensitivity;
 pub mod stage_start;
+mod stored_entry;
 pub mod stored_path;
 mod study_results;
 pub mod thrust_line;
@@ -31,11 +33,13 @@ pub use entries::{
     DisplacementEntry, EventEntry, FieldEntry, FillEntry, LoadEntry, LoadOrigin, MotionEntry, StateEntry, YieldedEntry,
 };
 pub use finished::{FinishedCases, TakeCases};
+pub use kind_entries::{FiniteEntry, IntervalEntry, KindEntries, OptimumEntry, PlaceEntry, WorstEntry};
 pub use limit_points::{BranchEntry, FollowedTo, LimitPointEntry, NextState, StabilityEntry};
 pub use load_factor_error::LoadFactorError;
 pub use origin::{FORMAT, HEAD, Origin, PluginCrate, head, this_program, without_origin, words};
 pub use rank::{least_of, load_rank};
 pub use sensitivity::SensitivityEntry;
+pub use stored_entry::{StoredEntry, StoredOutline};
 pub use study_results::StudyResults;
 pub use totals::{MAX_SHOWN, Totals};
 

@@ -64,6 +64,12 @@ pub struct Origin {
 }
 
 impl Origin {
+    /// Returns a finding if a newer program has written the results.
+    pub fn too_new(&self) -> Option<String> {
+        (self.format > FORMAT)
+            .then(|| format!("format is {}, but this program reads formats up to {FORMAT}", self.format))
+    }
+
     /// Returns the origin of results of this program on this processor. `named` contains the words of a study,
     /// including the tags of its plug-ins.
     pub fn here(named: &BTreeSet<String>) -> Origin {

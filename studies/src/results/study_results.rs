@@ -2,9 +2,9 @@
 
 use super::case_result::CaseResult;
 use super::comparison::Comparison;
+use super::kind_entries::KindEntries;
 use super::origin::Origin;
 use serde::{Deserialize, Serialize};
-use serde_json::{Map, Value as Json};
 
 /// All results of a study.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
@@ -30,9 +30,9 @@ pub struct StudyResults {
     /// For `kind = "compare"` and `"map"`: the comparison of the cases.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub comparison: Option<Comparison>,
-    /// Additional results of other study kinds, by name.
+    /// Additional results of study kinds.
     #[serde(flatten)]
-    pub own: Map<String, Json>,
+    pub own: KindEntries,
 }
 
 impl StudyResults {

@@ -8,7 +8,7 @@ use super::profile::{Profile, Ring, Springing};
 use super::thickness::Thickness;
 use voussoir_core::model::geometry::bounding_box;
 use voussoir_core::model::{ArchLayout, Assembly, Body, Bond, Catalogue, Gap, Joint, Scene, find_joints};
-use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind, Range};
+use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind};
 
 /// Connection of the ring with its supports.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
@@ -60,7 +60,7 @@ impl Arch {
     /// Returns the ring, or all mistakes in the geometry, with paths from the scene's table.
     pub fn ring(&self) -> Result<Ring, Vec<Diagnostic>> {
         let mut diagnostics = Vec::new();
-        diagnostics.extend(out_of_range("width", self.width, Range::POSITIVE));
+        diagnostics.extend(out_of_range::<Self>("width", self.width));
         diagnostics.extend(mesh_diagnostics(self.mesh.as_ref()));
         if self.voussoirs.is_some_and(|n| n > MAX_VOUSSOIRS) {
             diagnostics.push(Diagnostic::new("voussoirs", format!("at most {MAX_VOUSSOIRS}")));

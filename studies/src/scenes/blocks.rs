@@ -2,7 +2,7 @@
 #![doc = include_str!("blocks.md")]
 
 use super::keys::{PlaneState, SceneKeys};
-use super::lookup::{from_root, law, material, out_of_range, pairs_of, take, unknown};
+use super::lookup::{from_root, law, material, out_of_range, outside, pairs_of, take, unknown};
 use super::mesh::{Mesh, density, mesh_diagnostics};
 use voussoir_core::model::geometry::{Vec2, area_and_centroid, bounding_box, cross};
 use voussoir_core::model::{
@@ -109,7 +109,7 @@ fn polygon(vertices: &[[f64; 2]]) -> Result<Vec<Vec2>, String> {
 /// Checks that openings are ≥ 0, and that a table covers the joint in order.
 fn gap_mistakes(path: &str, gap: &Gap) -> Vec<Diagnostic> {
     let table = match gap {
-        Gap::Uniform(gap) => return out_of_range(path, *gap, Range::NON_NEGATIVE).into_iter().collect(),
+        Gap::Uniform(gap) => return outside(Range::NON_NEGATIVE, path, *gap).into_iter().collect(),
         Gap::Table(table) => table,
     };
     let mut diagnostics = Vec::new();
@@ -117,8 +117,8 @@ fn gap_mistakes(path: &str, gap: &Gap) -> Vec<Diagnostic> {
         diagnostics.push(Diagnostic::new(path, "the table has no row [s, gap]"));
     }
     for (i, [s, gap]) in table.iter().enumerate() {
-        diagnostics.extend(out_of_range(&format!("{path}.{i}.0"), *s, Range::ANY));
-        diagnostics.extend(out_of_range(&format!("{path}.{i}.1"), *gap, Range::NON_NEGATIVE));
+        diagnostics.extend(outside(Range::ANY, &format!("{path}.{i}.0"), *s));
+        diagnostics.extend(outside(Range::NON_NEGATIVE, &format!("{path}.{i}.1"), *gap));
         if i > 0 && *s <= table[i - 1][0] {
             let message = format!("{s} does not come after {}: s grows along the joint", table[i - 1][0]);
             diagnostics.push(Diagnostic::new(format!("{path}.{i}.0"), message));
@@ -131,7 +131,7 @@ impl Blocks {
     /// Returns the polygons, and all mistakes that need no catalogue, with paths from the scene's table.
     fn shapes(&self) -> (Vec<Option<Vec<Vec2>>>, Vec<Diagnostic>) {
         let mut diagnostics = Vec::new();
-        diagnostics.extend(out_of_range("width", self.width, Range::POSITIVE));
+        diagnostics.extend(out_of_range::<Self>("width", self.width));
         diagnostics.extend(mesh_diagnostics(self.mesh.as_ref()));
         if self.blocks.is_empty() {
             diagnostics.push(Diagnostic::new("blocks", "there is no block"));

@@ -21,7 +21,7 @@ use super::lookup::{from_root, law, material, out_of_range, pairs_of, take};
 use super::mesh::{Mesh, density, mesh_diagnostics};
 use voussoir_core::model::geometry::bounding_box;
 use voussoir_core::model::{ArchLayout, Assembly, Body, Bond, Bridge, Catalogue, Gap, Scene, find_joints};
-use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind, Range};
+use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind};
 
 /// Spans on abutments and piers, with fill.
 #[derive(Debug, Keys)]
@@ -75,7 +75,7 @@ impl BridgeScene {
     /// Returns the blocks, or all mistakes in the geometry, with paths from the scene's table.
     fn shapes(&self) -> Result<Shapes, Vec<Diagnostic>> {
         let mut diagnostics = Vec::new();
-        diagnostics.extend(out_of_range("width", self.width, Range::POSITIVE));
+        diagnostics.extend(out_of_range::<Self>("width", self.width));
         diagnostics.extend(mesh_diagnostics(self.mesh.as_ref()));
         if self.spans.is_empty() {
             diagnostics.push(Diagnostic::new("spans", "there is no span"));

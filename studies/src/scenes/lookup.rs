@@ -2,7 +2,8 @@
 
 use crate::config::synonyms::nearest_name;
 use voussoir_core::model::Catalogue;
-use voussoir_core::plugin::{Diagnostic, Range};
+use voussoir_core::plugin::keys::like;
+use voussoir_core::plugin::{Diagnostic, Keys, Range, Shape};
 
 /// Returns the index of a material, or a mistake at `path`.
 pub(super) fn material(catalogue: &Catalogue, name: &str, path: &str) -> Result<usize, Diagnostic> {
@@ -27,9 +28,21 @@ pub(crate) fn unknown<'a>(path: &str, kind: &str, name: &str, names: impl Iterat
     }
 }
 
-/// Returns a diagnostic for a number outside its range; `None` if it is inside.
-pub(super) fn out_of_range(path: &str, value: f64, range: Range) -> Option<Diagnostic> {
+/// Returns a diagnostic for a number outside a range; `None` if it is inside.
+pub(super) fn outside(range: Range, path: &str, value: f64) -> Option<Diagnostic> {
     (!range.contains(value)).then(|| Diagnostic::new(path, format!("{value} must be {}", range.describe())))
+}
+
+/// Returns a diagnostic for a number outside the range of its key, which is the last name in `path`; `None` if it is inside.
+///
+/// # Panics
+/// The table `T` has no such key, or the key is no number.
+pub(super) fn out_of_range<T: Keys>(path: &str, value: f64) -> Option<Diagnostic> {
+    let name = path.rsplit('.').find(|word| word.parse::<usize>().is_err()).unwrap_or(path);
+    match &like(T::PARAMETERS, name).shape {
+        Shape::Number(_, range) | Shape::Tuple([(_, Shape::Number(_, range)), ..]) => outside(*range, path, value),
+        _ => panic!("{name} is no number"),
+    }
 }
 
 /// Returns the value, or adds its mistake to the list.

@@ -1,6 +1,6 @@
 //! `[scene.mesh]`: the mesh of deformable blocks, with the same keys in every scene.
 
-use super::lookup::out_of_range;
+use super::lookup::outside;
 use voussoir_core::elastic::MeshDensity;
 use voussoir_core::plugin::{Diagnostic, Keys, Range};
 
@@ -97,23 +97,12 @@ pub(super) fn mesh_diagnostics(mesh: Option<&Mesh>) -> Vec<Diagnostic> {
         diagnostics.push(Diagnostic::new("mesh.elements", message));
     }
     match mesh.grading {
-        Grading::Both(grading) => diagnostics.extend(out_of_range("mesh.grading", grading, GRADING)),
+        Grading::Both(grading) => diagnostics.extend(outside(GRADING, "mesh.grading", grading)),
         Grading::Each(each) => {
             for (i, grading) in each.into_iter().enumerate() {
-                diagnostics.extend(out_of_range(&format!("mesh.grading.{i}"), grading, GRADING));
+                diagnostics.extend(outside(GRADING, &format!("mesh.grading.{i}"), grading));
             }
         }
     }
     diagnostics
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A study without a mesh and an assembly made in code have the same elements.
-    #[test]
-    fn the_defaults_are_those_of_the_core() {
-        assert_eq!(MeshDensity::from(Mesh::default()), MeshDensity::default());
-    }
 }

@@ -6,7 +6,7 @@
 //! normal; the joint there is vertical. Sources: plane geometry; the catenary after Bernoulli, Huygens and Leibniz (1691).
 
 use super::curve::Curve;
-use super::lookup::out_of_range;
+use super::lookup::{out_of_range, outside};
 use super::surveyed::cut;
 use super::thickness::Thickness;
 use voussoir_core::model::crosses_itself;
@@ -207,7 +207,7 @@ impl Profile {
         if let Some(springing) = springing {
             let sides = springing.sides();
             let sides = if sides[0] == sides[1] { &sides[..1] } else { &sides[..] };
-            diagnostics.extend(sides.iter().filter_map(|&(angle, key)| out_of_range(key, angle, INCLINATION)));
+            diagnostics.extend(sides.iter().filter_map(|&(angle, key)| outside(INCLINATION, key, angle)));
         }
         let curve = self.curve().map_err(|mut wrong| diagnostics.append(&mut wrong)).ok();
         let (Some(curve), Some(thickness), Some(voussoirs)) = (curve, thickness, voussoirs) else {
@@ -240,8 +240,8 @@ impl Profile {
             Profile::Points { .. } | Profile::Surveyed { .. } => unreachable!("a list of points is no curve"),
         };
         let mut diagnostics = Vec::new();
-        diagnostics.extend(out_of_range("profile.span", span, Range::POSITIVE));
-        diagnostics.extend(out_of_range("profile.rise", rise, Range::POSITIVE));
+        diagnostics.extend(out_of_range::<ProfileKeys>("profile.span", span));
+        diagnostics.extend(out_of_range::<ProfileKeys>("profile.rise", rise));
         if diagnostics.is_empty() && !(1e-6..=1e3).contains(&(rise / span)) {
             let message = format!("{rise} m is out of proportion to the span of {span} m: 1e-6 to 1e3 times the span");
             diagnostics.push(Diagnostic::new("profile.rise", message));

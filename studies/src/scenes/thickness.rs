@@ -1,14 +1,16 @@
 //! Thickness of a ring: constant, or growing from the crown to the springings.
 
-use super::lookup::out_of_range;
+use super::lookup::outside;
 use voussoir_core::plugin::{Diagnostic, Keys, Range};
+
+const THICKNESS: Range = Range::POSITIVE;
 
 /// Thickness of a ring, along its joints.
 #[derive(Debug, Clone, Copy, PartialEq, Keys)]
 #[keys(untagged)]
 pub enum Thickness {
     /// Constant thickness \[m\].
-    #[key(unit = "m", range = "> 0")]
+    #[key(unit = "m", range = THICKNESS)]
     Even(f64),
     /// Linear in the arc length of the intrados.
     Tapered(Taper),
@@ -18,10 +20,10 @@ pub enum Thickness {
 #[derive(Debug, Clone, Copy, PartialEq, Keys)]
 pub struct Taper {
     /// thickness at the crown, the middle of the intrados
-    #[key(unit = "m", range = "> 0")]
+    #[key(unit = "m", range = THICKNESS)]
     pub crown: f64,
     /// thickness at both springings
-    #[key(unit = "m", range = "> 0")]
+    #[key(unit = "m", range = THICKNESS)]
     pub springing: f64,
 }
 
@@ -50,7 +52,7 @@ impl Thickness {
                 vec![("thickness.crown", crown), ("thickness.springing", springing)]
             }
         };
-        numbers.into_iter().filter_map(|(key, number)| out_of_range(key, number, Range::POSITIVE)).collect()
+        numbers.into_iter().filter_map(|(key, number)| outside(THICKNESS, key, number)).collect()
     }
 }
 

@@ -6,7 +6,7 @@ use super::lookup::{from_root, law, material, out_of_range, pairs_of, take};
 use super::mesh::{Mesh, density, mesh_diagnostics};
 use voussoir_core::model::geometry::{Vec2, bounding_box};
 use voussoir_core::model::{Assembly, Body, Bond, Catalogue, Gap, Scene, find_joints};
-use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind, Range};
+use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind};
 
 /// Bond of the courses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
@@ -120,10 +120,10 @@ impl Wall {
     /// Returns the sides of the bricks, course by course from the bottom.
     fn courses(&self) -> Result<Vec<Course>, Vec<Diagnostic>> {
         let mut diagnostics = Vec::new();
-        diagnostics.extend(out_of_range("width", self.width, Range::POSITIVE));
+        diagnostics.extend(out_of_range::<Self>("width", self.width));
         diagnostics.extend(mesh_diagnostics(self.mesh.as_ref()));
         for (i, &side) in self.brick.iter().enumerate() {
-            diagnostics.extend(out_of_range(&format!("brick.{i}"), side, Range::POSITIVE));
+            diagnostics.extend(out_of_range::<Self>(&format!("brick.{i}"), side));
         }
         let widths = self.widths(&mut diagnostics);
         if !diagnostics.is_empty() {

@@ -88,8 +88,8 @@ pub(super) fn most_onerous(
         return Ok(None);
     }
     let results = study.results(env!("CARGO_PKG_VERSION"), results);
-    let worst = results.own.get("worsts").and_then(|all| all.get(0));
-    let result = worst.and_then(|worst| results.case(worst["case"].as_u64()? as usize));
+    let worst = results.own.worsts.iter().flatten().next();
+    let result = worst.and_then(|worst| results.case(worst.place.case));
     // If every position carries any load, the load stays at its place.
     let result = result.or(results.cases.first());
     let Some((result, case)) = result.and_then(|result| Some((result, study.case_of(&result.label)?))) else {

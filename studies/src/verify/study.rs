@@ -5,7 +5,7 @@ use super::case::verify_case;
 use super::findings::mismatch;
 use crate::caught::caught;
 use crate::kinds::kind;
-use crate::results::{CaseResult, FORMAT, Origin, StudyResults};
+use crate::results::{CaseResult, Origin, StudyResults};
 use crate::solve::{Observer, Unobserved, solve_case};
 use crate::study::{Case, Study};
 use serde::Deserialize;
@@ -47,7 +47,7 @@ pub fn solve_again(study: &Study, results: &StudyResults, jobs: usize, observer:
 /// a result file.
 pub fn verify_against(study: &Study, stored: &Json, again: &[CaseResult]) -> Result<Vec<(usize, String)>, String> {
     let results = StudyResults::deserialize(stored).map_err(|error| error.to_string())?;
-    let entries = stored["cases"].as_array().ok_or("there is no list of cases")?;
+    let entries = stored.get("cases").and_then(Json::as_array).ok_or("there is no list of cases")?;
     let agreement = Agreement::of(&results.origin, &study.resolved);
     let mut wrong = study_findings(study, &results, agreement);
     wrong.extend(id_findings(study, &results, again));
@@ -116,10 +116,7 @@ fn hash_finding(case: &Case, result: &CaseResult, origin: &Origin) -> Option<Str
 
 /// Checks the entries beside the cases.
 fn study_findings(study: &Study, results: &StudyResults, agreement: Agreement) -> Vec<(usize, String)> {
-    let mut wrong = Vec::new();
-    if results.origin.format > FORMAT {
-        wrong.push((0, format!("format is {}, but this program reads formats up to {FORMAT}", results.origin.format)));
-    }
+    let mut wrong: Vec<_> = results.origin.too_new().map(|why| (0, why)).into_iter().collect();
     if results.study != study.name {
         wrong.push((0, mismatch("study", (&results.study, "the name in resolved.toml is", &study.name))));
     }
@@ -134,7 +131,7 @@ fn study_findings(study: &Study, results: &StudyResults, agreement: Agreement) -
     if !agreement.same(&results.comparison, &own.comparison) {
         wrong.push((0, COMPARISON.into()));
     }
-    if !agreement.same(&results.own, &own.other) {
+    if !agreement.same(&results.own, &own.entries) {
         wrong.push((0, added(&study.kind)));
     }
     wrong

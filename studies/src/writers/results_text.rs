@@ -3,10 +3,10 @@
 //! The layout is that of `serde_json::to_string_pretty`. The texts of cases can be made in parallel and need not be
 //! kept in memory.
 
-use crate::results::{CaseResult, Comparison, Origin};
+use crate::results::{CaseResult, Comparison, KindEntries, Origin};
 use serde::Serialize;
+use serde_json::Value as Json;
 use serde_json::ser::{Formatter, Serializer};
-use serde_json::{Map, Value as Json};
 use std::io::{self, Write};
 
 /// The entries before the cases.
@@ -82,12 +82,14 @@ impl<W: Write> ResultsText<W> {
     }
 
     /// Writes the entries of the study kind after the cases, and returns the output.
-    pub fn finish(mut self, comparison: Option<&Comparison>, own: &Map<String, Json>) -> io::Result<W> {
+    pub fn finish(mut self, comparison: Option<&Comparison>, own: &KindEntries) -> io::Result<W> {
         self.out.write_all(if self.cases == 0 { b"]" } else { b"\n  ]" })?;
         if let Some(comparison) = comparison {
             entry(&mut self.out, b",\n", "comparison", comparison)?;
         }
-        own.iter().try_for_each(|(key, value)| entry(&mut self.out, b",\n", key, value))?;
+        if let Json::Object(own) = serde_json::to_value(own)? {
+            own.iter().try_for_each(|(key, value)| entry(&mut self.out, b",\n", key, value))?;
+        }
         self.out.write_all(b"\n}\n")?;
         Ok(self.out)
     }
@@ -185,7 +187,7 @@ mod tests {
     use crate::results::{StudyResults, this_program};
     use crate::side_by_side::side_by_side;
     use crate::writers::results_json::add_cases;
-    use serde_json::json;
+    use serde_json::{Map, json};
 
     /// The text equals that of serde_json byte by byte, with and without optional entries, at any depth.
     #[test]
@@ -208,7 +210,10 @@ mod tests {
                 only_cases: full.then(|| vec![0, 2]),
                 cases: (0..cases).map(case).collect(),
                 comparison: full.then(|| serde_json::from_value(compared.clone()).expect("a comparison")),
-                own: if full { Map::from_iter([("o".to_string(), deep.clone())]) } else { Map::new() },
+                own: KindEntries {
+                    other: if full { Map::from_iter([("o".to_string(), deep.clone())]) } else { Map::new() },
+                    ..KindEntries::default()
+                },
             };
             let StudyResults { study, version, origin, date, only_cases, files, .. } = results.clone();
             let head = ResultsHead { study, version, origin, date, only_cases, files };

@@ -1,9 +1,8 @@
 //! The input of writers: the results, and the study that they were computed from.
 
 use super::columns::Labels;
-use crate::results::{CaseResult, StudyResults, Totals, least_of};
+use crate::results::{CaseResult, OptimumEntry, StudyResults, Totals, least_of};
 use crate::study::{Case, Drawn, Output, Resolved, Study, SweptKeys};
-use serde_json::Value as Json;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use voussoir_core::limit::Status;
@@ -111,10 +110,12 @@ impl<'a> StudyOutput<'a> {
 /// The cases that are drawn; `None` if all are drawn. For kinds that search: the cases that were found. Otherwise: the
 /// least load factor of each variant, and its first case without a result.
 pub(crate) fn drawn(figures: Drawn, results: &StudyResults) -> Option<BTreeSet<usize>> {
-    for found in ["worsts", "optima"] {
-        let Some(entries) = results.own.get(found).and_then(Json::as_array) else { continue };
-        let of = |entry: &Json| [entry["case"].as_u64(), entry["best_finite"]["case"].as_u64()];
-        return Some(entries.iter().flat_map(of).flatten().map(|id| id as usize).collect());
+    if let Some(worsts) = &results.own.worsts {
+        return Some(worsts.iter().map(|worst| worst.place.case).collect());
+    }
+    if let Some(optima) = &results.own.optima {
+        let of = |own: &OptimumEntry| [own.case, own.best_finite.as_ref().map(|best| best.case)];
+        return Some(optima.iter().flat_map(of).flatten().collect());
     }
     (figures == Drawn::Worst).then(|| {
         let mut alike: BTreeMap<_, Vec<&CaseResult>> = BTreeMap::new();

@@ -6,7 +6,7 @@
 mod shapes;
 mod written;
 
-use crate::sequence::Sequence;
+use voussoir::core::random::Random;
 
 /// A family of scenes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -109,7 +109,7 @@ pub enum Form {
 /// Returns scene `seed` of a family.
 pub fn family_scene(family: Family, seed: u64) -> FamilyScene {
     let salt = family as u64 + 1;
-    let mut numbers = Sequence::new(seed.wrapping_mul(11).wrapping_add(salt).wrapping_add(7_000_000_000));
+    let mut numbers = Random::new(seed.wrapping_mul(11).wrapping_add(salt).wrapping_add(7_000_000_000));
     let mut scene = shapes::drawn(family, &mut numbers);
     let round = family == Family::Bricks;
     scene.law = match numbers.unit() {
@@ -127,7 +127,7 @@ pub fn family_scene(family: Family, seed: u64) -> FamilyScene {
         scene.stiffness = Some([normal, normal * numbers.between(0.3, 0.8)]);
     } else {
         let spread = if family == Family::Random && numbers.chance(0.5) { 2.0 } else { 0.0 };
-        let modulus = |numbers: &mut Sequence| 10f64.powf(9.0 + decade - spread * numbers.unit());
+        let modulus = |numbers: &mut Random| 10f64.powf(9.0 + decade - spread * numbers.unit());
         scene.moduli = (0..scene.blocks.len()).map(|_| modulus(&mut numbers)).collect();
     }
     scene.elements = [numbers.whole(1, 3), numbers.whole(1, 2)];

@@ -1,7 +1,7 @@
 //! Shapes of the families: stacks, portals, arches and walls with their loads and settlements.
 
 use super::{Block, Family, FamilyScene, Law, Load};
-use crate::sequence::Sequence;
+use voussoir::core::random::Random;
 
 fn rectangle(low: [f64; 2], high: [f64; 2]) -> Block {
     Block { vertices: [low, [high[0], low[1]], high, [low[0], high[1]]], fixed: false }
@@ -27,7 +27,7 @@ fn scene(shape: &'static str, blocks: Vec<Block>, loads: Vec<Load>) -> FamilySce
 }
 
 /// Returns a scene of a family without law and stiffness.
-pub fn drawn(family: Family, numbers: &mut Sequence) -> FamilyScene {
+pub fn drawn(family: Family, numbers: &mut Random) -> FamilyScene {
     match family {
         Family::Random => any(numbers, 1.0),
         Family::Symmetric => symmetric(numbers),
@@ -38,7 +38,7 @@ pub fn drawn(family: Family, numbers: &mut Sequence) -> FamilyScene {
 }
 
 /// Returns a shape of unequal blocks; a small `rise` makes arches shallow and stacks slender.
-fn any(numbers: &mut Sequence, rise: f64) -> FamilyScene {
+fn any(numbers: &mut Random, rise: f64) -> FamilyScene {
     match numbers.whole(0, 3) {
         0 => stack(numbers, rise),
         1 => portal(numbers, false),
@@ -52,7 +52,7 @@ fn any(numbers: &mut Sequence, rise: f64) -> FamilyScene {
 }
 
 /// A stack of blocks with a horizontal push on one of the upper blocks.
-fn stack(numbers: &mut Sequence, slender: f64) -> FamilyScene {
+fn stack(numbers: &mut Random, slender: f64) -> FamilyScene {
     let mut blocks = vec![ground(-3.0, 3.0)];
     let (mut low, mut width, mut middle) = (0.0, numbers.between(0.5, 0.9) * slender.sqrt(), 0.0);
     for _ in 0..numbers.whole(2, 6) {
@@ -67,14 +67,14 @@ fn stack(numbers: &mut Sequence, slender: f64) -> FamilyScene {
 }
 
 /// A push on the left face of a rectangle.
-fn pushed(numbers: &mut Sequence, blocks: &[Block], block: usize) -> Load {
+fn pushed(numbers: &mut Random, blocks: &[Block], block: usize) -> Load {
     let [corner, _, top, _] = blocks[block].vertices;
     let height = corner[1] + (top[1] - corner[1]) * numbers.between(0.2, 0.9);
     Load::Point { block, point: [corner[0], height], force: [1000.0, 1000.0 * numbers.between(-0.3, 0.0)] }
 }
 
 /// Two posts of one or two blocks and a lintel, on one ground or on two.
-fn portal(numbers: &mut Sequence, two_grounds: bool) -> FamilyScene {
+fn portal(numbers: &mut Random, two_grounds: bool) -> FamilyScene {
     let mut blocks = if two_grounds { vec![ground(-2.0, -0.1), ground(0.1, 2.0)] } else { vec![ground(-2.0, 2.0)] };
     let (half, width, height) = (numbers.between(0.55, 0.9), numbers.between(0.3, 0.6), numbers.between(0.6, 1.4));
     let courses = numbers.whole(1, 2);
@@ -128,7 +128,7 @@ fn on_extrados(blocks: &[Block], block: usize, share: f64, force: [f64; 2]) -> L
 }
 
 /// Voussoirs between two springings.
-fn arch(numbers: &mut Sequence, count: usize, half: f64) -> FamilyScene {
+fn arch(numbers: &mut Random, count: usize, half: f64) -> FamilyScene {
     let radius = numbers.between(1.5, 3.0);
     let blocks = ring(count, radius, radius * numbers.between(0.15, 0.3), half);
     let force = [numbers.between(-400.0, 400.0), -1000.0];
@@ -137,7 +137,7 @@ fn arch(numbers: &mut Sequence, count: usize, half: f64) -> FamilyScene {
 }
 
 /// Two or three courses of two blocks and of one block.
-fn wall(numbers: &mut Sequence) -> FamilyScene {
+fn wall(numbers: &mut Random) -> FamilyScene {
     let mut blocks = vec![ground(-2.0, 2.0)];
     let (length, courses) = (numbers.between(0.4, 0.7), numbers.whole(2, 3));
     let mut low = 0.0;
@@ -160,7 +160,7 @@ fn wall(numbers: &mut Sequence) -> FamilyScene {
 }
 
 /// A shape with a vertical axis of symmetry; loads are symmetric, or horizontal.
-fn symmetric(numbers: &mut Sequence) -> FamilyScene {
+fn symmetric(numbers: &mut Random) -> FamilyScene {
     match numbers.whole(0, 3) {
         0 => {
             let count = 2 * numbers.whole(1, 3) + 1;
@@ -185,7 +185,7 @@ fn symmetric(numbers: &mut Sequence) -> FamilyScene {
 }
 
 /// Two equal posts and a lintel; the posts are pushed outwards, or the lintel is pushed to the right.
-fn symmetric_portal(numbers: &mut Sequence) -> FamilyScene {
+fn symmetric_portal(numbers: &mut Random) -> FamilyScene {
     let (half, width, height) = (numbers.between(0.55, 0.9), numbers.between(0.3, 0.6), numbers.between(0.6, 1.4));
     let top = height + numbers.between(0.25, 0.5);
     let reach = half + width * numbers.between(0.1, 0.4);
@@ -205,7 +205,7 @@ fn symmetric_portal(numbers: &mut Sequence) -> FamilyScene {
 
 /// Two blocks, one block on both, and again two. The lower blocks are pulled apart, or all blocks are pushed to the
 /// right.
-fn symmetric_wall(numbers: &mut Sequence) -> FamilyScene {
+fn symmetric_wall(numbers: &mut Random) -> FamilyScene {
     let (length, height) = (numbers.between(0.4, 0.7), numbers.between(0.2, 0.45));
     let mut blocks = vec![ground(-2.0, 2.0)];
     let pair =
@@ -225,7 +225,7 @@ fn symmetric_wall(numbers: &mut Sequence) -> FamilyScene {
 }
 
 /// Equal blocks: a wall in running bond, a stack, or a half circle.
-fn bricks(numbers: &mut Sequence) -> FamilyScene {
+fn bricks(numbers: &mut Random) -> FamilyScene {
     let push = |block: usize, point: [f64; 2]| Load::Point { block, point, force: [1000.0, 0.0] };
     match numbers.whole(0, 2) {
         0 => {
@@ -272,7 +272,7 @@ fn bricks(numbers: &mut Sequence) -> FamilyScene {
 }
 
 /// An arch, a portal on two grounds, or a stack, on supports that move.
-fn settled(numbers: &mut Sequence) -> FamilyScene {
+fn settled(numbers: &mut Random) -> FamilyScene {
     let size = numbers.power(-4.0, -2.3);
     let mut scene = match numbers.whole(0, 2) {
         0 => {
@@ -284,7 +284,7 @@ fn settled(numbers: &mut Sequence) -> FamilyScene {
     };
     let span = 3.0;
     let grounds = scene.blocks.iter().filter(|block| block.fixed).count();
-    let motion = |numbers: &mut Sequence| match numbers.whole(0, 3) {
+    let motion = |numbers: &mut Random| match numbers.whole(0, 3) {
         0 => [size * span, 0.0, 0.0],
         1 => [-size * span, 0.0, 0.0],
         2 => [0.0, -size * span, 0.0],

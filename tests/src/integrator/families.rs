@@ -1,6 +1,7 @@
 //! Random small scenes: stacks, portals, arches of three to five blocks and walls, each with its mirror image.
 
 use std::fmt::Write as _;
+use voussoir::core::random::Random;
 
 /// A scene: blocks with their vertices \[m\]; the first are the ground.
 #[derive(Debug, Clone)]
@@ -19,26 +20,6 @@ pub struct SmallScene {
     pub associated: bool,
 }
 
-/// Numbers between 0 and 1 from a seed (xorshift).
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.next()
-    }
-
-    fn count(&mut self, low: usize, high: usize) -> usize {
-        low + (self.next() * (high + 1 - low) as f64) as usize
-    }
-}
-
 fn rectangle(low: [f64; 2], high: [f64; 2]) -> Vec<[f64; 2]> {
     vec![low, [high[0], low[1]], high, [low[0], high[1]]]
 }
@@ -46,8 +27,7 @@ fn rectangle(low: [f64; 2], high: [f64; 2]) -> Vec<[f64; 2]> {
 impl SmallScene {
     /// Returns the scene with this seed.
     pub fn of_seed(seed: u64) -> SmallScene {
-        let mut numbers = Numbers(0x9E37_79B9_7F4A_7C15 ^ (seed + 1).wrapping_mul(0xD129_0B2B_5C6F_7A35));
-        (0..8).for_each(|_| _ = numbers.next());
+        let mut numbers = Random::new(seed);
         let mut scene = match seed % 4 {
             0 => stack(&mut numbers),
             1 => portal(&mut numbers),
@@ -55,9 +35,9 @@ impl SmallScene {
             _ => wall(&mut numbers),
         };
         scene.friction = numbers.between(0.2, 0.9);
-        let normal = 10f64.powf(numbers.between(6.7, 9.0));
+        let normal = numbers.power(6.7, 9.0);
         scene.stiffness = [normal, normal * numbers.between(0.3, 0.8)];
-        scene.segments = numbers.count(1, 3);
+        scene.segments = numbers.whole(1, 3);
         scene
     }
 
@@ -124,26 +104,26 @@ loads = [{{ kind = "point", block = "b{loaded}", point = {at:?}, force = {force:
 }
 
 /// A stack of blocks with a horizontal push on one of the upper blocks.
-fn stack(numbers: &mut Numbers) -> SmallScene {
+fn stack(numbers: &mut Random) -> SmallScene {
     let mut blocks = vec![rectangle([-3.0, -0.4], [3.0, 0.0])];
     let (mut low, mut width, mut middle) = (0.0, numbers.between(0.5, 0.9), 0.0);
-    for _ in 0..numbers.count(2, 5) {
+    for _ in 0..numbers.whole(2, 5) {
         let high = low + numbers.between(0.25, 0.7);
         blocks.push(rectangle([middle - width / 2.0, low], [middle + width / 2.0, high]));
         (low, middle) = (high, middle + width * numbers.between(-0.08, 0.08));
         width *= numbers.between(0.75, 0.99);
     }
-    let loaded = numbers.count(blocks.len() / 2, blocks.len() - 1).max(1);
+    let loaded = numbers.whole(blocks.len() / 2, blocks.len() - 1).max(1);
     let [corner, _, top, _] = blocks[loaded].clone()[..] else { unreachable!("a rectangle") };
     let height = corner[1] + (top[1] - corner[1]) * numbers.between(0.2, 0.9);
     SmallScene::new("stack", 1, blocks).loaded(loaded, [corner[0], height], [1000.0, 0.0])
 }
 
 /// Two posts of one or two blocks and a lintel.
-fn portal(numbers: &mut Numbers) -> SmallScene {
+fn portal(numbers: &mut Random) -> SmallScene {
     let mut blocks = vec![rectangle([-3.0, -0.4], [3.0, 0.0])];
     let (half, width, height) = (numbers.between(0.5, 0.9), numbers.between(0.3, 0.6), numbers.between(0.6, 1.4));
-    let courses = numbers.count(1, 2);
+    let courses = numbers.whole(1, 2);
     for side in [-1.0, 1.0] {
         let width = width * numbers.between(0.9, 1.1);
         for course in 0..courses {
@@ -158,7 +138,7 @@ fn portal(numbers: &mut Numbers) -> SmallScene {
     blocks.push(rectangle([left, height], [right, top]));
     let last = blocks.len() - 1;
     let scene = SmallScene::new("portal", 1, blocks);
-    if numbers.next() < 0.7 {
+    if numbers.chance(0.7) {
         return scene.loaded(last, [left, height + (top - height) * numbers.between(0.1, 0.9)], [1000.0, 0.0]);
     }
     let x = left + (right - left) * numbers.between(0.1, 0.9);
@@ -166,8 +146,8 @@ fn portal(numbers: &mut Numbers) -> SmallScene {
 }
 
 /// Voussoirs between two springings.
-fn arch(numbers: &mut Numbers) -> SmallScene {
-    let (count, radius, thickness) = (numbers.count(3, 5), numbers.between(1.5, 3.0), numbers.between(0.3, 0.7));
+fn arch(numbers: &mut Random) -> SmallScene {
+    let (count, radius, thickness) = (numbers.whole(3, 5), numbers.between(1.5, 3.0), numbers.between(0.3, 0.7));
     let half = numbers.between(35.0, 75.0f64).to_radians();
     let at = |k: f64, r: f64| {
         let angle = half * (1.0 - 2.0 * k / count as f64);
@@ -178,7 +158,7 @@ fn arch(numbers: &mut Numbers) -> SmallScene {
     let n = count as f64;
     let mut blocks = vec![voussoir(-0.3, 0.0), voussoir(n, n + 0.3)];
     blocks.extend((0..count).map(|k| voussoir(k as f64, k as f64 + 1.0)));
-    let loaded = numbers.count(0, count - 1);
+    let loaded = numbers.whole(0, count - 1);
     let [a, b] = [at(loaded as f64, outer), at(loaded as f64 + 1.0, outer)];
     let share = numbers.between(0.1, 0.9);
     let place = [a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share];
@@ -187,9 +167,9 @@ fn arch(numbers: &mut Numbers) -> SmallScene {
 }
 
 /// Two or three courses of one, two and one blocks.
-fn wall(numbers: &mut Numbers) -> SmallScene {
+fn wall(numbers: &mut Random) -> SmallScene {
     let mut blocks = vec![rectangle([-3.0, -0.4], [3.0, 0.0])];
-    let (length, courses) = (numbers.between(0.4, 0.7), numbers.count(2, 3));
+    let (length, courses) = (numbers.between(0.4, 0.7), numbers.whole(2, 3));
     let mut low = 0.0;
     for course in 0..courses {
         let high = low + numbers.between(0.2, 0.45);

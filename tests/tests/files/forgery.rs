@@ -6,6 +6,7 @@
 
 use super::forged_claims::FREE;
 use serde_json::{Value, json};
+use voussoir::core::random::Random;
 use voussoir::kinds::read_study;
 use voussoir::results::CaseResult;
 use voussoir::solve_case;
@@ -59,16 +60,15 @@ pub fn forgeries(value: &Value, path: &str, out: &mut Vec<(String, Value)>) {
     }
 }
 
-/// Returns a reproducible sample (Knuth's linear congruential generator).
+/// Returns a reproducible sample.
 fn sample<T>(mut all: Vec<T>, count: usize) -> Vec<T> {
     if std::env::var("FORGERY").is_ok_and(|form| form == "all") {
         return all;
     }
-    let mut state: u64 = 14;
+    let mut random = Random::new(14);
     let mut out = Vec::new();
     while out.len() < count && !all.is_empty() {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        out.push(all.swap_remove((state >> 33) as usize % all.len()));
+        out.push(all.swap_remove(random.whole(0, all.len() - 1)));
     }
     out
 }

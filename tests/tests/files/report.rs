@@ -98,6 +98,7 @@ fn verdicts_are_computed_and_changed_ones_are_found() {
     assert_eq!(verify(&results), 0);
     assert!(verify(&results.replacen("refuted", "reproduced", 1)) > 0);
     assert!(verify(&results.replacen("698.02", "699.02", 2)) > 0);
+    assert!(verify(&results.replacen("\"format\": 1", "\"format\": 2", 1)) > 0, "a newer program has written it");
 }
 
 /// A claim about a case without an answer is undecided, and the run reports it.

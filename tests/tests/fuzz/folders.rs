@@ -5,7 +5,7 @@ use super::worker::{Input, own_folder, phase};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
-use voussoir_tests::sequence::Sequence;
+use voussoir::core::random::Random;
 
 /// An arch under a load.
 const ARCH: &str = r#"
@@ -82,7 +82,7 @@ fn files(folder: &Path) -> Vec<PathBuf> {
 
 /// Returns the mutated text of a file of one of the folders; `beside` is the file.
 pub fn folder(seed: u64) -> Input {
-    let mut random = Sequence::new(seed);
+    let mut random = Random::new(seed);
     let base = random.one_of(&BASE);
     let names = ["results.json", "results.json", "results.json", "resolved.toml", "results.csv"];
     let path = base.join(random.one_of(&names));
@@ -91,12 +91,12 @@ pub fn folder(seed: u64) -> Input {
 
 /// Returns the mutated text of a part.
 pub fn part(seed: u64) -> Input {
-    let mut random = Sequence::new(seed);
+    let mut random = Random::new(seed);
     let path = random.one_of(&PARTS).clone();
     damaged(path, &mut random)
 }
 
-fn damaged(path: PathBuf, random: &mut Sequence) -> Input {
+fn damaged(path: PathBuf, random: &mut Random) -> Input {
     let text = String::from_utf8_lossy(&std::fs::read(&path).expect("a file")).into_owned();
     let text = match random.whole(0, 3) {
         0 => scramble(&text, random),
@@ -106,7 +106,7 @@ fn damaged(path: PathBuf, random: &mut Sequence) -> Input {
 }
 
 /// Mutates a text by its form: TOML, JSON, or lines of JSON.
-fn structured(text: &str, random: &mut Sequence) -> Option<String> {
+fn structured(text: &str, random: &mut Random) -> Option<String> {
     if let Ok(mut table) = text.parse::<toml::Table>() {
         mutate(&mut table, &toml::Table::new(), random);
         return toml::to_string(&table).ok();
@@ -127,7 +127,7 @@ fn structured(text: &str, random: &mut Sequence) -> Option<String> {
 }
 
 /// Changes one value of a JSON tree: walks down from the root and stops at a random place.
-fn change(value: &mut Value, random: &mut Sequence) {
+fn change(value: &mut Value, random: &mut Random) {
     let down = !random.chance(0.15);
     match value {
         Value::Object(map) if down && !map.is_empty() => {
@@ -151,7 +151,7 @@ fn change(value: &mut Value, random: &mut Sequence) {
     }
 }
 
-fn replacement(old: &Value, random: &mut Sequence) -> Value {
+fn replacement(old: &Value, random: &mut Random) -> Value {
     match (old.as_f64(), random.whole(0, 9)) {
         (Some(x), 0..=3) => json!(x * *random.one_of(&[0.0, -1.0, 2.0, 1e-9, 1e300, 1.0 + 1e-12])),
         (Some(x), 4) => json!(x as i64 + 1),

@@ -2,10 +2,10 @@
 
 use super::shapes::{entry, entry_of, number, text, value_of};
 use toml::{Table, Value};
-use voussoir_tests::sequence::Sequence;
+use voussoir::core::random::Random;
 
 /// Mutates a tree a few times.
-pub fn mutate(tree: &mut Table, other: &Table, random: &mut Sequence) {
+pub fn mutate(tree: &mut Table, other: &Table, random: &mut Random) {
     let mut root = Value::Table(std::mem::take(tree));
     let times = *random.one_of(&[1, 1, 1, 2, 3, 5]);
     for _ in 0..times {
@@ -46,13 +46,13 @@ fn node_mut(value: &mut Value, index: usize) -> &mut Value {
     unreachable!("the index is below the size")
 }
 
-fn any<'a>(root: &'a mut Value, random: &mut Sequence) -> &'a mut Value {
+fn any<'a>(root: &'a mut Value, random: &mut Random) -> &'a mut Value {
     let index = random.whole(0, size(root) - 1);
     node_mut(root, index)
 }
 
 /// Returns a table of the tree.
-fn any_table<'a>(root: &'a mut Value, random: &mut Sequence) -> &'a mut Table {
+fn any_table<'a>(root: &'a mut Value, random: &mut Random) -> &'a mut Table {
     let count = size(root);
     let mut index = random.whole(0, count - 1);
     while index > 0 && !node_mut(root, index).is_table() {
@@ -64,12 +64,12 @@ fn any_table<'a>(root: &'a mut Value, random: &mut Sequence) -> &'a mut Table {
     }
 }
 
-fn key_of(table: &Table, random: &mut Sequence) -> Option<String> {
+fn key_of(table: &Table, random: &mut Random) -> Option<String> {
     let keys: Vec<&String> = table.keys().collect();
     (!keys.is_empty()).then(|| (*random.one_of(&keys)).clone())
 }
 
-fn once(root: &mut Value, other: &Table, random: &mut Sequence) {
+fn once(root: &mut Value, other: &Table, random: &mut Random) {
     match random.whole(0, 24) {
         0 => {
             let table = any_table(root, random);
@@ -152,7 +152,7 @@ fn once(root: &mut Value, other: &Table, random: &mut Sequence) {
 }
 
 /// Returns a plausible number near another one.
-fn near(old: &Value, random: &mut Sequence) -> Value {
+fn near(old: &Value, random: &mut Random) -> Value {
     match old {
         Value::Integer(x) => Value::Integer((x + random.whole(0, 6) as i64 - 3).max(1)),
         Value::Float(x) => Value::Float(x * random.power(-1.0, 1.0)),
@@ -168,7 +168,7 @@ fn keep_root(root: &mut Value) {
 }
 
 /// Returns another value, often of the same type.
-fn scalar(old: &Value, random: &mut Sequence) -> Value {
+fn scalar(old: &Value, random: &mut Random) -> Value {
     match (old, random.whole(0, 6)) {
         (Value::Float(x), 0..=2) => {
             Value::Float(x * *random.one_of(&[0.0, 0.5, 2.0, -1.0, 1e3, 1e-3, 1e12, 1e-12, 1.0 + 1e-9]))
@@ -183,7 +183,7 @@ fn scalar(old: &Value, random: &mut Sequence) -> Value {
 }
 
 /// Changes a list: doubles an entry, empties or shortens it, or changes its order.
-fn list(root: &mut Value, random: &mut Sequence) {
+fn list(root: &mut Value, random: &mut Random) {
     let count = size(root);
     let mut index = random.whole(0, count - 1);
     while index > 0 && !node_mut(root, index).is_array() {
@@ -203,7 +203,7 @@ fn list(root: &mut Value, random: &mut Sequence) {
 }
 
 /// Returns the dotted key of a value in the tree.
-fn key_path(root: &Value, random: &mut Sequence) -> String {
+fn key_path(root: &Value, random: &mut Random) -> String {
     let (mut path, mut value) = (Vec::new(), root);
     loop {
         let (segment, inner) = match value {
@@ -224,7 +224,7 @@ fn key_path(root: &Value, random: &mut Sequence) -> String {
 }
 
 /// Changes the characters of a text: some are removed, doubled, replaced or cut off.
-pub fn scramble(text: &str, random: &mut Sequence) -> String {
+pub fn scramble(text: &str, random: &mut Random) -> String {
     const OTHERS: [char; 20] = [
         '"', '\'', '[', ']', '{', '}', '=', '.', ',', '#', '\n', '\\', '\0', '9', '-', 'e', ';', '\u{202e}', 'é',
         '\u{1b}',

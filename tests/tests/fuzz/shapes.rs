@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::LazyLock;
 use toml::{Table, Value};
 use voussoir::core::plugin::{Need, Parameter, PluginKind, Shape, card, cards, cards_of};
+use voussoir::core::random::Random;
 use voussoir::study::study_keys;
-use voussoir_tests::sequence::Sequence;
 
 /// Numbers at the limits of arithmetic.
 const NUMBERS: [f64; 22] = [
@@ -61,7 +61,7 @@ const TEXTS: [&str; 24] = [
 ];
 
 /// Returns a special or an ordinary number.
-pub fn number(random: &mut Sequence) -> Value {
+pub fn number(random: &mut Random) -> Value {
     match random.whole(0, 3) {
         0 => Value::Integer(*random.one_of(&WHOLES)),
         1 => Value::Float(random.power(-12.0, 12.0)),
@@ -71,7 +71,7 @@ pub fn number(random: &mut Sequence) -> Value {
 }
 
 /// Returns a special text or a word of the schema.
-pub fn text(random: &mut Sequence) -> Value {
+pub fn text(random: &mut Random) -> Value {
     if random.chance(0.5) {
         return (*random.one_of(&TEXTS)).into();
     }
@@ -79,7 +79,7 @@ pub fn text(random: &mut Sequence) -> Value {
 }
 
 /// Returns a key of the schema with a value.
-pub fn entry(random: &mut Sequence) -> (String, Value) {
+pub fn entry(random: &mut Random) -> (String, Value) {
     let parameters = match random.chance(0.3) {
         true => study_keys(),
         false => random.one_of(cards()).parameters,
@@ -117,13 +117,13 @@ fn inside(shape: &'static Shape, keys: &mut BTreeMap<&'static str, Vec<&'static 
 }
 
 /// Returns a value that a key may have; `None` if the schema has no such key.
-pub fn value_of(key: &str, random: &mut Sequence) -> Option<Value> {
+pub fn value_of(key: &str, random: &mut Random) -> Option<Value> {
     let parameters = KEYS.get(key)?;
     Some(of_shape(&random.one_of(parameters).shape, random, 0))
 }
 
 /// Returns a key with a value for a table that contains the tag of a plug-in; `None` for other tables.
-pub fn entry_of(table: &Table, random: &mut Sequence) -> Option<(String, Value)> {
+pub fn entry_of(table: &Table, random: &mut Random) -> Option<(String, Value)> {
     let own = |kind: PluginKind| table.get(kind.tag_key()).and_then(Value::as_str).and_then(|tag| card(kind, tag));
     let found: Vec<_> =
         PluginKind::ALL.into_iter().filter_map(own).filter(|card| !card.parameters.is_empty()).collect();
@@ -134,11 +134,11 @@ pub fn entry_of(table: &Table, random: &mut Sequence) -> Option<(String, Value)>
     Some(of_parameter(random.one_of(card.parameters), random, 0))
 }
 
-fn of_parameter(parameter: &Parameter, random: &mut Sequence, depth: usize) -> (String, Value) {
+fn of_parameter(parameter: &Parameter, random: &mut Random, depth: usize) -> (String, Value) {
     (parameter.name.into(), of_shape(&parameter.shape, random, depth))
 }
 
-fn table(parameters: &[Parameter], random: &mut Sequence, depth: usize) -> Table {
+fn table(parameters: &[Parameter], random: &mut Random, depth: usize) -> Table {
     let mut out = Table::new();
     for parameter in parameters {
         if parameter.need == Need::Required || random.chance(0.3) {
@@ -152,7 +152,7 @@ fn table(parameters: &[Parameter], random: &mut Sequence, depth: usize) -> Table
 const DEPTH: usize = 6;
 
 /// Returns a value of a shape, usually within its range.
-fn of_shape(shape: &Shape, random: &mut Sequence, depth: usize) -> Value {
+fn of_shape(shape: &Shape, random: &mut Random, depth: usize) -> Value {
     if depth > DEPTH || random.chance(0.03) {
         return number(random);
     }
@@ -196,7 +196,7 @@ fn of_shape(shape: &Shape, random: &mut Sequence, depth: usize) -> Value {
     }
 }
 
-fn plugin(kind: PluginKind, random: &mut Sequence, depth: usize) -> Value {
+fn plugin(kind: PluginKind, random: &mut Random, depth: usize) -> Value {
     let registered = cards_of(kind);
     if registered.is_empty() {
         return number(random);

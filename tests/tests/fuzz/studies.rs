@@ -5,17 +5,17 @@ use super::mutation::{mutate, scramble};
 use super::worker::{Input, phase};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
+use voussoir::core::random::Random;
 use voussoir::kinds::{LoadedStudy, RunRequest, StoredResults, read_source_beside};
 use voussoir::solve::Observer;
 use voussoir::study::{StudyError, StudySource, beside};
-use voussoir_tests::sequence::Sequence;
 
 /// A run is cancelled after this time; limit analysis cannot be cancelled.
 const LONGEST_RUN: Duration = Duration::from_millis(700);
 
 /// Returns the study of a seed.
 pub fn input(seed: u64) -> Input {
-    let mut random = Sequence::new(seed);
+    let mut random = Random::new(seed);
     let own = if random.chance(0.9) { random.one_of(&STUDIES[..*RIGHT]) } else { random.one_of(&STUDIES) };
     let other = random.one_of(&STUDIES);
     let mut table = own.table.clone();

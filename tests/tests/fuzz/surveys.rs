@@ -4,11 +4,11 @@ use super::mutation::scramble;
 use super::studies::refused;
 use super::worker::{Input, phase};
 use std::path::PathBuf;
+use voussoir::core::random::Random;
 use voussoir::kinds::{RunRequest, read_source_beside};
 use voussoir::solve::Unobserved;
 use voussoir::study::StudySource;
 use voussoir::study::drawing::{Corner, Drawing, Polyline};
-use voussoir_tests::sequence::Sequence;
 
 const SURVEYS: [&str; 3] = [
     "intrados_x,intrados_y,extrados_x,extrados_y\n0,0,-0.5,0.5\n1.5,0.75,1.5,1.25\n3,0,3.5,0.5\n",
@@ -22,14 +22,14 @@ const SURVEYED: &str = "name = \"s\"\n[scene]\nscene = \"arch\"\nprofile = { sha
 
 /// Returns the survey of a seed.
 pub fn survey(seed: u64) -> Input {
-    let mut random = Sequence::new(seed);
+    let mut random = Random::new(seed);
     let text = *random.one_of(&SURVEYS);
     let text = if random.chance(0.5) { cells(text, &mut random) } else { scramble(text, &mut random) };
     Input { text, beside: PathBuf::new() }
 }
 
 /// Replaces some numbers of a table.
-fn cells(text: &str, random: &mut Sequence) -> String {
+fn cells(text: &str, random: &mut Random) -> String {
     const CELLS: [&str; 12] = ["nan", "inf", "1e308", "-1e308", "", "0", "1e-320", "x", "0x1p3", "1e400", "-0", "3,5"];
     let mut pieces: Vec<String> = text.split_inclusive([',', ';', '\t', '\n']).map(String::from).collect();
     for _ in 0..random.whole(1, 4) {
@@ -56,7 +56,7 @@ pub fn drawing(seed: u64) -> Input {
 fn drawn(seed: u64) -> Drawing {
     const NUMBERS: [f64; 10] = [0.0, 1.0, 2.0, -1.0, 1e300, -1e308, f64::NAN, f64::INFINITY, 1e-300, 0.5];
     const LAYERS: [&str; 8] = ["intrados", "extrados", "Intrados", "stone", "0", "ground", "", "\u{202e}x"];
-    let mut random = Sequence::new(seed);
+    let mut random = Random::new(seed);
     let mut line = |entity: usize| {
         let corners = (0..random.whole(0, 6)).map(|_| {
             let mut number = || if random.chance(0.8) { random.between(-2.0, 5.0) } else { *random.one_of(&NUMBERS) };
@@ -85,7 +85,7 @@ pub fn attempt_drawing(input: &Input) -> Result<(), String> {
 
 /// Returns a report of published points with an expression of a seed in its claim.
 pub fn claim(seed: u64) -> Input {
-    let mut random = Sequence::new(seed);
+    let mut random = Random::new(seed);
     let [value, holds] = [0, 1].map(|_| expression(&mut random, 0));
     let [value, holds] =
         [value, holds].map(|text| if random.chance(0.2) { scramble(&text, &mut random) } else { text });
@@ -113,7 +113,7 @@ fn quoted(text: &str) -> String {
     toml::Value::from(text).to_string()
 }
 
-fn path(random: &mut Sequence) -> String {
+fn path(random: &mut Random) -> String {
     let words = [
         "load_factor",
         "status",
@@ -133,7 +133,7 @@ fn path(random: &mut Sequence) -> String {
     (0..random.whole(1, 4)).map(|_| *random.one_of(&words)).collect::<Vec<_>>().join(".")
 }
 
-fn expression(random: &mut Sequence, depth: usize) -> String {
+fn expression(random: &mut Random, depth: usize) -> String {
     const FUNCTIONS: [&str; 20] = [
         "abs",
         "argmax",
@@ -157,7 +157,7 @@ fn expression(random: &mut Sequence, depth: usize) -> String {
         "none",
     ];
     const SIGNS: [&str; 12] = ["or", "and", "==", "!=", "<=", ">=", "<", ">", "+", "-", "*", "/"];
-    let inner = |random: &mut Sequence| expression(random, depth + 1);
+    let inner = |random: &mut Random| expression(random, depth + 1);
     match if depth > 4 { random.whole(0, 3) } else { random.whole(0, 9) } {
         0 => "a".into(),
         1 => "b".into(),

@@ -2,6 +2,7 @@
 
 use voussoir::core::limit::Status;
 use voussoir::core::path::{PathAnswer, PathProblem, PathSolver, Unobserved};
+use voussoir::core::random::Random;
 use voussoir::solvers::path::newton::NewtonPath;
 use voussoir_tests::known::{REFERENCE_ARCH, REFERENCE_ARCH_JOINTED, REFERENCE_ARCH_LOW_FRICTION};
 use voussoir_tests::{
@@ -60,28 +61,24 @@ fn elastic_voussoirs_end_at_the_limit_load() {
 /// certified is stalled, never wrong. SCENES sets the number of scenes (6 by default).
 #[test]
 fn random_scenes_agree_with_limit_analysis() {
-    let mut seed = 12345u64;
-    let mut random = move || {
-        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (seed >> 11) as f64 / (1u64 << 53) as f64
-    };
+    let mut random = Random::from_state(12345);
     let (mut compared, mut stalled) = (0, 0);
     let mut wrong = Vec::new();
     let scenes = std::env::var("SCENES").ok().and_then(|n| n.parse().ok()).unwrap_or(6);
     for index in 0..scenes {
-        let mu = 0.05 * 40f64.powf(random());
-        let stiffness = [10f64.powf(8.0 + 3.0 * random()), 10f64.powf(7.0 + 4.0 * random())];
+        let mu = 0.05 * 40f64.powf(random.unit());
+        let stiffness = [random.power(8.0, 11.0), random.power(7.0, 11.0)];
         let joint = compliant(&friction(mu), stiffness[0], stiffness[1]);
         let text = if index % 3 == 0 {
-            let wall = Wall::in_bond(2 + (4.0 * random()) as usize, 1 + (3.0 * random()) as usize);
+            let wall = Wall::in_bond(random.whole(2, 5), random.whole(1, 3));
             Wall { joint, ..wall }.study()
         } else {
             Arch {
-                rise: 0.7 + 3.5 * random(),
-                thickness: 0.3 + 0.6 * random(),
-                voussoirs: 5 + (13.0 * random()) as usize,
-                ends: if random() < 0.5 { "bonded" } else { "jointed" },
-                span_fraction: 0.25 + 0.5 * random(),
+                rise: random.between(0.7, 4.2),
+                thickness: random.between(0.3, 0.9),
+                voussoirs: random.whole(5, 17),
+                ends: if random.chance(0.5) { "bonded" } else { "jointed" },
+                span_fraction: random.between(0.25, 0.75),
                 joint,
                 ..Arch::default()
             }

@@ -19,6 +19,7 @@ use voussoir_core::limit::{
 };
 use voussoir_core::model::Wrenches;
 use voussoir_core::plugin::{Capability, Card, Keys, PluginKind};
+use voussoir_core::random::Random;
 
 /// Greatest number of rows of products that are solved only to make the result of the search checkable.
 const MAX_CHECKED_ROWS: usize = 5_000;
@@ -75,18 +76,6 @@ const MOVES_ALREADY: &str = "the loads present before this stage are at a limit 
 /// Reason of an open bracket.
 const AT_LIMIT: &str = "the search ended at its limit";
 const GIVEN_UP: &str = "with a tenth of its work the search could not exclude even the lowest hundredth of what was open, and was given up";
-
-/// A reproducible sequence of numbers in [0, 1) (xorshift, Marsaglia 2003).
-struct Irregular(u64);
-
-impl Irregular {
-    fn next(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
 
 /// Local search and proof over one problem.
 struct Least<'a> {
@@ -163,11 +152,11 @@ impl Least<'_> {
         let mut kinematics = self.systems.kinematics([0.0, most], &bounds, &excluded)?;
         let (pairs, theta) = (self.systems.pairs.len(), self.systems.theta());
         let mut best: Option<State> = None;
-        let mut irregular = Irregular(0x9e37_79b9_7f4a_7c15);
+        let mut random = Random::new(1);
         let mut present = most;
         let starts = first.into_iter().map(Some).chain((0..STARTS).map(|_| None));
         for start in starts {
-            let start = start.unwrap_or_else(|| (0..pairs).map(|_| irregular.next().powi(4)).collect());
+            let start = start.unwrap_or_else(|| (0..pairs).map(|_| random.unit().powi(4)).collect());
             let mut descent =
                 Descent { statics: &mut statics, kinematics: &mut kinematics, pairs, theta, excluded: &excluded };
             let found = descent.alternate(&start).map(|state| descent.improve(state));

@@ -10,12 +10,12 @@ use super::piece::factorisation::FactorisedModes;
 use super::piece::point::Point;
 use super::trace::Trace;
 use crate::contact::mode::ContactMode;
-use crate::optimise::lcg::Lcg;
 use crate::path::stability::{SecondOrderWork, over_weak_points, work_by_responses};
 use crate::path::system::Load;
 use crate::settings::SETTINGS;
 use nalgebra::DMatrix;
 use voussoir_core::path::StageStability;
+use voussoir_core::random::Random;
 
 /// Number of iterations that find the softest motion.
 const ITERATIONS: usize = 8;
@@ -81,8 +81,8 @@ impl HeldModes {
 
 /// Returns true if a semidefinite stiffness leaves no motion free, by the softest motion.
 fn is_stiff(motions: usize, respond: impl Fn(&DMatrix<f64>) -> Option<DMatrix<f64>>) -> Option<bool> {
-    let mut random = Lcg::new(7);
-    let mut motion = DMatrix::from_fn(motions, 1, |_, _| random.next());
+    let mut random = Random::from_state(7);
+    let mut motion = DMatrix::from_fn(motions, 1, |_, _| random.signed());
     let mut flexibility = 0.0;
     for _ in 0..ITERATIONS {
         let size = motion.norm();

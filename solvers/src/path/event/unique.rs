@@ -15,11 +15,11 @@ use super::piece::point::Point;
 use crate::contact::facet::{dilatancy, dot, multipliers};
 use crate::contact::mode::ContactMode;
 use crate::optimise::dense_simplex::Feasibility;
-use crate::optimise::lcg::Lcg;
 use crate::path::system::{Load, System};
 use crate::rate::mechanism::mechanisms;
 use crate::settings::SETTINGS;
 use nalgebra::DMatrix;
+use voussoir_core::random::Random;
 
 /// Greatest number of degrees of freedom for which uniqueness is examined.
 const MOST: usize = 150;
@@ -114,9 +114,9 @@ fn by_signs(system: &System, points: &[Point], all: &DMatrix<f64>, power: &[f64]
     if program.feasible() != Feasibility::Point {
         return None;
     }
-    let mut random = Lcg::new(3);
+    let mut random = Random::from_state(3);
     for _ in 0..2 {
-        let form: Vec<f64> = (0..k).map(|_| random.next()).collect();
+        let form: Vec<f64> = (0..k).map(|_| random.signed()).collect();
         let weights = |sign: f64| -> Vec<(usize, f64)> {
             (0..k).flat_map(|j| [(j, sign * form[j]), (k + j, -sign * form[j])]).collect()
         };

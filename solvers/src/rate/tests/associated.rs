@@ -1,18 +1,18 @@
 //! Associated flow without softening: a monotone problem, which needs no enumeration.
 
 use super::*;
-use crate::optimise::lcg::Lcg;
 use crate::rate::counts::Algorithm;
 use crate::rate::proof::ModeTree;
+use voussoir_core::random::Random;
 
 /// A random structure on points at the apex or pressed, with associated friction.
 fn random_case(laws: &[Facet], count: usize, columns: usize, seed: u64) -> Case<'_> {
-    let mut random = Lcg::new(seed);
-    let root = DMatrix::from_fn(2 * count, columns, |_, _| random.next());
+    let mut random = Random::from_state(seed);
+    let root = DMatrix::from_fn(2 * count, columns, |_, _| random.signed());
     let s = &root * root.transpose();
-    let mut load = &root * DVector::from_fn(columns, |_, _| random.next());
+    let mut load = &root * DVector::from_fn(columns, |_, _| random.signed());
     if columns < count {
-        load = DVector::from_fn(2 * count, |_, _| random.next());
+        load = DVector::from_fn(2 * count, |_, _| random.signed());
     }
     let load: Vec<f64> = load.iter().copied().collect();
     let active: Vec<&[usize]> = (0..count).map(|k| if k % 3 == 0 { &[0, 1, 2][..] } else { &[1][..] }).collect();

@@ -2,8 +2,8 @@
 
 use super::enumeration::enumerate_modes;
 use super::*;
-use crate::optimise::lcg::Lcg;
 use std::collections::BTreeMap;
+use voussoir_core::random::Random;
 
 /// A law with the facets that are active, and whether the point is open with a strength.
 struct Sample {
@@ -13,10 +13,10 @@ struct Sample {
 }
 
 /// Laws of the fuzzed problems.
-fn samples(random: &mut Lcg) -> Vec<Sample> {
+fn samples(random: &mut Random) -> Vec<Sample> {
     let mut all = Vec::new();
     for dilatancy in [0.0, 0.3, 1.0] {
-        let friction = 0.2 + 2.5 * random.next().abs();
+        let friction = 0.2 + 2.5 * random.signed().abs();
         let slip = |cohesion: f64| Facet::friction(friction, cohesion, dilatancy * friction).to_vec();
         let dry = [vec![Facet::opening(0.0)], slip(0.0)].concat();
         let strong = [vec![Facet::opening(0.4)], slip(1.0), vec![Facet::crushing(9.0)]].concat();
@@ -34,10 +34,10 @@ fn samples(random: &mut Lcg) -> Vec<Sample> {
 }
 
 /// A structure on some points, all of one event, pushed by a load on its freedoms or at the points.
-fn case<'a>(samples: &'a [Sample], count: usize, number: usize, random: &mut Lcg) -> Case<'a> {
-    let chosen: Vec<&Sample> = (0..count).map(|_| &samples[((random.next() + 1.0) * 9.0) as usize]).collect();
+fn case<'a>(samples: &'a [Sample], count: usize, number: usize, random: &mut Random) -> Case<'a> {
+    let chosen: Vec<&Sample> = (0..count).map(|_| &samples[((random.signed() + 1.0) * 9.0) as usize]).collect();
     let columns = [2 * count, count + 1, 3 * count][number / 3 % 3];
-    let root = DMatrix::from_fn(2 * count, columns, |_, _| random.next());
+    let root = DMatrix::from_fn(2 * count, columns, |_, _| random.signed());
     let soft = [0.0, 1e-3, 0.1][number / 5 % 3];
     let point = |sample: &&'a Sample| ActivePoint {
         facets: &sample.facets,
@@ -53,10 +53,10 @@ fn case<'a>(samples: &'a [Sample], count: usize, number: usize, random: &mut Lcg
         stops: false,
         force: [0.0; 2],
     };
-    let push = DVector::from_fn(columns, |_, _| random.next());
+    let push = DVector::from_fn(columns, |_, _| random.signed());
     let load_rate = match number % 2 {
         0 => &root * push,
-        _ => DVector::from_fn(2 * count, |_, _| random.next()),
+        _ => DVector::from_fn(2 * count, |_, _| random.signed()),
     };
     let problem = RateProblem {
         points: chosen.iter().map(point).collect(),
@@ -75,7 +75,7 @@ fn case<'a>(samples: &'a [Sample], count: usize, number: usize, random: &mut Lcg
 #[test]
 fn fuzzed_rate_problems_are_answered() {
     let long = std::env::var("VOUSSOIR_RATE_FUZZ").ok().and_then(|n| n.parse::<usize>().ok());
-    let mut random = Lcg::new(29);
+    let mut random = Random::from_state(29);
     let mut tallies: BTreeMap<&str, (usize, usize, RateCounts)> = BTreeMap::new();
     for number in 0..long.unwrap_or(150) {
         let (family, count) = match number % 8 {

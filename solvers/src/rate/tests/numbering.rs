@@ -1,7 +1,7 @@
 //! Answers do not depend on the numbering of points.
 
 use super::*;
-use crate::optimise::lcg::Lcg;
+use voussoir_core::random::Random;
 
 /// The case with its points in another order: point k of the new one is point `order[k]`.
 fn permuted<'a>(case: &Case<'a>, order: &[usize]) -> Case<'a> {
@@ -26,7 +26,7 @@ fn permuted<'a>(case: &Case<'a>, order: &[usize]) -> Case<'a> {
 #[test]
 fn the_order_of_points_does_not_matter() {
     let laws = dry(4.0, 0.0);
-    let mut random = Lcg::new(3);
+    let mut random = Random::from_state(3);
     let mut senses = [0; 4];
     for number in 0..150 {
         let case = super::random::case(&laws, 3, &mut random, number);
@@ -57,7 +57,7 @@ fn the_order_of_points_does_not_matter() {
 #[test]
 fn proofs_follow_the_numbering() {
     let laws = dry(4.0, 0.0);
-    let mut random = Lcg::new(5);
+    let mut random = Random::from_state(5);
     let mut proofs = 0;
     for number in 0..150 {
         let case = permuted(&super::random::case(&laws, 3, &mut random, number), &[2, 0, 1]);

@@ -110,7 +110,7 @@ fn a_small_budget_leaves_the_answer_open() {
 #[test]
 fn a_tree_beyond_the_budget_proves_nothing() {
     let laws = dry(4.0, 0.0);
-    let mut random = crate::optimise::lcg::Lcg::new(23);
+    let mut random = voussoir_core::random::Random::from_state(23);
     let mut large = 0;
     for number in 0..300 {
         let case = super::random::case(&laws, 3, &mut random, number);

@@ -2,14 +2,14 @@
 
 use super::enumeration::enumerate_modes;
 use super::*;
-use crate::optimise::lcg::Lcg;
 use crate::rate::tree::search;
+use voussoir_core::random::Random;
 
 /// A random structure; points are at the apex or pressed and about to slip, the first two in the event.
-pub fn case<'a>(laws: &'a [Facet], count: usize, random: &mut Lcg, number: usize) -> Case<'a> {
-    let root = DMatrix::from_fn(2 * count, 2 * count, |_, _| random.next());
+pub fn case<'a>(laws: &'a [Facet], count: usize, random: &mut Random, number: usize) -> Case<'a> {
+    let root = DMatrix::from_fn(2 * count, 2 * count, |_, _| random.signed());
     let s = &root * root.transpose() + DMatrix::identity(2 * count, 2 * count) * 0.01;
-    let load: Vec<f64> = (0..2 * count).map(|_| random.next()).collect();
+    let load: Vec<f64> = (0..2 * count).map(|_| random.signed()).collect();
     let friction = -laws[1].normal[0];
     let points: Vec<(&[usize], [f64; 2])> = (0..count)
         .map(|k| match (number + k) % 4 {
@@ -27,7 +27,7 @@ pub fn case<'a>(laws: &'a [Facet], count: usize, random: &mut Lcg, number: usize
 
 /// The first random problem without a continuation.
 pub fn without_continuation(laws: &[Facet]) -> Case<'_> {
-    let mut random = Lcg::new(17);
+    let mut random = Random::from_state(17);
     (0..2000)
         .map(|number| case(laws, 2, &mut random, number))
         .find(|case| {
@@ -40,7 +40,7 @@ pub fn without_continuation(laws: &[Facet]) -> Case<'_> {
 /// The answer rises if any combination rises, otherwise it falls if any combination continues; otherwise it has proofs.
 #[test]
 fn answers_agree_with_every_combination() {
-    let mut random = Lcg::new(11);
+    let mut random = Random::from_state(11);
     let mut kinds = [0; 4];
     for number in 0..400 {
         let laws = dry(0.3 + 1.2 * (number % 5) as f64, 0.0);
@@ -76,7 +76,7 @@ fn answers_agree_with_every_combination() {
 #[test]
 fn mirror_symmetric_problems_are_decided() {
     let laws = dry(0.6, 0.0);
-    let mut random = Lcg::new(31);
+    let mut random = Random::from_state(31);
     for number in 0..60 {
         let half = 1 + number % 3;
         let (s, load) = mirrored(half, &mut random);
@@ -98,12 +98,12 @@ fn mirror_symmetric_problems_are_decided() {
 }
 
 /// S and s of a mirror-symmetric structure: its image changes the sign of tangential rates.
-fn mirrored(half: usize, random: &mut Lcg) -> (DMatrix<f64>, DVector<f64>) {
+fn mirrored(half: usize, random: &mut Random) -> (DMatrix<f64>, DVector<f64>) {
     let n = 4 * half;
     let image = |i: usize| (n - 2 - i / 2 * 2 + i % 2, if i.is_multiple_of(2) { 1.0 } else { -1.0 });
-    let root = DMatrix::from_fn(n, n, |_, _| random.next());
+    let root = DMatrix::from_fn(n, n, |_, _| random.signed());
     let s = &root * root.transpose();
-    let push = DVector::from_fn(n, |_, _| random.next());
+    let push = DVector::from_fn(n, |_, _| random.signed());
     let both = |i: usize, j: usize| {
         let ((k, a), (l, b)) = (image(i), image(j));
         s[(i, j)] + a * b * s[(k, l)]

@@ -54,3 +54,10 @@ pub struct LimitLie {
     /// The false answer; `None` if the lie does not apply to this question.
     pub tell: fn(&LimitAsked) -> Option<LimitAnswer>,
 }
+
+impl LimitLie {
+    /// A lie with a name.
+    pub const fn new(name: &'static str, tell: fn(&LimitAsked) -> Option<LimitAnswer>) -> Self {
+        LimitLie { name, tell }
+    }
+}

@@ -69,90 +69,66 @@ fn locked_in(asked: &LimitAsked) -> Option<LimitAnswer> {
 
 /// Answers to other questions.
 pub const LIES: &[LimitLie] = &[
-    LimitLie { name: "forces_locked_in_called_the_least_load", tell: locked_in },
-    LimitLie {
-        name: "of_heavier_blocks",
-        tell: |asked| other(asked, |problem| problem.fixed.iter_mut().flatten().for_each(|load| *load *= 3.0)),
-    },
-    LimitLie {
-        name: "of_lighter_blocks",
-        tell: |asked| other(asked, |problem| problem.fixed.iter_mut().flatten().for_each(|load| *load *= 0.5)),
-    },
-    LimitLie {
-        name: "of_a_smaller_load",
-        tell: |asked| other(asked, |problem| problem.varying.iter_mut().flatten().for_each(|load| *load *= 0.5)),
-    },
-    LimitLie { name: "of_the_load_reversed", tell: |asked| other(asked, reverse_the_load) },
-    LimitLie { name: "of_the_load_turned", tell: |asked| other(asked, turn_the_load) },
-    LimitLie {
-        name: "of_wider_joints",
-        tell: |asked| {
-            other(asked, |problem| {
-                for joint in problem.joints.iter_mut().filter(|joint| joint.fill.is_none()) {
-                    let half = (joint.ends[1] - joint.ends[0]) / 4.0;
-                    joint.ends = [joint.ends[0] - half, joint.ends[1] + half];
-                }
-            })
-        },
-    },
-    LimitLie {
-        name: "of_joints_that_never_slide",
-        tell: |asked| {
-            other(asked, |problem| {
-                for joint in problem.joints.iter_mut().filter(|joint| joint.fill.is_none()) {
-                    joint.strength.rows.retain(|row| row.normal[2] == 0.0);
-                }
-            })
-        },
-    },
-    LimitLie {
-        name: "of_joints_that_pull",
-        tell: |asked| {
-            other(asked, |problem| {
-                for row in problem.joints.iter_mut().flat_map(|joint| &mut joint.strength.rows) {
-                    row.bound += 5000.0;
-                }
-            })
-        },
-    },
-    LimitLie { name: "motion_of_the_load_reversed", tell: |asked| foreign_motion(asked, reverse_the_load) },
-    LimitLie { name: "motion_of_the_load_turned", tell: |asked| foreign_motion(asked, turn_the_load) },
-    LimitLie {
-        name: "motion_of_one_block",
-        tell: |asked| {
-            let mut answer = asked.collapse()?;
-            let moved = answer.motion.as_mut()?;
-            let last = moved.len() - 1;
-            moved[..last].fill([0.0; 3]);
-            let power: f64 = asked.problem.varying[last].iter().zip(&moved[last]).map(|(p, v)| p * v).sum();
-            moved[last].iter_mut().for_each(|v| *v /= power);
-            Some(answer)
-        },
-    },
-    LimitLie {
-        name: "field_of_the_load_reversed",
-        tell: |asked| {
-            let mut answer = asked.collapse()?;
-            answer.field = other(asked, reverse_the_load)?.field;
-            Some(answer)
-        },
-    },
-    LimitLie {
-        name: "ray_of_another_load",
-        tell: |asked| {
-            let mut answer = asked.ending(Status::Unbounded)?;
-            for force in answer.ray.as_mut()? {
-                force.normal = [force.normal[0] * 1.5, force.normal[1] * 0.5];
+    LimitLie::new("forces_locked_in_called_the_least_load", locked_in),
+    LimitLie::new("of_heavier_blocks", |asked| {
+        other(asked, |problem| problem.fixed.iter_mut().flatten().for_each(|load| *load *= 3.0))
+    }),
+    LimitLie::new("of_lighter_blocks", |asked| {
+        other(asked, |problem| problem.fixed.iter_mut().flatten().for_each(|load| *load *= 0.5))
+    }),
+    LimitLie::new("of_a_smaller_load", |asked| {
+        other(asked, |problem| problem.varying.iter_mut().flatten().for_each(|load| *load *= 0.5))
+    }),
+    LimitLie::new("of_the_load_reversed", |asked| other(asked, reverse_the_load)),
+    LimitLie::new("of_the_load_turned", |asked| other(asked, turn_the_load)),
+    LimitLie::new("of_wider_joints", |asked| {
+        other(asked, |problem| {
+            for joint in problem.joints.iter_mut().filter(|joint| joint.fill.is_none()) {
+                let half = (joint.ends[1] - joint.ends[0]) / 4.0;
+                joint.ends = [joint.ends[0] - half, joint.ends[1] + half];
             }
-            Some(answer)
-        },
-    },
-    LimitLie {
-        name: "ray_of_nothing",
-        tell: |asked| {
-            let mut answer = asked.ending(Status::Unbounded)?;
-            answer.ray.iter_mut().for_each(Vec::clear);
-            Some(answer)
-        },
-    },
+        })
+    }),
+    LimitLie::new("of_joints_that_never_slide", |asked| {
+        other(asked, |problem| {
+            for joint in problem.joints.iter_mut().filter(|joint| joint.fill.is_none()) {
+                joint.strength.rows.retain(|row| row.normal[2] == 0.0);
+            }
+        })
+    }),
+    LimitLie::new("of_joints_that_pull", |asked| {
+        other(asked, |problem| {
+            for row in problem.joints.iter_mut().flat_map(|joint| &mut joint.strength.rows) {
+                row.bound += 5000.0;
+            }
+        })
+    }),
+    LimitLie::new("motion_of_the_load_reversed", |asked| foreign_motion(asked, reverse_the_load)),
+    LimitLie::new("motion_of_the_load_turned", |asked| foreign_motion(asked, turn_the_load)),
+    LimitLie::new("motion_of_one_block", |asked| {
+        let mut answer = asked.collapse()?;
+        let moved = answer.motion.as_mut()?;
+        let last = moved.len() - 1;
+        moved[..last].fill([0.0; 3]);
+        let power: f64 = asked.problem.varying[last].iter().zip(&moved[last]).map(|(p, v)| p * v).sum();
+        moved[last].iter_mut().for_each(|v| *v /= power);
+        Some(answer)
+    }),
+    LimitLie::new("field_of_the_load_reversed", |asked| {
+        let mut answer = asked.collapse()?;
+        answer.field = other(asked, reverse_the_load)?.field;
+        Some(answer)
+    }),
+    LimitLie::new("ray_of_another_load", |asked| {
+        let mut answer = asked.ending(Status::Unbounded)?;
+        for force in answer.ray.as_mut()? {
+            force.normal = [force.normal[0] * 1.5, force.normal[1] * 0.5];
+        }
+        Some(answer)
+    }),
+    LimitLie::new("ray_of_nothing", |asked| {
+        let mut answer = asked.ending(Status::Unbounded)?;
+        answer.ray.iter_mut().for_each(Vec::clear);
+        Some(answer)
+    }),
 ];

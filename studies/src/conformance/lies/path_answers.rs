@@ -36,162 +36,112 @@ fn stability(asked: &PathAsked, story: &mut Story, stable: bool) -> Option<()> {
 
 /// Answers with one part changed.
 pub const LIES: &[PathLie] = &[
-    PathLie { name: "factor_5_percent_high", tell: |_, story| factor(story, |factor| 1.05 * factor) },
-    PathLie { name: "factor_5_percent_low", tell: |_, story| factor(story, |factor| 0.95 * factor) },
-    PathLie { name: "factor_a_thousandth_high", tell: |_, story| factor(story, |factor| 1.001 * factor) },
-    PathLie { name: "factor_nan", tell: |_, story| factor(story, |_| f64::NAN) },
-    PathLie { name: "factor_infinite", tell: |_, story| factor(story, |_| f64::INFINITY) },
-    PathLie {
-        name: "no_factor",
-        tell: |_, story| {
-            story.falls()?;
-            story.answer.factor = None;
-            Some(())
-        },
-    },
-    PathLie { name: "no_motion", tell: |_, story| motion(story, |motion| motion.fill([0.0; 3])) },
-    PathLie { name: "empty_motion", tell: |_, story| motion(story, Vec::clear) },
-    PathLie { name: "nan_in_the_motion", tell: |_, story| motion(story, |motion| motion[1][0] = f64::NAN) },
-    PathLie {
-        name: "motion_mirrored",
-        tell: |_, story| {
-            motion(story, |motion| {
-                let free = 1..motion.len();
-                motion[free].reverse();
-                motion.iter_mut().for_each(|[x, _, turn]| (*x, *turn) = (-*x, -*turn));
-            })
-        },
-    },
-    PathLie {
-        name: "motion_backwards",
-        tell: |_, story| motion(story, |motion| motion.iter_mut().flatten().for_each(|v| *v = -*v)),
-    },
-    PathLie {
-        name: "motion_of_the_rise",
-        tell: |asked, story| {
-            story.falls()?;
-            let index = story.below(0.5)?;
-            story.answer.motion = Some(asked.rate(&story.states[index], &story.states[index + 1]));
-            Some(())
-        },
-    },
-    PathLie {
-        name: "called_unique",
-        tell: |_, story| {
-            story.falls()?;
-            story.answer.unique = Some(true);
-            Some(())
-        },
-    },
-    PathLie {
-        name: "forged_limit_point",
-        tell: |asked, story| {
-            let peak = forged_peak(asked, story, 0.5)?;
-            story.answer.limit_points.insert(0, peak);
-            Some(())
-        },
-    },
-    PathLie {
-        name: "greater_limit_point",
-        tell: |asked, story| {
-            let peak = forged_peak(asked, story, 1.2)?;
-            story.answer.limit_points.push(peak);
-            Some(())
-        },
-    },
-    PathLie {
-        name: "limit_points_twice",
-        tell: |_, story| {
-            let again = story.answer.limit_points.clone();
-            story.answer.limit_points.extend(again.first().copied());
-            (!again.is_empty()).then_some(())
-        },
-    },
-    PathLie {
-        name: "limit_point_of_a_load_step_that_is_not_there",
-        tell: |asked, story| {
-            let peak = forged_peak(asked, story, 0.5)?;
-            story.answer.limit_points.push(ProvenPeak { load_step: usize::MAX, ..peak });
-            Some(())
-        },
-    },
-    PathLie {
-        name: "limit_point_nan",
-        tell: |asked, story| {
-            let peak = forged_peak(asked, story, f64::NAN)?;
-            story.answer.limit_points.push(peak);
-            Some(())
-        },
-    },
-    PathLie {
-        name: "limit_points_left_out",
-        tell: |_, story| {
-            story.falls()?;
-            if story.answer.limit_points.is_empty() {
-                return None;
-            }
-            story.answer.limit_points.clear();
-            Some(())
-        },
-    },
-    PathLie { name: "stable_everywhere", tell: |asked, story| stability(asked, story, true) },
-    PathLie { name: "unstable_everywhere", tell: |asked, story| stability(asked, story, false) },
-    PathLie {
-        name: "stability_of_a_stage_that_is_not_there",
-        tell: |_, story| {
-            let claim = StageStability {
-                stage: usize::MAX,
-                under_load: Some(true),
-                under_control: Some(true),
-                sufficient_only: false,
-            };
-            story.answer.stability.push(claim);
-            Some(())
-        },
-    },
-    PathLie {
-        name: "forged_events",
-        tell: |asked, story| {
-            story.falls()?;
-            let what = [ContactEvent::Crushes, ContactEvent::Softens, ContactEvent::SlipsBackward];
-            let load_step = asked.problem.load_steps.len() - 1;
-            let forged = what.map(|what| PathEvent { load_step, factor: 0.5, contact: 0, what });
-            story.answer.events.extend(forged);
-            Some(())
-        },
-    },
-    PathLie {
-        name: "event_at_a_contact_that_is_not_there",
-        tell: |_, story| {
-            let what = ContactEvent::Opens;
-            story.answer.events.push(PathEvent { load_step: usize::MAX, factor: 0.5, contact: usize::MAX, what });
-            Some(())
-        },
-    },
-    PathLie {
-        name: "forged_branch",
-        tell: |asked, story| {
-            story.falls()?;
-            let load_step = asked.problem.load_steps.len() - 1;
-            story.answer.branchings.push(Branching { load_step, factor: 0.5, snaps: true, released: 1e3, twins: true });
-            Some(())
-        },
-    },
-    PathLie {
-        name: "branch_of_a_load_step_that_is_not_there",
-        tell: |_, story| {
-            let branch =
-                Branching { load_step: usize::MAX, factor: f64::NAN, snaps: false, released: -1.0, twins: false };
-            story.answer.branchings.push(branch);
-            Some(())
-        },
-    },
-    PathLie {
-        name: "ray_besides_a_collapse",
-        tell: |_, story| {
-            story.falls()?;
-            story.answer.ray = Some(story.answer.state.force.clone());
-            Some(())
-        },
-    },
+    PathLie::new("factor_5_percent_high", |_, story| factor(story, |factor| 1.05 * factor)),
+    PathLie::new("factor_5_percent_low", |_, story| factor(story, |factor| 0.95 * factor)),
+    PathLie::new("factor_a_thousandth_high", |_, story| factor(story, |factor| 1.001 * factor)),
+    PathLie::new("factor_nan", |_, story| factor(story, |_| f64::NAN)),
+    PathLie::new("factor_infinite", |_, story| factor(story, |_| f64::INFINITY)),
+    PathLie::new("no_factor", |_, story| {
+        story.falls()?;
+        story.answer.factor = None;
+        Some(())
+    }),
+    PathLie::new("no_motion", |_, story| motion(story, |motion| motion.fill([0.0; 3]))),
+    PathLie::new("empty_motion", |_, story| motion(story, Vec::clear)),
+    PathLie::new("nan_in_the_motion", |_, story| motion(story, |motion| motion[1][0] = f64::NAN)),
+    PathLie::new("motion_mirrored", |_, story| {
+        motion(story, |motion| {
+            let free = 1..motion.len();
+            motion[free].reverse();
+            motion.iter_mut().for_each(|[x, _, turn]| (*x, *turn) = (-*x, -*turn));
+        })
+    }),
+    PathLie::new("motion_backwards", |_, story| {
+        motion(story, |motion| motion.iter_mut().flatten().for_each(|v| *v = -*v))
+    }),
+    PathLie::new("motion_of_the_rise", |asked, story| {
+        story.falls()?;
+        let index = story.below(0.5)?;
+        story.answer.motion = Some(asked.rate(&story.states[index], &story.states[index + 1]));
+        Some(())
+    }),
+    PathLie::new("called_unique", |_, story| {
+        story.falls()?;
+        story.answer.unique = Some(true);
+        Some(())
+    }),
+    PathLie::new("forged_limit_point", |asked, story| {
+        let peak = forged_peak(asked, story, 0.5)?;
+        story.answer.limit_points.insert(0, peak);
+        Some(())
+    }),
+    PathLie::new("greater_limit_point", |asked, story| {
+        let peak = forged_peak(asked, story, 1.2)?;
+        story.answer.limit_points.push(peak);
+        Some(())
+    }),
+    PathLie::new("limit_points_twice", |_, story| {
+        let again = story.answer.limit_points.clone();
+        story.answer.limit_points.extend(again.first().copied());
+        (!again.is_empty()).then_some(())
+    }),
+    PathLie::new("limit_point_of_a_load_step_that_is_not_there", |asked, story| {
+        let peak = forged_peak(asked, story, 0.5)?;
+        story.answer.limit_points.push(ProvenPeak { load_step: usize::MAX, ..peak });
+        Some(())
+    }),
+    PathLie::new("limit_point_nan", |asked, story| {
+        let peak = forged_peak(asked, story, f64::NAN)?;
+        story.answer.limit_points.push(peak);
+        Some(())
+    }),
+    PathLie::new("limit_points_left_out", |_, story| {
+        story.falls()?;
+        if story.answer.limit_points.is_empty() {
+            return None;
+        }
+        story.answer.limit_points.clear();
+        Some(())
+    }),
+    PathLie::new("stable_everywhere", |asked, story| stability(asked, story, true)),
+    PathLie::new("unstable_everywhere", |asked, story| stability(asked, story, false)),
+    PathLie::new("stability_of_a_stage_that_is_not_there", |_, story| {
+        let claim = StageStability {
+            stage: usize::MAX,
+            under_load: Some(true),
+            under_control: Some(true),
+            sufficient_only: false,
+        };
+        story.answer.stability.push(claim);
+        Some(())
+    }),
+    PathLie::new("forged_events", |asked, story| {
+        story.falls()?;
+        let what = [ContactEvent::Crushes, ContactEvent::Softens, ContactEvent::SlipsBackward];
+        let load_step = asked.problem.load_steps.len() - 1;
+        let forged = what.map(|what| PathEvent { load_step, factor: 0.5, contact: 0, what });
+        story.answer.events.extend(forged);
+        Some(())
+    }),
+    PathLie::new("event_at_a_contact_that_is_not_there", |_, story| {
+        let what = ContactEvent::Opens;
+        story.answer.events.push(PathEvent { load_step: usize::MAX, factor: 0.5, contact: usize::MAX, what });
+        Some(())
+    }),
+    PathLie::new("forged_branch", |asked, story| {
+        story.falls()?;
+        let load_step = asked.problem.load_steps.len() - 1;
+        story.answer.branchings.push(Branching { load_step, factor: 0.5, snaps: true, released: 1e3, twins: true });
+        Some(())
+    }),
+    PathLie::new("branch_of_a_load_step_that_is_not_there", |_, story| {
+        let branch = Branching { load_step: usize::MAX, factor: f64::NAN, snaps: false, released: -1.0, twins: false };
+        story.answer.branchings.push(branch);
+        Some(())
+    }),
+    PathLie::new("ray_besides_a_collapse", |_, story| {
+        story.falls()?;
+        story.answer.ray = Some(story.answer.state.force.clone());
+        Some(())
+    }),
 ];

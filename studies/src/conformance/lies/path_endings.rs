@@ -53,128 +53,91 @@ fn claim_target(asked: &PathAsked, story: &mut Story, keep: f64) -> Option<()> {
 
 /// False endings.
 pub const LIES: &[PathLie] = &[
-    PathLie {
-        name: "stands_early",
-        tell: |asked, story| {
-            ends_early(asked, story, Status::Stands)?;
-            (story.answer.factor, story.answer.motion) = (None, None);
-            Some(())
-        },
-    },
-    PathLie { name: "collapse_early", tell: |asked, story| ends_early(asked, story, Status::Collapse) },
-    PathLie {
-        name: "limit_point_early",
-        tell: |asked, story| {
-            ends_early(asked, story, Status::LimitPoint)?;
-            story.answer.limit_points = vec![peak(&story.answer.state, 0.4 * story.answer.state.factor)];
-            Some(())
-        },
-    },
-    PathLie {
-        name: "limit_point_early_without_a_peak",
-        tell: |asked, story| {
-            ends_early(asked, story, Status::LimitPoint)?;
-            story.answer.motion = None;
-            Some(())
-        },
-    },
-    PathLie {
-        name: "unbounded_early",
-        tell: |asked, story| {
-            ends_early(asked, story, Status::Unbounded)?;
-            (story.answer.ray, story.answer.factor) = (Some(story.answer.state.force.clone()), None);
-            Some(())
-        },
-    },
-    PathLie {
-        name: "unbounded_without_a_ray",
-        tell: |asked, story| {
-            ends_early(asked, story, Status::Unbounded)?;
-            story.answer.factor = None;
-            Some(())
-        },
-    },
-    PathLie {
-        name: "no_equilibrium_early",
-        tell: |asked, story| {
-            ends_early(asked, story, Status::NoEquilibrium)?;
-            story.answer.factor = None;
-            Some(())
-        },
-    },
-    PathLie {
-        name: "stands_after_the_peak",
-        tell: |_, story| {
-            story.falls()?;
-            (story.answer.status, story.answer.factor, story.answer.motion) = (Status::Stands, None, None);
-            story.answer.limit_points.clear();
-            Some(())
-        },
-    },
-    PathLie { name: "stands_at_the_target_by_name", tell: |asked, story| claim_target(asked, story, 0.6) },
-    PathLie {
-        name: "stands_before_the_stage",
-        tell: |_, story| {
-            story.falls()?;
-            let first = *story.last_step().first()?;
-            story.stop_at(first.saturating_sub(1));
-            story.answer.load_step += 1;
-            (story.answer.status, story.answer.factor, story.answer.motion) = (Status::Stands, None, None);
-            Some(())
-        },
-    },
-    PathLie {
-        name: "collapse_of_a_structure_that_stands",
-        tell: |asked, story| {
-            if story.answer.status != Status::Stands || story.states.len() < 2 {
-                return None;
-            }
-            let index = story.states.len() - 1;
-            let rate = asked.rate(&story.states[index - 1], &story.states[index]);
-            story.stop_at(index);
-            (story.answer.status, story.answer.motion) = (Status::Collapse, Some(rate));
-            Some(())
-        },
-    },
-    PathLie { name: "retraced_as_collapse", tell: |asked, story| retrace(asked, story, Status::Collapse) },
-    PathLie { name: "retraced_as_limit_point", tell: |asked, story| retrace(asked, story, Status::LimitPoint) },
-    PathLie {
-        name: "falls_without_states",
-        tell: |asked, story| {
-            ends_early(asked, story, Status::Collapse)?;
-            let turn = story.answer.state.clone();
-            let mut fallen = turn.clone();
-            fallen.factor *= 0.4;
-            story.states.push(fallen.clone());
-            story.answer.limit_points = vec![peak(&turn, fallen.factor)];
-            story.answer.last = Some(fallen);
-            Some(())
-        },
-    },
-    PathLie {
-        name: "falling_state_as_the_peak",
-        tell: |_, story| {
-            story.falls()?;
-            let greatest = story.answer.factor?;
-            let fallen = story.last_step().into_iter().rev().map(|index| story.states[index].clone());
-            let fallen =
-                fallen.take_while(|state| state.factor < greatest).find(|state| state.factor < 0.95 * greatest)?;
-            let lowest = story.states.last()?.factor;
-            story.answer.limit_points = vec![peak(&fallen, lowest)];
-            (story.answer.factor, story.answer.state) = (Some(fallen.factor), fallen);
-            Some(())
-        },
-    },
-    PathLie {
-        name: "peak_before_its_last_rise",
-        tell: |_, story| {
-            story.falls()?;
-            let index = story.below(0.9)?;
-            let early = story.states[index].clone();
-            story.answer.limit_points = vec![peak(&early, 0.4 * early.factor)];
-            (story.answer.factor, story.answer.state) = (Some(early.factor), early);
-            Some(())
-        },
-    },
-    PathLie { name: "panic", tell: |_, _| panic!("a dishonest solver panics") },
+    PathLie::new("stands_early", |asked, story| {
+        ends_early(asked, story, Status::Stands)?;
+        (story.answer.factor, story.answer.motion) = (None, None);
+        Some(())
+    }),
+    PathLie::new("collapse_early", |asked, story| ends_early(asked, story, Status::Collapse)),
+    PathLie::new("limit_point_early", |asked, story| {
+        ends_early(asked, story, Status::LimitPoint)?;
+        story.answer.limit_points = vec![peak(&story.answer.state, 0.4 * story.answer.state.factor)];
+        Some(())
+    }),
+    PathLie::new("limit_point_early_without_a_peak", |asked, story| {
+        ends_early(asked, story, Status::LimitPoint)?;
+        story.answer.motion = None;
+        Some(())
+    }),
+    PathLie::new("unbounded_early", |asked, story| {
+        ends_early(asked, story, Status::Unbounded)?;
+        (story.answer.ray, story.answer.factor) = (Some(story.answer.state.force.clone()), None);
+        Some(())
+    }),
+    PathLie::new("unbounded_without_a_ray", |asked, story| {
+        ends_early(asked, story, Status::Unbounded)?;
+        story.answer.factor = None;
+        Some(())
+    }),
+    PathLie::new("no_equilibrium_early", |asked, story| {
+        ends_early(asked, story, Status::NoEquilibrium)?;
+        story.answer.factor = None;
+        Some(())
+    }),
+    PathLie::new("stands_after_the_peak", |_, story| {
+        story.falls()?;
+        (story.answer.status, story.answer.factor, story.answer.motion) = (Status::Stands, None, None);
+        story.answer.limit_points.clear();
+        Some(())
+    }),
+    PathLie::new("stands_at_the_target_by_name", |asked, story| claim_target(asked, story, 0.6)),
+    PathLie::new("stands_before_the_stage", |_, story| {
+        story.falls()?;
+        let first = *story.last_step().first()?;
+        story.stop_at(first.saturating_sub(1));
+        story.answer.load_step += 1;
+        (story.answer.status, story.answer.factor, story.answer.motion) = (Status::Stands, None, None);
+        Some(())
+    }),
+    PathLie::new("collapse_of_a_structure_that_stands", |asked, story| {
+        if story.answer.status != Status::Stands || story.states.len() < 2 {
+            return None;
+        }
+        let index = story.states.len() - 1;
+        let rate = asked.rate(&story.states[index - 1], &story.states[index]);
+        story.stop_at(index);
+        (story.answer.status, story.answer.motion) = (Status::Collapse, Some(rate));
+        Some(())
+    }),
+    PathLie::new("retraced_as_collapse", |asked, story| retrace(asked, story, Status::Collapse)),
+    PathLie::new("retraced_as_limit_point", |asked, story| retrace(asked, story, Status::LimitPoint)),
+    PathLie::new("falls_without_states", |asked, story| {
+        ends_early(asked, story, Status::Collapse)?;
+        let turn = story.answer.state.clone();
+        let mut fallen = turn.clone();
+        fallen.factor *= 0.4;
+        story.states.push(fallen.clone());
+        story.answer.limit_points = vec![peak(&turn, fallen.factor)];
+        story.answer.last = Some(fallen);
+        Some(())
+    }),
+    PathLie::new("falling_state_as_the_peak", |_, story| {
+        story.falls()?;
+        let greatest = story.answer.factor?;
+        let fallen = story.last_step().into_iter().rev().map(|index| story.states[index].clone());
+        let fallen = fallen.take_while(|state| state.factor < greatest).find(|state| state.factor < 0.95 * greatest)?;
+        let lowest = story.states.last()?.factor;
+        story.answer.limit_points = vec![peak(&fallen, lowest)];
+        (story.answer.factor, story.answer.state) = (Some(fallen.factor), fallen);
+        Some(())
+    }),
+    PathLie::new("peak_before_its_last_rise", |_, story| {
+        story.falls()?;
+        let index = story.below(0.9)?;
+        let early = story.states[index].clone();
+        story.answer.limit_points = vec![peak(&early, 0.4 * early.factor)];
+        (story.answer.factor, story.answer.state) = (Some(early.factor), early);
+        Some(())
+    }),
+    PathLie::new("panic", |_, _| panic!("a dishonest solver panics")),
 ];

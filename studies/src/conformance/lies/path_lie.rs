@@ -32,6 +32,13 @@ pub struct PathLie {
     pub tell: fn(&PathAsked, &mut Story) -> Option<()>,
 }
 
+impl PathLie {
+    /// A lie with a name.
+    pub const fn new(name: &'static str, tell: fn(&PathAsked, &mut Story) -> Option<()>) -> Self {
+        PathLie { name, tell }
+    }
+}
+
 /// Records the states of a path.
 #[derive(Debug, Default)]
 struct Recorder(Vec<PathState>);

@@ -131,80 +131,61 @@ fn rate_as_a_limit_point(_: &PathAsked, story: &mut Story, by: f64) -> Option<()
 
 /// Forged witnesses.
 pub const LIES: &[PathLie] = &[
-    PathLie {
-        name: "witness_of_a_later_state",
-        tell: |asked, story| witnessed_early(asked, story, Status::Collapse, |tree| tree),
-    },
-    PathLie {
-        name: "witness_of_a_later_limit_point",
-        tell: |asked, story| witnessed_early(asked, story, Status::LimitPoint, |tree| tree),
-    },
-    PathLie {
-        name: "witness_of_nothing",
-        tell: |asked, story| witnessed_early(asked, story, Status::Collapse, |tree| with_leaves(tree, |_| 0.0)),
-    },
-    PathLie {
-        name: "witness_turned",
-        tell: |asked, story| {
-            witnessed_early(asked, story, Status::Collapse, |tree| with_leaves(tree, |number| -number))
-        },
-    },
-    PathLie {
-        name: "witness_nan",
-        tell: |asked, story| witnessed_early(asked, story, Status::Collapse, |tree| with_leaves(tree, |_| f64::NAN)),
-    },
-    PathLie {
-        name: "witness_without_branches",
-        tell: |asked, story| witnessed_early(asked, story, Status::Collapse, without_branches),
-    },
-    PathLie {
-        name: "unloads_behind_its_limit_point",
-        tell: |_, story| {
-            story.falls()?;
-            let peak = *story.answer.limit_points.first()?;
-            let at_peak = |state: &PathState| state.load_step == peak.load_step && state.factor == peak.factor;
-            let index = story.states.iter().position(at_peak)?;
-            let motion = story.answer.motion.take();
-            story.stop_at(index);
-            let of_step = story.states[..index].iter().rev().filter(|state| state.load_step == peak.load_step);
-            let back: Vec<PathState> = of_step.cloned().collect();
-            story.answer.last = back.last().cloned();
-            story.states.extend(back);
-            (story.answer.status, story.answer.motion) = (Status::Collapse, motion);
-            story.answer.limit_points = vec![ProvenPeak { lowest: story.answer.last.as_ref()?.factor, ..peak }];
-            Some(())
-        },
-    },
-    PathLie {
-        name: "no_rate_continues_early",
-        tell: |asked, story| ends_for_another_reason(asked, story, LimitPointEnd::None, none_continues),
-    },
-    PathLie {
-        name: "joint_lost_early",
-        tell: |asked, story| ends_for_another_reason(asked, story, LimitPointEnd::JointLost, |_, _, _| Vec::new()),
-    },
-    PathLie {
-        name: "joint_lost_at_the_limit_point",
-        tell: |_, story| {
-            story.falls()?;
-            let peak = story.answer.limit_points.first()?.factor;
-            let index = story.states.iter().position(|state| state.factor == peak)?;
-            story.stop_at(index);
-            (story.answer.status, story.answer.motion) = (Status::LimitPoint, None);
-            story.answer.limit_point_end = Some(LimitPointEnd::JointLost);
-            Some(())
-        },
-    },
-    PathLie { name: "rate_ahead_as_a_limit_point", tell: |asked, story| rate_as_a_limit_point(asked, story, 1.0) },
-    PathLie { name: "rate_back_as_a_limit_point", tell: |asked, story| rate_as_a_limit_point(asked, story, -1.0) },
-    PathLie {
-        name: "states_left_out_before_the_witness",
-        tell: |_, story| {
-            story.falls()?;
-            let index = story.below(0.3)?;
-            let end = story.below(0.9)?;
-            story.states.drain(index + 1..=end);
-            Some(())
-        },
-    },
+    PathLie::new("witness_of_a_later_state", |asked, story| {
+        witnessed_early(asked, story, Status::Collapse, |tree| tree)
+    }),
+    PathLie::new("witness_of_a_later_limit_point", |asked, story| {
+        witnessed_early(asked, story, Status::LimitPoint, |tree| tree)
+    }),
+    PathLie::new("witness_of_nothing", |asked, story| {
+        witnessed_early(asked, story, Status::Collapse, |tree| with_leaves(tree, |_| 0.0))
+    }),
+    PathLie::new("witness_turned", |asked, story| {
+        witnessed_early(asked, story, Status::Collapse, |tree| with_leaves(tree, |number| -number))
+    }),
+    PathLie::new("witness_nan", |asked, story| {
+        witnessed_early(asked, story, Status::Collapse, |tree| with_leaves(tree, |_| f64::NAN))
+    }),
+    PathLie::new("witness_without_branches", |asked, story| {
+        witnessed_early(asked, story, Status::Collapse, without_branches)
+    }),
+    PathLie::new("unloads_behind_its_limit_point", |_, story| {
+        story.falls()?;
+        let peak = *story.answer.limit_points.first()?;
+        let at_peak = |state: &PathState| state.load_step == peak.load_step && state.factor == peak.factor;
+        let index = story.states.iter().position(at_peak)?;
+        let motion = story.answer.motion.take();
+        story.stop_at(index);
+        let of_step = story.states[..index].iter().rev().filter(|state| state.load_step == peak.load_step);
+        let back: Vec<PathState> = of_step.cloned().collect();
+        story.answer.last = back.last().cloned();
+        story.states.extend(back);
+        (story.answer.status, story.answer.motion) = (Status::Collapse, motion);
+        story.answer.limit_points = vec![ProvenPeak { lowest: story.answer.last.as_ref()?.factor, ..peak }];
+        Some(())
+    }),
+    PathLie::new("no_rate_continues_early", |asked, story| {
+        ends_for_another_reason(asked, story, LimitPointEnd::None, none_continues)
+    }),
+    PathLie::new("joint_lost_early", |asked, story| {
+        ends_for_another_reason(asked, story, LimitPointEnd::JointLost, |_, _, _| Vec::new())
+    }),
+    PathLie::new("joint_lost_at_the_limit_point", |_, story| {
+        story.falls()?;
+        let peak = story.answer.limit_points.first()?.factor;
+        let index = story.states.iter().position(|state| state.factor == peak)?;
+        story.stop_at(index);
+        (story.answer.status, story.answer.motion) = (Status::LimitPoint, None);
+        story.answer.limit_point_end = Some(LimitPointEnd::JointLost);
+        Some(())
+    }),
+    PathLie::new("rate_ahead_as_a_limit_point", |asked, story| rate_as_a_limit_point(asked, story, 1.0)),
+    PathLie::new("rate_back_as_a_limit_point", |asked, story| rate_as_a_limit_point(asked, story, -1.0)),
+    PathLie::new("states_left_out_before_the_witness", |_, story| {
+        story.falls()?;
+        let index = story.below(0.3)?;
+        let end = story.below(0.9)?;
+        story.states.drain(index + 1..=end);
+        Some(())
+    }),
 ];

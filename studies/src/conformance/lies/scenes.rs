@@ -24,6 +24,17 @@ pub struct KnownScene {
 }
 
 impl KnownScene {
+    /// A scene of limit analysis whose answer is found by hand.
+    const fn by_hand(name: &'static str, scene: &'static str, stages: &'static str, truth: Truth) -> Self {
+        KnownScene { name, source: "by hand", scene, stages, solver: "", truth, reference: None }
+    }
+
+    /// A scene of paths whose answer is found by hand, with small displacements.
+    const fn by_hand_on_a_path(name: &'static str, scene: &'static str, stages: &'static str, truth: Truth) -> Self {
+        let (solver, reference) = ("kinematics = \"small\"", Some("event_path"));
+        KnownScene { solver, reference, ..Self::by_hand(name, scene, stages, truth) }
+    }
+
     /// Returns the study with a solver, given as the TOML keys of `[solver]`.
     pub fn study(&self, solver: &str) -> String {
         format!(
@@ -44,14 +55,12 @@ impl KnownScene {
 
 /// A block 1 m long and 2 m high on the ground: it weighs 20 kN at g = 10 m/s².
 macro_rules! block {
-    ($stone:literal, $dry:literal) => {
+    ($dry:literal) => {
         concat!(
             "scene = \"blocks\"\nwidth = 1.0\nblocks = [\n",
             "{ name = \"ground\", vertices = [[-1.0, -1.0], [2.0, -1.0], [2.0, 0.0], [-1.0, 0.0]], fixed = true },\n",
             "{ name = \"a\", vertices = [[0.0, 0.0], [1.0, 0.0], [1.0, 2.0], [0.0, 2.0]] },\n]\n",
-            "[materials.stone]\ndensity = 1000.0\n",
-            $stone,
-            "\n[joints.dry]\n",
+            "[materials.stone]\ndensity = 1000.0\nlaw = \"rigid\"\n[joints.dry]\n",
             $dry
         )
     };
@@ -113,64 +122,50 @@ const PUSHED_PAIR: &str = "[[stages]]\nname = \"dead\"\ngravity = 10.0\n[[stages
              { kind = \"point\", block = \"a\", point = [0.0, 2.0], force = [1000.0, 0.0] }, \
              { kind = \"point\", block = \"b\", point = [3.0, 2.0], force = [1000.0, 0.0] }]";
 
-const HAND: &str = "by hand";
+const DRY_BLOCK: &str = block!("law = \"coulomb_associated\"\nfriction = 0.6");
+const COMPLIANT_BLOCK: &str =
+    block!("law = \"coulomb_associated\"\nfriction = 0.6\nnormal_stiffness = 1e8\nshear_stiffness = 5e7");
+const SOFTENING_BLOCK: &str = block!(
+    "law = \"cohesive\"\nfriction = 0.6\ntensile_strength = 2e4\ncohesion = 4e4\nnormal_stiffness = 1e9\n\
+     shear_stiffness = 4e8\ntensile_fracture_energy = 10.0\nshear_fracture_energy = 40.0\n\
+     [scene.mesh]\nelements = [1, 1]\norder = 1"
+);
+const PUSHED_TO_COLLAPSE: &str =
+    live!("until = \"collapse\"", "block = \"a\", point = [0.0, 2.0], force = [1000.0, 0.0]");
 
 /// Scenes of limit analysis.
 pub const LIMIT_SCENES: &[KnownScene] = &[
-    KnownScene {
-        name: "block_tips",
-        source: HAND,
-        scene: block!("law = \"rigid\"", "law = \"coulomb_associated\"\nfriction = 0.6"),
-        stages: live!("until = \"collapse\"", "block = \"a\", point = [0.0, 2.0], force = [1000.0, 0.0]"),
-        solver: "",
-        truth: TIPS,
-        reference: None,
-    },
-    KnownScene {
-        name: "block_slides",
-        source: HAND,
-        scene: block!("law = \"rigid\"", "law = \"coulomb_associated\"\nfriction = 0.2"),
-        stages: live!("until = \"collapse\"", "block = \"a\", point = [0.0, 1.0], force = [1000.0, 0.0]"),
-        solver: "",
-        truth: SLIDES,
-        reference: None,
-    },
-    KnownScene {
-        name: "block_falls_short_of_its_target",
-        source: HAND,
-        scene: block!("law = \"rigid\"", "law = \"coulomb_associated\"\nfriction = 0.6"),
-        stages: live!("factor = 8.0", "block = \"a\", point = [0.0, 2.0], force = [1000.0, 0.0]"),
-        solver: "",
-        truth: TIPS,
-        reference: None,
-    },
-    KnownScene {
-        name: "block_stands_at_its_target",
-        source: HAND,
-        scene: block!("law = \"rigid\"", "law = \"coulomb_associated\"\nfriction = 0.6"),
-        stages: live!("factor = 2.5", "block = \"a\", point = [0.0, 2.0], force = [1000.0, 0.0]"),
-        solver: "",
-        truth: CARRIES_5,
-        reference: None,
-    },
-    KnownScene {
-        name: "stack_tips",
-        source: HAND,
-        scene: stack!("law = \"coulomb_associated\"\nfriction = 0.8"),
-        stages: live!("until = \"collapse\"", "block = \"b\", point = [0.0, 1.5], force = [1000.0, 0.0]"),
-        solver: "",
-        truth: Truth { mechanisms: &["rocking"], ..Truth::collapse(20.0 / 3.0) },
-        reference: None,
-    },
-    KnownScene {
-        name: "two_blocks_tip",
-        source: HAND,
-        scene: pair!("law = \"coulomb_associated\"\nfriction = 0.6"),
-        stages: PUSHED_PAIR,
-        solver: "",
-        truth: Truth { mechanisms: &[], unique: Some(false), ..TIPS },
-        reference: None,
-    },
+    KnownScene::by_hand("block_tips", DRY_BLOCK, PUSHED_TO_COLLAPSE, TIPS),
+    KnownScene::by_hand(
+        "block_slides",
+        block!("law = \"coulomb_associated\"\nfriction = 0.2"),
+        live!("until = \"collapse\"", "block = \"a\", point = [0.0, 1.0], force = [1000.0, 0.0]"),
+        SLIDES,
+    ),
+    KnownScene::by_hand(
+        "block_falls_short_of_its_target",
+        DRY_BLOCK,
+        live!("factor = 8.0", "block = \"a\", point = [0.0, 2.0], force = [1000.0, 0.0]"),
+        TIPS,
+    ),
+    KnownScene::by_hand(
+        "block_stands_at_its_target",
+        DRY_BLOCK,
+        live!("factor = 2.5", "block = \"a\", point = [0.0, 2.0], force = [1000.0, 0.0]"),
+        CARRIES_5,
+    ),
+    KnownScene::by_hand(
+        "stack_tips",
+        stack!("law = \"coulomb_associated\"\nfriction = 0.8"),
+        live!("until = \"collapse\"", "block = \"b\", point = [0.0, 1.5], force = [1000.0, 0.0]"),
+        Truth { mechanisms: &["rocking"], ..Truth::collapse(20.0 / 3.0) },
+    ),
+    KnownScene::by_hand(
+        "two_blocks_tip",
+        pair!("law = \"coulomb_associated\"\nfriction = 0.6"),
+        PUSHED_PAIR,
+        Truth { mechanisms: &[], unique: Some(false), ..TIPS },
+    ),
     KnownScene {
         name: "ring",
         source: "two independent programs: 698.0226652123788",
@@ -180,25 +175,19 @@ pub const LIMIT_SCENES: &[KnownScene] = &[
         truth: Truth { mechanisms: &["four_hinge"], ..Truth::collapse(698.022_665_212_378_8) },
         reference: None,
     },
-    KnownScene {
-        name: "block_is_pressed",
-        source: HAND,
-        scene: block!("law = \"rigid\"", "law = \"coulomb_associated\"\nfriction = 0.6"),
-        stages: live!("until = \"collapse\"", "block = \"a\", point = [0.5, 2.0], force = [0.0, -1000.0]"),
-        solver: "",
-        truth: Truth { endings: &[Status::Unbounded], ..Truth::collapse(f64::INFINITY) },
-        reference: None,
-    },
-    KnownScene {
-        name: "block_slides_by_its_weight",
-        source: HAND,
-        scene: block!("law = \"rigid\"", "law = \"coulomb_associated\"\nfriction = 0.6"),
-        stages: "[[stages]]\nname = \"dead\"\ngravity = [8.0, -10.0]\n[[stages]]\nname = \"live\"\nuntil = \"collapse\"\n\
+    KnownScene::by_hand(
+        "block_is_pressed",
+        DRY_BLOCK,
+        live!("until = \"collapse\"", "block = \"a\", point = [0.5, 2.0], force = [0.0, -1000.0]"),
+        Truth { endings: &[Status::Unbounded], ..Truth::collapse(f64::INFINITY) },
+    ),
+    KnownScene::by_hand(
+        "block_slides_by_its_weight",
+        DRY_BLOCK,
+        "[[stages]]\nname = \"dead\"\ngravity = [8.0, -10.0]\n[[stages]]\nname = \"live\"\nuntil = \"collapse\"\n\
                  loads = [{ kind = \"point\", block = \"a\", point = [1.0, 1.0], force = [-2000.0, 0.0] }]",
-        solver: "",
-        truth: Truth { feasible: Some([3.0, 13.0]), ..LEANS },
-        reference: None,
-    },
+        Truth { feasible: Some([3.0, 13.0]), ..LEANS },
+    ),
     KnownScene {
         name: "block_is_lifted_between_walls",
         source: "by hand: the weight is lifted; walls press as much as they like",
@@ -240,72 +229,39 @@ pub const PATH_SCENES: &[KnownScene] = &[
         },
         reference: Some("event_path"),
     },
-    KnownScene {
-        name: "block_tips",
-        source: HAND,
-        scene: block!(
-            "law = \"rigid\"",
-            "law = \"coulomb_associated\"\nfriction = 0.6\nnormal_stiffness = 1e8\nshear_stiffness = 5e7"
-        ),
-        stages: live!("until = \"collapse\"", "block = \"a\", point = [0.0, 2.0], force = [1000.0, 0.0]"),
-        solver: "kinematics = \"small\"",
-        truth: TIPS_ALONG_A_PATH,
-        reference: Some("event_path"),
-    },
-    KnownScene {
-        name: "block_slides",
-        source: HAND,
-        scene: block!(
-            "law = \"rigid\"",
-            "law = \"coulomb\"\nfriction = 0.2\nnormal_stiffness = 1e8\nshear_stiffness = 5e7"
-        ),
-        stages: live!("until = \"collapse\"", "block = \"a\", point = [0.0, 1.0], force = [1000.0, 0.0]"),
-        solver: "kinematics = \"small\"",
-        truth: Truth { endings: &[Status::Collapse, Status::LimitPoint], limit_points: Some(&[4.0]), ..SLIDES },
-        reference: Some("event_path"),
-    },
-    KnownScene {
-        name: "block_falls_short_of_its_target",
-        source: HAND,
-        scene: block!(
-            "law = \"rigid\"",
-            "law = \"coulomb_associated\"\nfriction = 0.6\nnormal_stiffness = 1e8\nshear_stiffness = 5e7"
-        ),
-        stages: live!("factor = 8.0", "block = \"a\", point = [0.0, 2.0], force = [1000.0, 0.0]"),
-        solver: "kinematics = \"small\"",
-        truth: TIPS_ALONG_A_PATH,
-        reference: Some("event_path"),
-    },
-    KnownScene {
-        name: "block_stands_at_its_target",
-        source: HAND,
-        scene: block!(
-            "law = \"rigid\"",
-            "law = \"coulomb_associated\"\nfriction = 0.6\nnormal_stiffness = 1e8\nshear_stiffness = 5e7"
-        ),
-        stages: live!("factor = 4.0", "block = \"a\", point = [0.0, 2.0], force = [1000.0, 0.0]"),
-        solver: "kinematics = \"small\"",
-        truth: Truth { limit_points: Some(&[]), ..CARRIES_5 },
-        reference: Some("event_path"),
-    },
-    KnownScene {
-        name: "two_blocks_tip",
-        source: HAND,
-        scene: pair!("law = \"coulomb_associated\"\nfriction = 0.6\nnormal_stiffness = 1e8\nshear_stiffness = 5e7"),
-        stages: PUSHED_PAIR,
-        solver: "kinematics = \"small\"",
-        truth: Truth { mechanisms: &[], unique: Some(false), ..TIPS_ALONG_A_PATH },
-        reference: Some("event_path"),
-    },
+    KnownScene::by_hand_on_a_path("block_tips", COMPLIANT_BLOCK, PUSHED_TO_COLLAPSE, TIPS_ALONG_A_PATH),
+    KnownScene::by_hand_on_a_path(
+        "block_slides",
+        block!("law = \"coulomb\"\nfriction = 0.2\nnormal_stiffness = 1e8\nshear_stiffness = 5e7"),
+        live!("until = \"collapse\"", "block = \"a\", point = [0.0, 1.0], force = [1000.0, 0.0]"),
+        Truth { endings: &[Status::Collapse, Status::LimitPoint], limit_points: Some(&[4.0]), ..SLIDES },
+    ),
+    KnownScene::by_hand_on_a_path(
+        "block_falls_short_of_its_target",
+        COMPLIANT_BLOCK,
+        live!("factor = 8.0", "block = \"a\", point = [0.0, 2.0], force = [1000.0, 0.0]"),
+        TIPS_ALONG_A_PATH,
+    ),
+    KnownScene::by_hand_on_a_path(
+        "block_stands_at_its_target",
+        COMPLIANT_BLOCK,
+        live!("factor = 4.0", "block = \"a\", point = [0.0, 2.0], force = [1000.0, 0.0]"),
+        Truth { limit_points: Some(&[]), ..CARRIES_5 },
+    ),
+    KnownScene::by_hand_on_a_path(
+        "two_blocks_tip",
+        pair!("law = \"coulomb_associated\"\nfriction = 0.6\nnormal_stiffness = 1e8\nshear_stiffness = 5e7"),
+        PUSHED_PAIR,
+        Truth { mechanisms: &[], unique: Some(false), ..TIPS_ALONG_A_PATH },
+    ),
     KnownScene {
         name: "soft_block_tips",
         source: "by hand, to first order: its middle lifts at a lean of 24 mm, the corner carries W = K × 12 mm, K = 1e7/6 N/m",
         scene: block!(
-            "law = \"rigid\"",
             "law = \"coulomb_associated\"\nfriction = 0.6\nnormal_stiffness = 1e7\nshear_stiffness = 1e9\n\
              [scene.mesh]\nelements = [1, 1]\norder = 1"
         ),
-        stages: live!("until = \"collapse\"", "block = \"a\", point = [0.0, 2.0], force = [1000.0, 0.0]"),
+        stages: PUSHED_TO_COLLAPSE,
         solver: "kinematics = \"finite\"\nstop = { displacement = 0.05 }",
         truth: Truth {
             endings: &[Status::Collapse, Status::LimitPoint],
@@ -338,12 +294,7 @@ pub const PATH_SCENES: &[KnownScene] = &[
     KnownScene {
         name: "bond_softens",
         source: "by hand: the weight of 20 kN and a bond of 20 kPa on 1 m²",
-        scene: block!(
-            "law = \"rigid\"",
-            "law = \"cohesive\"\nfriction = 0.6\ntensile_strength = 2e4\ncohesion = 4e4\nnormal_stiffness = 1e9\n\
-             shear_stiffness = 4e8\ntensile_fracture_energy = 10.0\nshear_fracture_energy = 40.0\n\
-             [scene.mesh]\nelements = [1, 1]\norder = 1"
-        ),
+        scene: SOFTENING_BLOCK,
         stages: live!("until = \"collapse\"", "block = \"a\", point = [0.5, 2.0], force = [0.0, 1000.0]"),
         solver: "kinematics = \"small\"\nstop = { factor = 30.0 }",
         truth: Truth {
@@ -358,12 +309,7 @@ pub const PATH_SCENES: &[KnownScene] = &[
     KnownScene {
         name: "bond_reaches_its_strength",
         source: "by hand: the weight of 20 kN and a bond of 20 kPa on 1 m²",
-        scene: block!(
-            "law = \"rigid\"",
-            "law = \"cohesive\"\nfriction = 0.6\ntensile_strength = 2e4\ncohesion = 4e4\nnormal_stiffness = 1e9\n\
-             shear_stiffness = 4e8\ntensile_fracture_energy = 10.0\nshear_fracture_energy = 40.0\n\
-             [scene.mesh]\nelements = [1, 1]\norder = 1"
-        ),
+        scene: SOFTENING_BLOCK,
         stages: live!("until = \"first_limit_point\"", "block = \"a\", point = [0.5, 2.0], force = [0.0, 1000.0]"),
         solver: "kinematics = \"small\"",
         truth: Truth {

@@ -1,10 +1,11 @@
 //! The results of an envelope: the most onerous position of each case of the study, and the factor at all positions.
 
 use super::request::Request;
+use crate::figures::format::status_word;
 use crate::kinds::search::intervals;
-use crate::results::{CaseResult, least_of};
-use crate::study::Study;
-use serde_json::{Map, Value as Json, json};
+use crate::results::{CaseResult, KindEntries, PlaceEntry, WorstEntry, least_of};
+use crate::study::{Case, Study};
+use serde_json::Value as Json;
 
 /// A position that was tried.
 struct Place<'a> {
@@ -14,8 +15,25 @@ struct Place<'a> {
     result: &'a CaseResult,
 }
 
+impl Place<'_> {
+    /// Returns the entry of a position that was tried for a case of the study.
+    fn entry(&self, base: &Case) -> PlaceEntry {
+        PlaceEntry {
+            variant: base.variant.clone(),
+            parameters: base.parameters.clone(),
+            vehicle: self.vehicle.map(String::from),
+            direction: self.direction.map(String::from),
+            value: self.value,
+            result: self.result.load_factor,
+            first_limit_point: self.result.path.first_limit_point,
+            status: self.result.status,
+            case: self.result.label.id,
+        }
+    }
+}
+
 /// Returns `worsts` and `curve` for results.json.
-pub(super) fn entries(study: &Study, request: &Request, cases: &[CaseResult]) -> Map<String, Json> {
+pub(super) fn entries(study: &Study, request: &Request, cases: &[CaseResult]) -> KindEntries {
     let (mut worsts, mut curve) = (Vec::new(), Vec::new());
     for base in (0..study.count()).filter_map(|id| study.case(id)) {
         let base = base.as_ref();
@@ -29,28 +47,13 @@ pub(super) fn entries(study: &Study, request: &Request, cases: &[CaseResult]) ->
         places
             .sort_by(|a, b| (a.vehicle, a.direction).cmp(&(b.vehicle, b.direction)).then(a.value.total_cmp(&b.value)));
         worsts.extend(worst(request, base, &places));
-        curve.extend(places.iter().map(|place| {
-            json!({
-                "variant": base.variant,
-                "parameters": base.parameters,
-                "vehicle": place.vehicle,
-                "direction": place.direction,
-                "value": place.value,
-                "result": place.result.load_factor,
-                "first_limit_point": place.result.path.first_limit_point,
-                "status": place.result.status,
-                "case": place.result.label.id,
-            })
-        }));
+        curve.extend(places.iter().map(|place| place.entry(base)));
     }
-    let mut own = Map::new();
-    own.insert("worsts".into(), worsts.into());
-    own.insert("curve".into(), curve.into());
-    own
+    KindEntries { worsts: Some(worsts), curve: Some(curve), ..KindEntries::default() }
 }
 
 /// Returns true if a result belongs to a case of the study, or to a case made from it.
-fn belongs(base: &crate::study::Case, result: &CaseResult) -> bool {
+fn belongs(base: &Case, result: &CaseResult) -> bool {
     let label = &result.label;
     label.variant == base.variant
         && label.scene == base.scene
@@ -58,22 +61,10 @@ fn belongs(base: &crate::study::Case, result: &CaseResult) -> bool {
 }
 
 /// Returns the entry with the least factor.
-fn worst(request: &Request, base: &crate::study::Case, places: &[Place]) -> Option<Json> {
+fn worst(request: &Request, base: &Case, places: &[Place]) -> Option<WorstEntry> {
     let least = least_of(places.iter().map(|place| place.result))?;
     let place = places.iter().find(|place| place.result.label.id == least.label.id)?;
     let own = places.iter().filter(|p| p.vehicle == place.vehicle && p.direction == place.direction);
-    let own: Vec<(f64, Json)> = own.map(|place| (place.value, json!(place.result.status))).collect();
-    Some(json!({
-        "variant": base.variant,
-        "parameters": base.parameters,
-        "parameter": request.parameter,
-        "value": place.value,
-        "vehicle": place.vehicle,
-        "direction": place.direction,
-        "result": place.result.load_factor,
-        "first_limit_point": place.result.path.first_limit_point,
-        "status": place.result.status,
-        "case": place.result.label.id,
-        "intervals": intervals(&own),
-    }))
+    let own: Vec<_> = own.map(|place| (place.value, status_word(place.result.status))).collect();
+    Some(WorstEntry { place: place.entry(base), parameter: request.parameter.clone(), intervals: intervals(&own) })
 }

@@ -1,10 +1,10 @@
 //! The results of `optimise`: the best value of each case of the study, and the ranges without an optimum.
 
 use super::request::{Request, STRIDE};
+use crate::figures::format::status_word;
 use crate::kinds::search::intervals;
-use crate::results::CaseResult;
+use crate::results::{CaseResult, FiniteEntry, KindEntries, OptimumEntry};
 use crate::study::{Case, Study};
-use serde_json::{Map, Value as Json, json};
 
 /// A value that was tried.
 struct Tried<'a> {
@@ -14,13 +14,13 @@ struct Tried<'a> {
 }
 
 impl Tried<'_> {
-    fn status(&self) -> Json {
-        self.found.map_or("impossible".into(), |(result, _)| json!(result.status))
+    fn status(&self) -> &'static str {
+        self.found.map_or("impossible", |(result, _)| status_word(result.status))
     }
 }
 
 /// Returns `optima` for results.json.
-pub(super) fn entries(study: &Study, request: &Request, cases: &[CaseResult]) -> Map<String, Json> {
+pub(super) fn entries(study: &Study, request: &Request, cases: &[CaseResult]) -> KindEntries {
     let optimum = |base: &Case| {
         let first = study.count() + base.id * STRIDE;
         let own = cases.iter().filter(|result| (first..first + STRIDE).contains(&result.label.id));
@@ -30,8 +30,8 @@ pub(super) fn entries(study: &Study, request: &Request, cases: &[CaseResult]) ->
             entry(request, base, &tried)
         })
     };
-    let optima: Vec<Json> = (0..study.count()).filter_map(|id| optimum(&*study.case(id)?)).collect();
-    [("optima".to_string(), Json::from(optima))].into_iter().collect()
+    let optima = (0..study.count()).filter_map(|id| optimum(&*study.case(id)?)).collect();
+    KindEntries { optima: Some(optima), ..KindEntries::default() }
 }
 
 fn of_case<'a>(request: &Request, base: &Case, result: &'a CaseResult) -> Option<Tried<'a>> {
@@ -50,30 +50,29 @@ fn add_impossible(request: &Request, tried: &mut Vec<Tried>) {
     tried.sort_by(|a, b| a.value.total_cmp(&b.value));
 }
 
-fn entry(request: &Request, base: &Case, tried: &[Tried]) -> Json {
+fn entry(request: &Request, base: &Case, tried: &[Tried]) -> OptimumEntry {
     let finite = tried.iter().filter_map(|t| t.found.and_then(|(result, own)| Some((t.value, result, own?))));
     // Of equal results the first one is the best: mirrored scenes have equal results.
     let better = |a: f64, b: f64| request.sense() * a > request.sense() * b;
     let best = finite.reduce(|best, other| if better(other.2, best.2) { other } else { best });
-    let best_finite =
-        best.map(|(value, result, own)| json!({ "value": value, "result": own, "case": result.label.id }));
+    let best_finite = best.map(|(value, case, result)| FiniteEntry { value, result, case: case.label.id });
     let without_bound = tried.iter().filter_map(|t| t.found).find(|(result, _)| request.without_bound(result.status));
     let (value, own, shown) = match (without_bound, best) {
         (Some((result, _)), _) => (None, None, Some(result)),
         (None, Some((value, result, own))) => (Some(value), Some(own), Some(result)),
         (None, None) => (None, None, tried.iter().find_map(|t| t.found).map(|(result, _)| result)),
     };
-    let statuses: Vec<(f64, Json)> = tried.iter().map(|t| (t.value, t.status())).collect();
-    json!({
-        "variant": base.variant,
-        "parameters": base.parameters,
-        "parameter": request.keys().first(),
-        "value": value,
-        "result": own,
-        "status": shown.map(|result| result.status),
-        "case": shown.map(|result| result.label.id),
-        "best_finite": best_finite,
-        "intervals": intervals(&statuses),
-        "scan_spacing": (request.range()[1] - request.range()[0]) / (request.scan - 1) as f64,
-    })
+    let statuses: Vec<_> = tried.iter().map(|t| (t.value, t.status())).collect();
+    OptimumEntry {
+        variant: base.variant.clone(),
+        parameters: base.parameters.clone(),
+        parameter: request.keys().first().cloned(),
+        value,
+        result: own,
+        status: shown.map(|result| result.status),
+        case: shown.map(|result| result.label.id),
+        best_finite,
+        intervals: intervals(&statuses),
+        scan_spacing: (request.range()[1] - request.range()[0]) / (request.scan - 1) as f64,
+    }
 }

@@ -1,7 +1,7 @@
 //! The files of a study of driven points: results.json, results.csv, the figure, and the table for the terminal.
 
 use super::drive::drive_point;
-use super::result::{PathStatus, PointResult};
+use super::result::{PathStatus, PointResult, column};
 use super::study::PointStudy;
 use super::surface::yield_surface;
 use crate::figures::format::{format_number, format_value};
@@ -11,14 +11,15 @@ use crate::figures::plot::svg::as_file;
 use crate::kinds::case_study::one_case;
 use crate::kinds::kind::{LoadedStudy, Piece, RunOutput, RunRequest, Verification};
 use crate::kinds::stored_results::StoredResults;
-use crate::results::{head, without_origin};
+use crate::results::{StoredOutline, head, without_origin};
 use crate::solve::Observer;
 use crate::study::SweptKeys;
 use crate::verify::Agreement;
 use crate::writers::columns::swept_text;
 use crate::writers::csv_table::csv_table;
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
-use serde_json::Value as Json;
+use serde::Deserialize;
+use serde_json::{Value as Json, json};
 
 impl LoadedStudy for PointStudy {
     fn name(&self) -> &str {
@@ -48,10 +49,8 @@ impl LoadedStudy for PointStudy {
     }
 
     fn run(&self, request: &RunRequest, observer: &dyn Observer) -> RunOutput {
-        let stored = match &request.kept {
-            Some(results) => stored_ids(&serde_json::from_str(results).unwrap_or_default()),
-            None => Vec::new(),
-        };
+        let kept = request.kept.as_ref().and_then(|results| serde_json::from_str::<StoredOutline>(results).ok());
+        let stored = kept.unwrap_or_default().ids();
         let others: Vec<usize> = stored.into_iter().filter(|id| !request.wanted.contains(id)).collect();
         // Driving a point is cheap: cases that stay in the results are driven again, so that they belong to the current study.
         let chosen = self.cases.iter().filter(|case| request.wanted.contains(&case.id) || others.contains(&case.id));
@@ -75,18 +74,19 @@ impl LoadedStudy for PointStudy {
     /// Drives all points again: every number must be the same.
     fn verify_stored(&self, stored: &StoredResults, _observer: &dyn Observer) -> Result<Verification, String> {
         let json: Json = serde_json::from_reader(stored.results()?).map_err(|error| error.to_string())?;
-        let entries = json["cases"].as_array().ok_or("there is no list of cases")?;
-        let only = json.get("only_cases").map(|_| stored_ids(&json));
+        let entries = json.get("cases").and_then(Json::as_array).ok_or("there is no list of cases")?;
+        let outline = StoredOutline::deserialize(&json).map_err(|error| error.to_string())?;
+        let only = outline.only_cases.as_ref().map(|_| outline.ids());
         let wanted = self.cases.iter().filter(|case| only.as_ref().is_none_or(|ids| ids.contains(&case.id)));
         let driven: Vec<PointResult> = wanted.map(drive_point).collect();
-        let version = json["version"].as_str().unwrap_or_default();
+        let version = &outline.version;
         let agreement = json.as_object().map_or(Agreement::Program, |head| Agreement::of_head(head, &self.resolved));
         let stored_rest = without_origin(json.clone());
         let (mut stored_rest, mut again) = (stored_rest, without_origin(results_json(self, &driven, version)));
         if json.get("format").is_none() {
             again.as_object_mut().map(|older| older.shift_remove("files"));
         }
-        let mut findings = Vec::new();
+        let mut findings: Vec<_> = outline.origin.too_new().map(|why| (0, why)).into_iter().collect();
         if entries.len() != driven.len() || entries.is_empty() {
             findings.push((0, format!("there are {} cases, the study asks for {}", entries.len(), driven.len())));
         }
@@ -94,8 +94,8 @@ impl LoadedStudy for PointStudy {
             let again = serde_json::to_value(result).map_err(|error| error.to_string())?;
             findings.extend(agreement.differences(entry, &again).into_iter().map(|why| (result.id, why)));
         }
-        for value in [&mut stored_rest, &mut again] {
-            value["cases"] = Json::Null;
+        for rest in [&mut stored_rest, &mut again].into_iter().filter_map(Json::as_object_mut) {
+            rest.shift_remove("cases");
         }
         findings.extend(agreement.differences(&stored_rest, &again).into_iter().map(|why| (0, why)));
         let made = files(self, &driven, version);
@@ -114,21 +114,16 @@ impl LoadedStudy for PointStudy {
     }
 }
 
-/// Returns the ids of the cases in a results.json.
-fn stored_ids(results: &Json) -> Vec<usize> {
-    let cases = results["cases"].as_array().into_iter().flatten();
-    cases.filter_map(|case| Some(case["id"].as_u64()? as usize)).collect()
-}
-
 /// Returns the content of results.json.
 fn results_json(study: &PointStudy, results: &[PointResult], version: &str) -> Json {
-    let mut whole = Json::Object(head((&study.name, &study.resolved), version, &file_names(study)));
-    whole["kind"] = "point".into();
-    if results.len() < study.cases.len() {
-        whole["only_cases"] = results.iter().map(|result| result.id).collect();
+    let only_cases: Vec<usize> = results.iter().map(|result| result.id).collect();
+    let mut whole = head((&study.name, &study.resolved), version, &file_names(study));
+    whole.insert("kind".into(), "point".into());
+    if only_cases.len() < study.cases.len() {
+        whole.insert("only_cases".into(), only_cases.into());
     }
-    whole["cases"] = serde_json::json!(results);
-    whole
+    whole.insert("cases".into(), json!(results));
+    whole.into()
 }
 
 /// Returns the names of the files beside results.json, sorted.
@@ -210,10 +205,6 @@ fn parameter(keys: &SweptKeys, key: &str, value: &Json) -> (String, String) {
     }
 }
 
-fn column(result: &PointResult, word: &str) -> Option<usize> {
-    result.columns.iter().position(|column| column.split(' ').next() == Some(word))
-}
-
 /// Converts stresses to MPa and lengths to mm; other quantities are unchanged.
 fn scaled(label: &str) -> (String, f64) {
     if let Some(word) = label.strip_suffix(" [Pa]") {
@@ -234,7 +225,7 @@ pub fn figure(study: &PointStudy, results: &[PointResult]) -> String {
         .map(|result| (&study.cases[result.id], result))
         .map(|(case, result)| {
             let [x, y] = [0, 1].map(|axis| {
-                let place = column(result, &case.plot[axis]).unwrap_or(axis);
+                let place = column(&result.columns, &case.plot[axis]).unwrap_or(axis);
                 let (label, factor) = scaled(&result.columns[place]);
                 labels[axis] = label;
                 (place, factor)
@@ -256,7 +247,7 @@ fn surfaces(study: &PointStudy, results: &[PointResult]) -> Vec<Series> {
     let in_plane = |result: &&PointResult| study.cases[result.id].plot == ["p", "q"];
     let greatest = |word: &str| {
         let of = |result: &PointResult| {
-            let place = column(result, word)?;
+            let place = column(&result.columns, word)?;
             Some(result.rows.iter().map(|row| row[place]).fold(0.0, f64::max))
         };
         results.iter().filter_map(of).fold(0.0, f64::max)
@@ -285,7 +276,7 @@ pub fn table(study: &PointStudy, results: &[PointResult]) -> String {
     let keys = keys(results);
     let mut header = vec!["id".to_string(), "case".into(), "law".into(), "status".into(), "rows".into()];
     let plotted = study.cases.first().map_or(String::new(), |case| case.plot[1].clone());
-    let label = results.first().and_then(|r| Some(r.columns[column(r, &plotted)?].clone())).unwrap_or(plotted);
+    let label = results.first().and_then(|r| Some(r.columns[column(&r.columns, &plotted)?].clone())).unwrap_or(plotted);
     header.extend([
         format!("least {label}"),
         "greatest".into(),
@@ -296,11 +287,11 @@ pub fn table(study: &PointStudy, results: &[PointResult]) -> String {
     table.load_style(presets::NOTHING).set_content_arrangement(ContentArrangement::Disabled).set_header(header);
     for result in results {
         let case = &study.cases[result.id];
-        let values: Vec<f64> = column(result, &case.plot[1])
+        let values: Vec<f64> = column(&result.columns, &case.plot[1])
             .map(|place| result.rows.iter().map(|row| row[place]).collect())
             .unwrap_or_default();
         let number = |x: Option<f64>| x.map_or(String::new(), |x| format_number(x, 10));
-        let dissipated = column(result, "dissipated").and_then(|place| Some(result.rows.last()?[place]));
+        let dissipated = column(&result.columns, "dissipated").and_then(|place| Some(result.rows.last()?[place]));
         let told_apart = result.variant.is_some() || !keys.is_empty();
         table.add_row([
             result.id.to_string(),

@@ -1,6 +1,6 @@
 //! The result of a driven point, and the names of its numbers.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
 use std::collections::BTreeMap;
 use voussoir_solvers::point::PointLaw;
@@ -13,6 +13,26 @@ pub enum PathStatus {
     Reached,
     /// The path ended early; the notes give the reason.
     Stalled,
+}
+
+/// The numbers of a stored point.
+#[derive(Debug, Clone, Deserialize)]
+pub struct PointRows {
+    columns: Vec<String>,
+    rows: Vec<Vec<f64>>,
+}
+
+impl PointRows {
+    /// Returns the last number of a column, which is named without its unit.
+    pub fn last(&self, name: &str) -> Option<f64> {
+        let place = column(&self.columns, name)?;
+        self.rows.last()?.get(place).copied()
+    }
+}
+
+/// Returns the index of a column by its name without the unit.
+pub fn column(columns: &[String], name: &str) -> Option<usize> {
+    columns.iter().position(|column| column.split(' ').next() == Some(name))
 }
 
 /// A driven point: a row of numbers and a region per step.

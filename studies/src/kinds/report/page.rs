@@ -164,8 +164,8 @@ fn image(contents: &Contents, parts: &Parts, place: &str) -> Option<String> {
             let name = selection.study.as_deref()?;
             let results = parts.json(name)?;
             let chosen = selection.choose(results);
-            let case = chosen.iter().find(|chosen| (chosen.x - x).abs() <= 1e-6 * x.abs().max(1e-6))?.entry;
-            let id = case["id"].as_u64().or(case["case"].as_u64())? as usize;
+            let case = &chosen.iter().find(|chosen| (chosen.x - x).abs() <= 1e-6 * x.abs().max(1e-6))?.head;
+            let id = case.id.or(case.case)?;
             let piece = match what.as_str() {
                 "scene" => Piece::Scene(id),
                 "mechanism" => Piece::Mechanism(id),

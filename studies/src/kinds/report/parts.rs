@@ -2,6 +2,8 @@
 
 use crate::figures::format::format_seconds;
 use crate::kinds::kind::{Part, Piece};
+use crate::results::{StoredEntry, StoredOutline};
+use serde::Deserialize;
 use serde_json::{Value as Json, json};
 use std::collections::BTreeMap;
 
@@ -10,6 +12,7 @@ pub struct Parts<'a> {
     parts: &'a [Part],
     texts: &'a [String],
     json: Vec<Json>,
+    outlines: Vec<StoredOutline>,
     /// True if figures are drawn.
     pub figures: bool,
 }
@@ -17,8 +20,9 @@ pub struct Parts<'a> {
 impl<'a> Parts<'a> {
     /// Combines the parts with the texts of their results.json.
     pub fn new(parts: &'a [Part], texts: &'a [String], figures: bool) -> Self {
-        let json = texts.iter().map(|text| serde_json::from_str(text).unwrap_or_default()).collect();
-        Parts { parts, texts, json, figures }
+        let json: Vec<Json> = texts.iter().map(|text| serde_json::from_str(text).unwrap_or_default()).collect();
+        let outlines = json.iter().map(|json| StoredOutline::deserialize(json).unwrap_or_default()).collect();
+        Parts { parts, texts, json, outlines, figures }
     }
 
     /// Returns the parts in order.
@@ -32,16 +36,16 @@ impl<'a> Parts<'a> {
         self.json.get(place)
     }
 
-    /// Returns the cases of a part.
-    pub fn cases(&self, place: usize) -> &[Json] {
-        self.json.get(place).and_then(|json| json["cases"].as_array()).map_or(&[], Vec::as_slice)
+    /// Returns the heads of the cases of a part.
+    pub fn cases(&self, place: usize) -> &[StoredEntry] {
+        self.outlines.get(place).map_or(&[], |outline| outline.cases.as_slice())
     }
 
     /// Returns the number of cases by status.
     pub fn statuses(&self, place: usize) -> BTreeMap<String, usize> {
         let mut counts = BTreeMap::new();
         for case in self.cases(place) {
-            *counts.entry(case["status"].as_str().unwrap_or_default().to_string()).or_insert(0) += 1;
+            *counts.entry(case.status().to_string()).or_insert(0) += 1;
         }
         counts
     }
@@ -49,13 +53,13 @@ impl<'a> Parts<'a> {
     /// Returns the number of cases without a passed certificate. Driven points have no certificate; they pass if they reach the
     /// end of their path.
     pub fn uncertified(&self, place: usize) -> usize {
-        let failed = |case: &&Json| case["certificate"]["passed"] != true && case["status"] != "reached";
+        let failed = |case: &&StoredEntry| !case.certified() && case.status() != "reached";
         self.cases(place).iter().filter(failed).count()
     }
 
     /// Returns the time of all cases of a part \[s\].
     pub fn seconds(&self, place: usize) -> f64 {
-        self.cases(place).iter().filter_map(|case| case["seconds"].as_f64()).sum()
+        self.cases(place).iter().filter_map(|case| case.seconds).sum()
     }
 
     /// Returns `parts` for results.json. Times are omitted, because they are in the results of the parts.

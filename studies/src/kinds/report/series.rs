@@ -3,6 +3,8 @@
 use super::types::Type;
 use super::value::Value;
 use crate::figures::hinges::{DrawnHinge, named_hinges};
+use crate::kinds::point::result::PointRows;
+use crate::results::{PathRecord, StoredEntry};
 use serde::Deserialize;
 use serde_json::{Map, Value as Json};
 use voussoir_core::certificate::{Hinge, Side};
@@ -50,12 +52,13 @@ pub struct Selection {
 }
 
 /// An entry of results with its abscissa.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Chosen<'a> {
     /// Abscissa.
     pub x: f64,
-    /// The entry.
-    pub entry: &'a Json,
+    /// The head of the entry.
+    pub head: StoredEntry,
+    entry: &'a Json,
 }
 
 /// Returns true if a name means a whole key: it is the key itself, or its last segments.
@@ -71,9 +74,8 @@ fn same(a: &Json, b: &Json) -> bool {
 }
 
 /// Returns a named value of an entry: a swept key, or an entry in the table itself.
-fn named<'a>(entry: &'a Json, name: &str) -> Option<&'a Json> {
-    let swept = entry["parameters"].as_object();
-    let swept = swept.and_then(|swept| swept.iter().find(|(key, _)| meant(key, name)).map(|(_, value)| value));
+fn named<'a>(head: &'a StoredEntry, entry: &'a Json, name: &str) -> Option<&'a Json> {
+    let swept = head.parameters.iter().find(|(key, _)| meant(key, name)).map(|(_, value)| value);
     swept.or_else(|| entry.get(name))
 }
 
@@ -81,35 +83,28 @@ impl Selection {
     /// Returns the selected entries by ascending abscissa; `results` is the results.json of the study.
     pub fn choose<'a>(&self, results: &'a Json) -> Vec<Chosen<'a>> {
         let entries = results[self.entries.as_str()].as_array().into_iter().flatten();
-        let of_variant = |entry: &&Json| match &self.variant {
-            Some(variant) => entry["variant"].as_str() == Some(variant),
-            None => true,
+        let choose = |entry: &'a Json| {
+            let head = StoredEntry::of(entry);
+            let fits = |(name, value): (&String, &Json)| named(&head, entry, name).is_some_and(|own| same(own, value));
+            let of_variant = self.variant.is_none() || self.variant == head.variant;
+            let x = self.abscissa(&head, entry).filter(|_| of_variant && self.fixed.iter().all(fits))?;
+            let inside = self.from.is_none_or(|low| x >= low) && self.to.is_none_or(|high| x <= high);
+            inside.then_some(Chosen { x, head, entry })
         };
-        let fits = |entry: &&Json| {
-            self.fixed.iter().all(|(name, value)| named(entry, name).is_some_and(|own| same(own, value)))
-        };
-        let chosen = entries
-            .filter(of_variant)
-            .filter(fits)
-            .filter_map(|entry| Some(Chosen { x: self.abscissa(entry)?, entry }));
-        let inside = |chosen: &Chosen| {
-            self.from.is_none_or(|low| chosen.x >= low) && self.to.is_none_or(|high| chosen.x <= high)
-        };
-        let mut chosen: Vec<Chosen> = chosen.filter(inside).collect();
+        let mut chosen: Vec<Chosen> = entries.filter_map(choose).collect();
         chosen.sort_by(|a, b| a.x.total_cmp(&b.x));
         chosen
     }
 
-    fn abscissa(&self, entry: &Json) -> Option<f64> {
+    fn abscissa(&self, head: &StoredEntry, entry: &Json) -> Option<f64> {
         if let Some(over) = &self.over {
-            return named(entry, over)?.as_f64();
+            return named(head, entry, over)?.as_f64();
         }
         if self.entries == "curve" {
-            return entry["value"].as_f64();
+            return head.value;
         }
         let free = |key: &str| !self.fixed.keys().any(|name| meant(key, name));
-        let swept = entry["parameters"].as_object().into_iter().flatten();
-        let mut numbers = swept.filter(|(key, _)| free(key)).filter_map(|(_, value)| value.as_f64());
+        let mut numbers = head.parameters.iter().filter(|(key, _)| free(key)).filter_map(|(_, value)| value.as_f64());
         Some(numbers.next().unwrap_or(0.0))
     }
 
@@ -140,15 +135,16 @@ impl Selection {
         if chosen.is_empty() {
             return Value::unknown(format!("{study} has no such results"));
         }
-        Value::Series(chosen.iter().map(|chosen| (chosen.x, result(chosen.entry, &self.result))).collect())
+        Value::Series(
+            chosen.iter().map(|chosen| (chosen.x, result(&chosen.head, chosen.entry, &self.result))).collect(),
+        )
     }
 }
 
 /// Returns displacement in millimetres and factor along the path of a case.
 fn curve(case: &Json) -> Value {
-    let points = case["curve"].as_array().into_iter().flatten();
-    let point = |point: &Json| Some((point[0].as_f64()? * 1e3, Value::Number(point[1].as_f64()?)));
-    let points: Vec<(f64, Value)> = points.filter_map(point).collect();
+    let points = PathRecord::deserialize(case).ok().and_then(|path| path.curve).unwrap_or_default();
+    let points: Vec<(f64, Value)> = points.iter().map(|[x, y]| (x * 1e3, Value::Number(*y))).collect();
     if points.is_empty() {
         Value::unknown("there is no curve: [output] curve = true asks for it")
     } else {
@@ -157,8 +153,8 @@ fn curve(case: &Json) -> Value {
 }
 
 /// Returns the value at a path of an entry; a load factor also if it is infinite.
-fn result(entry: &Json, path: &str) -> Value {
-    let status = entry["status"].as_str().unwrap_or_default();
+fn result(head: &StoredEntry, entry: &Json, path: &str) -> Value {
+    let status = head.status();
     if ["load_factor", "first_limit_point", "result", "value"].contains(&path) {
         match (status, entry[path].as_f64()) {
             ("unbounded", _) if path != "value" => return Value::Number(f64::INFINITY),
@@ -168,7 +164,7 @@ fn result(entry: &Json, path: &str) -> Value {
             ("open", _) => return Value::unknown("a case is open"),
             (_, Some(number)) => return Value::Number(number),
             ("stalled", _) => return Value::unknown("a case stalled"),
-            _ if path == "first_limit_point" => return result(entry, "load_factor"),
+            _ if path == "first_limit_point" => return result(head, entry, "load_factor"),
             (word, _) => return Value::none(word.replace('_', " ")),
         }
     }
@@ -177,7 +173,7 @@ fn result(entry: &Json, path: &str) -> Value {
     }
     let names: Vec<&str> = path.split('.').collect();
     if names[0] == "mechanism"
-        && entry["mechanism"].is_null()
+        && !head.has_mechanism()
         && ["collapse", "limit_point", "open", "stalled"].contains(&status)
     {
         return Value::unknown("no mechanism was found");
@@ -187,11 +183,7 @@ fn result(entry: &Json, path: &str) -> Value {
 
 /// Returns the last value of a column of a driven point.
 fn last(entry: &Json, column: &str) -> Value {
-    let columns = entry["columns"].as_array().into_iter().flatten();
-    let named = |name: &Json| name.as_str().and_then(|name| name.split(' ').next()) == Some(column);
-    let place = columns.clone().position(named);
-    let row = entry["rows"].as_array().and_then(|rows| rows.last());
-    match place.zip(row).and_then(|(place, row)| row[place].as_f64()) {
+    match PointRows::deserialize(entry).ok().and_then(|rows| rows.last(column)) {
         Some(number) => Value::Number(number),
         None => Value::unknown(format!("there is no column {column}")),
     }
@@ -210,7 +202,7 @@ fn sides(hinges: &[Json]) -> Value {
 
 /// Returns the number of places of hinges along the ring: consecutive hinges at neighbouring joints on one side are one place.
 fn places(hinges: &[Json]) -> Value {
-    let mut sides: Vec<&Json> = hinges.iter().map(|hinge| &hinge["side"]).collect();
+    let mut sides: Vec<Option<&Json>> = hinges.iter().map(|hinge| hinge.get("side")).collect();
     sides.dedup();
     Value::Number(sides.len() as f64)
 }

@@ -15,7 +15,7 @@ use crate::figures::plot::svg::as_file;
 use crate::kinds::kind::{LoadedStudy, Part, RunOutput, RunRequest, Verification};
 use crate::kinds::read::read_source;
 use crate::kinds::stored_results::StoredResults;
-use crate::results::{head, this_program, without_origin};
+use crate::results::{StoredOutline, head, this_program, without_origin};
 use crate::solve::Observer;
 use crate::study::{DiagnosticList, Drawn, ReadFile, RecordTable, StudyError, StudySource};
 use crate::verify::Agreement;
@@ -93,14 +93,13 @@ impl ReportStudy {
         files.push(("report.html".into(), page));
         let mut names: Vec<String> = files.iter().map(|(name, _)| name.clone()).collect();
         names.sort();
-        let mut whole = Json::Object(head((&self.name, &self.resolved), version, &names));
-        if let Some(date) = date {
-            whole["date"] = date.into();
-        }
-        whole["kind"] = "report".into();
-        whole["cases"] = json!([]);
-        whole["parts"] = parts.entries();
-        whole["claims"] = answers.iter().map(Answer::entry).collect();
+        let mut whole = head((&self.name, &self.resolved), version, &names);
+        whole.extend(date.map(|date| ("date".into(), date.into())));
+        whole.insert("kind".into(), "report".into());
+        whole.insert("cases".into(), json!([]));
+        whole.insert("parts".into(), parts.entries());
+        whole.insert("claims".into(), answers.iter().map(Answer::entry).collect());
+        let whole = Json::from(whole);
         files.insert(0, ("results.json".to_string(), format!("{whole:#}\n")));
         RunOutput {
             files: files.into_iter().map(|(name, text)| (name, text.into_bytes())).collect(),
@@ -197,7 +196,8 @@ impl LoadedStudy for ReportStudy {
         let json: Json = serde_json::from_reader(stored.results()?).map_err(|error| error.to_string())?;
         let text = |part: &Part| stored.text(&format!("{}/results.json", part.folder)).unwrap_or_default();
         let results: Vec<String> = self.parts.iter().map(text).collect();
-        let made = || self.output(&results, json["version"].as_str().unwrap_or_default(), json["date"].as_str());
+        let outline = StoredOutline::deserialize(&json).map_err(|error| error.to_string())?;
+        let made = || self.output(&results, &outline.version, outline.date.as_deref());
         let made = match caught(made) {
             Ok(made) => made,
             Err(why) => return Ok(Verification { findings: vec![(0, why)], ..Verification::default() }),
@@ -209,8 +209,8 @@ impl LoadedStudy for ReportStudy {
         if json.get("format").is_none() {
             again.as_object_mut().map(|older| older.shift_remove("files"));
         }
-        let findings = agreement.differences(&without_origin(json), &again);
-        let findings = findings.into_iter().map(|why| (0, why)).collect();
+        let differences = agreement.differences(&without_origin(json), &again);
+        let findings = outline.origin.too_new().into_iter().chain(differences).map(|why| (0, why)).collect();
         Ok(Verification {
             cases: self.contents.claims.len(),
             stalled: 0,

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use voussoir_core::law::{FillResistance, FillState};
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::model::{Assembly, Bridge, Chord, FillMass, FillPart, FillReaction, carried};
-use voussoir_core::plugin::{Diagnostic, Keys, Range};
+use voussoir_core::plugin::{Diagnostic, Keys};
 
 /// Number of parts of the fill on a deformable block; each part has two points.
 const PARTS: usize = 16;
@@ -111,7 +111,7 @@ impl Fill {
             (Some(_), Some(_)) => {
                 diagnostics.push(Diagnostic::new("cover", "is given besides road").help("keep one of the two"));
             }
-            (Some(cover), None) => diagnostics.extend(out_of_range("cover", cover, Range::NON_NEGATIVE)),
+            (Some(cover), None) => diagnostics.extend(out_of_range::<Self>("cover", cover)),
             (None, Some(road)) => diagnostics.extend(road_mistakes(road)),
         }
         if self.resistance.is_some() && self.friction_angle.is_none() {

@@ -3,7 +3,7 @@
 use crate::scenes::lookup::out_of_range;
 use voussoir_core::model::crosses_itself;
 use voussoir_core::model::geometry::{Vec2, area_and_centroid};
-use voussoir_core::plugin::{Diagnostic, Keys, Range};
+use voussoir_core::plugin::{Diagnostic, Keys};
 
 /// Greatest number of courses.
 pub(super) const MAX_COURSES: usize = 1000;
@@ -58,9 +58,9 @@ impl Pier {
     /// Returns the mistakes in its numbers.
     pub fn mistakes(&self) -> Vec<Diagnostic> {
         let mut diagnostics = Vec::new();
-        diagnostics.extend(out_of_range("height", self.height, Range::POSITIVE));
-        diagnostics.extend(out_of_range("width", self.width, Range::POSITIVE));
-        diagnostics.extend(self.base_width.and_then(|width| out_of_range("base_width", width, Range::POSITIVE)));
+        diagnostics.extend(out_of_range::<Self>("height", self.height));
+        diagnostics.extend(out_of_range::<Self>("width", self.width));
+        diagnostics.extend(self.base_width.and_then(|width| out_of_range::<Self>("base_width", width)));
         if !(1..=MAX_COURSES).contains(&self.courses) {
             let message = format!("{} must be from 1 to {MAX_COURSES}", self.courses);
             diagnostics.push(Diagnostic::new("courses", message));

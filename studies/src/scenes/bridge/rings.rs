@@ -9,7 +9,7 @@ use crate::scenes::profile::{Profile, Ring, Springing};
 use crate::scenes::thickness::Thickness;
 use std::cmp::Ordering;
 use voussoir_core::model::geometry::Vec2;
-use voussoir_core::plugin::{Diagnostic, Keys, Range};
+use voussoir_core::plugin::{Diagnostic, Keys};
 
 /// Greatest number of voussoirs in a ring.
 pub(super) const MAX_VOUSSOIRS: usize = 10_000;
@@ -125,7 +125,7 @@ impl Span {
         if !(1..=MAX_RINGS).contains(&self.rings) {
             diagnostics.push(Diagnostic::new("rings", format!("{} must be from 1 to {MAX_RINGS}", self.rings)));
         }
-        diagnostics.extend(out_of_range("level", self.level, Range::ANY));
+        diagnostics.extend(out_of_range::<Self>("level", self.level));
         let counts = take(self.counts(), &mut diagnostics);
         let Some(counts) = counts.filter(|_| diagnostics.is_empty()) else { return Err(diagnostics) };
         let mut stations = Vec::new();
@@ -209,7 +209,7 @@ impl Span {
 
     /// Returns the greatest number of voussoirs in each ring that are no shorter than `length` along its lower face.
     fn by_length(&self, length: f64) -> Result<Vec<usize>, Diagnostic> {
-        if let Some(wrong) = out_of_range("voussoir_length", length, Range::POSITIVE) {
+        if let Some(wrong) = out_of_range::<Self>("voussoir_length", length) {
             return Err(wrong);
         }
         // Mistakes in the ring itself are reported when it is built.

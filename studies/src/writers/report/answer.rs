@@ -1,17 +1,17 @@
 //! The result of a study in one sentence with its proof, and the critical numbers.
 
 use super::cases::hinges;
+use crate::figures::envelope::place_name;
 use crate::figures::format::{
     certificate_verdict, format_force, format_number, format_short, headline, kind_words, open_bounds, proved_interval,
     status_meaning, status_word, unit_load,
 };
-use crate::results::{CaseResult, Comparison, least_of};
+use crate::results::{CaseResult, Comparison, WorstEntry, least_of};
 use crate::writers::StudyOutput;
 use crate::writers::joints_csv::carried_lines;
 use crate::writers::record::section;
 use crate::writers::table::id_list;
 use maud::{Markup, html};
-use serde_json::Value as Json;
 use voussoir_core::limit::Status;
 
 /// Order of statuses in the sentence.
@@ -36,17 +36,13 @@ pub(super) fn worst(study: &StudyOutput) -> Option<usize> {
     if study.results.comparison.is_some() {
         return None;
     }
-    if let Some(found) = found(study, "worsts").or_else(|| found(study, "optima")) {
-        let ids = found.iter().filter_map(|entry| entry["case"].as_u64()).map(|id| id as usize);
-        let chosen: Vec<&CaseResult> = ids.filter_map(|id| study.results.case(id)).collect();
-        return least_of(chosen.into_iter()).and_then(|case| place(case.label.id));
-    }
-    least_of(cases.iter()).and_then(|case| place(case.label.id))
-}
-
-/// The entries that a search has added to the results.
-fn found<'a>(study: &'a StudyOutput, name: &str) -> Option<&'a Vec<Json>> {
-    study.results.own.get(name).and_then(Json::as_array).filter(|entries| !entries.is_empty())
+    let found: Vec<usize> = match (&study.results.own.worsts, &study.results.own.optima) {
+        (Some(worsts), _) if !worsts.is_empty() => worsts.iter().map(|worst| worst.place.case).collect(),
+        (_, Some(optima)) if !optima.is_empty() => optima.iter().filter_map(|optimum| optimum.case).collect(),
+        _ => return least_of(cases.iter()).and_then(|case| place(case.label.id)),
+    };
+    let chosen = found.into_iter().filter_map(|id| study.results.case(id));
+    least_of(chosen).and_then(|case| place(case.label.id))
 }
 
 /// The result in plain words, then its proof.
@@ -67,32 +63,30 @@ fn sentence(study: &StudyOutput) -> String {
     let case = &cases[place];
     let words = headline(case, study.scene(place).map_or(&[], |(_, stages)| stages));
     let mechanism = case.mechanism.as_ref().map_or(String::new(), |own| format!(", {}", kind_words(own.kind)));
-    let own = format!("{words}{mechanism}");
+    let words = format!("{words}{mechanism}");
     let at = whereabouts(study, case);
-    let worst = found(study, "worsts").and_then(|all| all.iter().find(|entry| entry["case"] == case.label.id));
+    let own = &study.results.own;
+    let worst = own.worsts.iter().flatten().find(|worst| worst.place.case == case.label.id);
     match study.totals.cases {
-        1 => format!("{}.", capital(&own)),
+        1 => format!("{}.", capital(&words)),
         _ if let Some(entry) = worst => {
-            format!("The most onerous position of the load is {}: {own}.", position(study, entry))
+            format!("The most onerous position of the load is {}: {words}.", position(study, entry))
         }
-        _ if found(study, "optima").is_some() => format!("The best that was found is {at}: {own}."),
-        count if case.load_factor.is_none() => format!("The worst of {count} cases is {at}: {own}."),
-        count if at.is_empty() => format!("The least load factor of {count} cases: {own}."),
-        count => format!("The least load factor of {count} cases is at {at}: {own}."),
+        _ if own.optima.as_ref().is_some_and(|optima| !optima.is_empty()) => {
+            format!("The best that was found is {at}: {words}.")
+        }
+        count if case.load_factor.is_none() => format!("The worst of {count} cases is {at}: {words}."),
+        count if at.is_empty() => format!("The least load factor of {count} cases: {words}."),
+        count => format!("The least load factor of {count} cases is at {at}: {words}."),
     }
 }
 
 /// A position of an envelope with its vehicle and direction: `10.55 m (bogie, forward)`.
-fn position(study: &StudyOutput, entry: &Json) -> String {
-    let unit = entry["parameter"]
-        .as_str()
-        .and_then(|key| study.keys.unit(key))
-        .map_or(String::new(), |unit| format!(" {unit}"));
-    let value = entry["value"].as_f64().map_or("–".into(), |value| format_short(value, 4));
-    let words = ["vehicle", "direction", "variant"].iter().filter_map(|key| entry[key].as_str().map(String::from));
-    let swept = entry["parameters"].as_object().map(|values| study.keys.text(values)).filter(|text| !text.is_empty());
-    let words: Vec<String> = words.chain(swept).collect();
-    if words.is_empty() { format!("{value}{unit}") } else { format!("{value}{unit} ({})", words.join(", ")) }
+fn position(study: &StudyOutput, WorstEntry { place, parameter, .. }: &WorstEntry) -> String {
+    let unit = study.keys.unit(parameter).map_or(String::new(), |unit| format!(" {unit}"));
+    let value = format_short(place.value, 4);
+    let words = place_name(place, &study.keys);
+    if words.is_empty() { format!("{value}{unit}") } else { format!("{value}{unit} ({words})") }
 }
 
 /// Capitalises the first letter.

@@ -1,8 +1,8 @@
 //! Tables of cases, with the least load factors first; notes and certificates.
 
 use crate::figures::format::{
-    certificate_verdict, format_force, format_number, format_seconds, format_short, format_value, hinge_list,
-    kind_words, open_bounds, proved_interval, snap_words, status_word, unit_load,
+    certificate_verdict, format_force, format_number, format_seconds, format_short, hinge_list, kind_words,
+    open_bounds, proved_interval, snap_words, status_word, unit_load,
 };
 use crate::results::{CaseResult, load_rank};
 use crate::writers::StudyOutput;
@@ -58,15 +58,8 @@ fn columns<'a>(study: &'a StudyOutput) -> Vec<Column<'a>> {
     let mut add = |wanted: bool, heading: &str, cell: Box<dyn Fn(usize) -> String + 'a>| {
         columns.extend(wanted.then(|| (heading.to_string(), cell)));
     };
-    let label = |pick: fn(&CaseResult) -> &Option<String>| {
-        Box::new(move |place: usize| pick(&cases[place]).clone().unwrap_or_default())
-    };
-    add(true, "id", Box::new(|place| cases[place].label.id.to_string()));
-    add(cases.iter().any(|case| case.label.variant.is_some()), "variant", label(|case| &case.label.variant));
-    add(cases.iter().any(|case| case.label.scene.is_some()), "scene", label(|case| &case.label.scene));
-    for key in &study.sweep_keys {
-        let value = |place: usize| cases[place].label.parameters.get(key).map(format_value).unwrap_or_default();
-        add(true, &study.keys.title(key), Box::new(value));
+    for label in study.page_labels().columns() {
+        add(true, &label.title.clone(), Box::new(move |place| label.words(&cases[place])));
     }
     add(true, "status", Box::new(|place| status_word(cases[place].status).replace('_', " ")));
     add(true, "load factor", Box::new(|place| factor(&cases[place])));

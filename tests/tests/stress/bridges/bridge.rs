@@ -1,7 +1,7 @@
 //! A bridge as numbers, and the text of its study.
 
 use std::fmt::Write;
-use voussoir_tests::sequence::Sequence;
+use voussoir::core::random::Random;
 
 /// A segmental span.
 #[derive(Debug, Clone)]
@@ -105,7 +105,7 @@ pub const DAMAGED: u64 = 1_000_000;
 
 impl Bridge {
     pub fn random(seed: u64) -> Bridge {
-        let mut r = Sequence::new(seed);
+        let mut r = Random::new(seed);
         let count = [1, 1, 2, 3][r.whole(0, 3)];
         let spans: Vec<Span> = (0..count)
             .map(|_| {
@@ -123,7 +123,7 @@ impl Bridge {
             })
             .collect();
         let top = spans.iter().map(|span| span.rise + span.thickness[0]).fold(0.0, f64::max);
-        let soil = |r: &mut Sequence, to_level: f64| Soil {
+        let soil = |r: &mut Random, to_level: f64| Soil {
             to_level,
             density: r.between(1500.0, 2200.0),
             friction_angle: r.between(0.0, 45.0),
@@ -216,7 +216,7 @@ impl Bridge {
     }
 
     /// Removes voussoirs from outermost rings of two, but not at springings, and mortar from bed joints.
-    fn damage(&mut self, r: &mut Sequence) {
+    fn damage(&mut self, r: &mut Random) {
         for span in 0..self.spans.len() {
             self.spans[span].rings = if r.chance(0.8) { 2 } else { 1 };
             self.lost.retain(|lost| lost.1 < self.spans[lost.0].rings);

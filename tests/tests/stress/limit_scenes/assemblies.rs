@@ -3,7 +3,7 @@
 use super::families::{extreme, law};
 use super::model::{Block, Law, Model, Point, area_centroid};
 use std::f64::consts::PI;
-use voussoir_tests::sequence::Sequence;
+use voussoir::core::random::Random;
 
 fn free(model: &mut Model, polygon: Vec<Point>, density: f64) {
     let name = format!("b{}", model.blocks.len());
@@ -50,7 +50,7 @@ fn stout(polygon: &[Point], size: f64) -> bool {
 
 /// Adds a rectangle on the ground that lines cut into convex blocks, usually at bed and head joints or at any angle.
 /// Some blocks are removed, and there may be ground beside it.
-pub fn arranged(r: &mut Sequence, model: &mut Model) {
+pub fn arranged(r: &mut Random, model: &mut Model) {
     let (width, height) = (r.between(0.5, 3.0), r.between(0.5, 3.0));
     let (count, regular) = (r.whole(1, 18), r.chance(0.5));
     let mut parts = vec![rectangle([0.0, 0.0], [width, height])];
@@ -92,7 +92,7 @@ pub fn arranged(r: &mut Sequence, model: &mut Model) {
 
 /// Adds towers, leaning stacks, flat arches, wedges, blocks on slopes, hanging blocks or beams between walls, also
 /// without weight, without friction, or symmetric.
-pub fn degenerate(r: &mut Sequence, model: &mut Model) {
+pub fn degenerate(r: &mut Random, model: &mut Model) {
     let strengths = r.chance(0.5);
     model.laws = vec![if r.chance(0.5) { extreme(r) } else { law(r, strengths) }];
     let density = if r.chance(0.15) { 0.0 } else { 2000.0 };
@@ -163,7 +163,7 @@ pub fn degenerate(r: &mut Sequence, model: &mut Model) {
 }
 
 /// Adds wedges with vertical or inclined joints between two walls, with a level soffit.
-fn flat_arch(r: &mut Sequence, model: &mut Model, density: f64) {
+fn flat_arch(r: &mut Random, model: &mut Model, density: f64) {
     let (count, height) = (r.whole(1, 11), r.between(0.2, 0.8));
     let (span, spread) = (2.0, r.between(0.0, 0.5));
     let bottom = |k: usize| span * k as f64 / count as f64;

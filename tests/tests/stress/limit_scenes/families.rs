@@ -5,7 +5,7 @@ use super::model::{Block, Contact, Force, Law, Model, Point, area_centroid};
 use std::f64::consts::PI;
 use std::fmt::Write;
 use voussoir::core::model::Body;
-use voussoir_tests::sequence::Sequence;
+use voussoir::core::random::Random;
 
 /// A scene in both forms.
 pub struct Scene {
@@ -19,7 +19,7 @@ pub const FAMILIES: [&str; 6] =
 
 /// Returns the scene of a seed; `None` if its numbers give no valid scene.
 pub fn scene(seed: u64) -> Option<Scene> {
-    let mut r = Sequence::new(seed);
+    let mut r = Random::new(seed);
     match seed % 6 {
         0 => arch(&mut r, FAMILIES[0], false),
         1 => arch(&mut r, FAMILIES[1], true),
@@ -31,7 +31,7 @@ pub fn scene(seed: u64) -> Option<Scene> {
 }
 
 /// Returns a law of any kind.
-pub fn law(r: &mut Sequence, strengths: bool) -> Law {
+pub fn law(r: &mut Random, strengths: bool) -> Law {
     let friction = r.between(0.05, 1.2);
     let kind = if strengths { r.whole(4, 7) } else { r.whole(0, 5) };
     match kind {
@@ -52,7 +52,7 @@ pub fn law(r: &mut Sequence, strengths: bool) -> Law {
 }
 
 /// Returns a law without friction, with unrealistic friction, or with strengths that have no effect.
-pub fn extreme(r: &mut Sequence) -> Law {
+pub fn extreme(r: &mut Random) -> Law {
     match r.whole(0, 5) {
         0 => Law::dry("unilateral", 0.0),
         1 => Law::dry("coulomb_associated", 0.0),
@@ -75,7 +75,7 @@ fn tables(laws: &[Law], solver: &str, densities: &[f64]) -> String {
     text + &format!("[solver]\nsolver = \"{solver}\"\n")
 }
 
-fn gravity(r: &mut Sequence) -> Point {
+fn gravity(r: &mut Random) -> Point {
     match r.whole(0, 9) {
         0 => [r.between(-3.0, 3.0), -9.81],
         _ => [0.0, -9.81],
@@ -91,7 +91,7 @@ fn stages(gravity: Point, loads: &[String]) -> String {
 }
 
 /// Returns a direction; downwards, upwards and horizontal are more frequent.
-fn direction(r: &mut Sequence) -> Point {
+fn direction(r: &mut Random) -> Point {
     match r.whole(0, 5) {
         0 | 1 => [0.0, -1.0],
         2 => [if r.chance(0.5) { 1.0 } else { -1.0 }, 0.0],
@@ -104,7 +104,7 @@ fn direction(r: &mut Sequence) -> Point {
 }
 
 /// Returns the solver named in the study.
-fn solver(r: &mut Sequence, laws: &[Law], chain: bool) -> &'static str {
+fn solver(r: &mut Random, laws: &[Law], chain: bool) -> &'static str {
     // By default these laws have their own flow.
     let own = laws.iter().any(|law| law.tag == "coulomb");
     match r.whole(0, 4) {
@@ -116,7 +116,7 @@ fn solver(r: &mut Sequence, laws: &[Law], chain: bool) -> &'static str {
 }
 
 /// Adds a load on the free blocks of a model and returns its text.
-fn load_on(r: &mut Sequence, model: &mut Model) -> String {
+fn load_on(r: &mut Random, model: &mut Model) -> String {
     let free: Vec<usize> = (0..model.blocks.len()).filter(|b| !model.blocks[*b].held).collect();
     let block = *r.one_of(&free);
     let Block { polygon, name, density, .. } = model.blocks[block].clone();
@@ -163,7 +163,7 @@ fn blocks_of(bodies: &[Body], density: f64) -> Vec<Block> {
 }
 
 /// Returns the intrados profile of an arch.
-fn profile(r: &mut Sequence, span: f64) -> (String, f64) {
+fn profile(r: &mut Random, span: f64) -> (String, f64) {
     let shape =
         *r.one_of(&["segmental", "segmental", "elliptical", "parabolic", "catenary", "pointed", "three_centred"]);
     let rise = span
@@ -182,7 +182,7 @@ fn profile(r: &mut Sequence, span: f64) -> (String, f64) {
 }
 
 /// Returns a ring with any profile.
-fn arch(r: &mut Sequence, family: &'static str, other_loads: bool) -> Option<Scene> {
+fn arch(r: &mut Random, family: &'static str, other_loads: bool) -> Option<Scene> {
     let span = r.power(-0.3, 1.6);
     let (profile, rise) = profile(r, span);
     let (thickness, width, voussoirs) = (span * r.between(0.02, 0.2), r.power(-1.0, 1.0), r.whole(2, 40));
@@ -256,7 +256,7 @@ fn on_extrados(model: &mut Model, x: f64, force: Point) -> Option<()> {
 }
 
 /// Adds strips and axles if no chord is above another one, else loads on any block.
-fn ring_load(r: &mut Sequence, model: &mut Model, span: f64, rise: f64) -> String {
+fn ring_load(r: &mut Random, model: &mut Model, span: f64, rise: f64) -> String {
     let kind = if rise < 0.45 * span { r.whole(0, 3) } else { 3 };
     match kind {
         0 => {
@@ -292,7 +292,7 @@ fn ring_load(r: &mut Sequence, model: &mut Model, span: f64, rise: f64) -> Strin
 }
 
 /// Returns a wall in running bond with windows.
-fn wall(r: &mut Sequence, family: &'static str) -> Option<Scene> {
+fn wall(r: &mut Random, family: &'static str) -> Option<Scene> {
     let (courses, bricks) = (r.whole(1, 6), r.whole(1, 6));
     let brick = [r.between(0.2, 0.8), r.between(0.1, 0.4)];
     let (width, density) = (r.between(0.1, 1.0), r.between(1600.0, 2700.0));
@@ -317,7 +317,7 @@ fn wall(r: &mut Sequence, family: &'static str) -> Option<Scene> {
 }
 
 /// Returns convex blocks that fill a rectangle; some of them are removed.
-fn assembly(r: &mut Sequence, family: &'static str, strengths: bool) -> Option<Scene> {
+fn assembly(r: &mut Random, family: &'static str, strengths: bool) -> Option<Scene> {
     let laws: Vec<Law> = match r.whole(0, 9) {
         0 => vec![extreme(r)],
         _ => (0..r.whole(1, 3)).map(|_| law(r, strengths)).collect(),
@@ -330,7 +330,7 @@ fn assembly(r: &mut Sequence, family: &'static str, strengths: bool) -> Option<S
 
 /// Returns a scene `blocks` whose blocks and laws `fill` has put into the model. It is rotated, scaled and shifted,
 /// with random loads if it has none.
-fn finish(r: &mut Sequence, family: &'static str, fill: impl FnOnce(&mut Sequence, &mut Model)) -> Scene {
+fn finish(r: &mut Random, family: &'static str, fill: impl FnOnce(&mut Random, &mut Model)) -> Scene {
     let mut model = Model { width: r.between(0.2, 2.0), gravity: gravity(r), ..Model::default() };
     fill(r, &mut model);
     if r.chance(0.3) {
@@ -369,7 +369,7 @@ fn finish(r: &mut Sequence, family: &'static str, fill: impl FnOnce(&mut Sequenc
 }
 
 /// Rotates the scene with its gravity, changes the unit of length, and moves it far from the origin.
-fn disguise(r: &mut Sequence, model: &mut Model) {
+fn disguise(r: &mut Random, model: &mut Model) {
     let (angle, scale) = (r.between(-PI, PI), r.power(-2.0, 2.0));
     let off = if r.chance(0.3) { [r.between(-1e3, 1e3), 1e3 * scale] } else { [0.0; 2] };
     let (sin, cos) = angle.sin_cos();

@@ -111,13 +111,13 @@ mod tests {
     use super::super::tangent::wanted_modes;
     use super::*;
     use crate::contact::mode::ContactMode;
-    use crate::optimise::lcg::Lcg;
     use crate::path::newton::model::loads::StagedLoads;
     use crate::path::newton::quantities::control_row::control_row;
     use voussoir_core::law::Facet;
     use voussoir_core::limit::Counters;
     use voussoir_core::model::geometry::Vec2;
     use voussoir_core::path::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem, PointLaw};
+    use voussoir_core::random::Random;
 
     /// A rigid block on three compliant points of the ground with dilatant friction, pushed down and sideways.
     fn pushed() -> PathProblem {
@@ -167,13 +167,16 @@ mod tests {
             let mut system = StepSystem::new(&problem, finite).expect("a system");
             system.load(StagedLoads::new(Vec::new(), &problem.load_steps[0].loading, 0.0));
             let (start, u) = (system.undeformed(), system.units());
-            let (mut random, mut compared) = (Lcg::new(5), [0; 3]);
+            let (mut random, mut compared) = (Random::from_state(5), [0; 3]);
             for _ in 0..600 {
                 let mut state = start.clone();
                 state.factor = 0.7;
-                state.force.iter_mut().for_each(|r| *r = [u.force * (random.next() + 0.3), u.force * random.next()]);
+                state
+                    .force
+                    .iter_mut()
+                    .for_each(|r| *r = [u.force * (random.signed() + 0.3), u.force * random.signed()]);
                 let unit = [u.displacement, u.displacement, u.displacement / u.length];
-                state.motion[1] = unit.map(|unit| unit * random.next());
+                state.motion[1] = unit.map(|unit| unit * random.signed());
                 let gradient = system.gradient(&state);
                 state.gap = gradient.gap.clone();
                 state.mode = wanted_modes(&mut system, &start, &state).0;

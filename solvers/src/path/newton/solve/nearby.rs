@@ -183,7 +183,6 @@ impl<'k> Nearby<'k> {
 mod tests {
     use super::*;
     use crate::contact::mode::ContactMode;
-    use crate::optimise::lcg::Lcg;
     use crate::path::newton::model::loads::StagedLoads;
     use std::sync::Arc;
     use voussoir_core::law::Facet;
@@ -192,6 +191,7 @@ mod tests {
     use voussoir_core::path::{
         Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem, PointLaw, Sliding,
     };
+    use voussoir_core::random::Random;
 
     /// Two elastic blocks between two supports, three dry joints of two points.
     fn between_supports() -> PathProblem {
@@ -239,7 +239,7 @@ mod tests {
     #[test]
     fn nearby_factors_solve_as_own_ones_do() {
         let problem = between_supports();
-        let mut random = Lcg::new(3);
+        let mut random = Random::from_state(3);
         let modes = [ContactMode::Open, ContactMode::Facet(1), ContactMode::Facet(2)];
         for (turn, least) in [(0.0, 100), (1e-6, 100), (1e-3, 1), (1.0, 0)] {
             let (mut solved, mut far) = (0, 0);
@@ -256,17 +256,17 @@ mod tests {
                 start
                     .force
                     .iter_mut()
-                    .for_each(|r| *r = [-unit.force * (random.next() + 0.3), unit.force * random.next()]);
+                    .for_each(|r| *r = [-unit.force * (random.signed() + 0.3), unit.force * random.signed()]);
                 start.factor = 0.5;
                 let mut state = start.clone();
-                state.motion[1..3].iter_mut().flatten().for_each(|q| *q += turn * random.next());
+                state.motion[1..3].iter_mut().flatten().for_each(|q| *q += turn * random.signed());
                 for _ in 0..2 {
                     let [c, mode] =
-                        [6.0, 3.0].map(|most| ((0.5 * (random.next() + 1.0) * most) as usize).min(most as usize - 1));
+                        [6.0, 3.0].map(|most| ((0.5 * (random.signed() + 1.0) * most) as usize).min(most as usize - 1));
                     state.mode[c] = modes[mode];
                 }
-                let control: Vec<f64> = (0..own.size()).map(|_| random.next()).collect();
-                let right: Vec<f64> = (0..own.size()).map(|_| random.next()).collect();
+                let control: Vec<f64> = (0..own.size()).map(|_| random.signed()).collect();
+                let right: Vec<f64> = (0..own.size()).map(|_| random.signed()).collect();
                 let there = own.equations(&state);
                 let Some((x, true)) = solve_linear(&mut own, &state, &there, &control, &right) else { continue };
                 let mut other = system();
