@@ -115,7 +115,7 @@ pub struct Key {
     pub doc: Option<LitStr>,
 }
 
-const KEY_WORDS: &str = "unit, range, default, optional, reference, names, len, like, name, doc, shape and of (see `voussoir_core::plugin::Keys`)";
+const KEY_WORDS: &str = "unit, range, default, optional, reference, names, len, like, name, doc, shape, of (see `voussoir_core::plugin::Keys`)";
 
 impl Key {
     pub fn of(attributes: &[Attribute]) -> Result<Key> {
@@ -145,7 +145,7 @@ impl Key {
                 "shape" => key.shape = Some(entry.expression()?),
                 "of" => key.of = Some(entry.expression()?),
                 other => {
-                    let message = format!("`{other}` says nothing of a key; it takes {KEY_WORDS}");
+                    let message = format!("`{other}` is not an attribute of a key; write one of: {KEY_WORDS}");
                     return Err(Error::new(entry.name.span(), message));
                 }
             }
@@ -179,7 +179,8 @@ impl Options {
                 "untagged" => options.tagging = Tagging::Untagged,
                 "check" => options.check = Some(entry.path()?),
                 other => {
-                    let message = format!("`{other}` says nothing of a table; it takes tag, untagged and check");
+                    let message =
+                        format!("`{other}` is not an attribute of a table; write one of: tag, untagged, check");
                     return Err(Error::new(entry.name.span(), message));
                 }
             }

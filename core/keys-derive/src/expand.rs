@@ -348,7 +348,8 @@ mod tests {
     fn a_wrong_attribute_is_refused_with_a_sentence() {
         let of = |field: TokenStream| message(quote!(struct Law { #[doc = "strength"] #field }));
         assert!(
-            of(quote!(#[key(unit = "Pa", size = 3)] f: f64)).contains("`size` says nothing of a key; it takes unit,")
+            of(quote!(#[key(unit = "Pa", size = 3)] f: f64))
+                .contains("`size` is not an attribute of a key; write one of: unit,")
         );
         assert!(of(quote!(f: f64)).contains("the unit of this number is missing"));
         assert!(of(quote!(#[key(unit = "Pa", range = "positive")] f: f64)).contains("`positive` is no comparison"));
@@ -400,7 +401,7 @@ mod tests {
                 #[keys(size)]
                 struct Law {}
             ))
-            .contains("`size` says nothing of a table")
+            .contains("`size` is not an attribute of a table")
         );
     }
 

@@ -61,7 +61,7 @@ pub(crate) fn title_block(name: &str, record: Option<&RecordTable>, origin: Repo
                     tr class="signed" {
                         th scope="row" { (heading) }
                         td { (name.as_deref().unwrap_or_default()) }
-                        th scope="row" { "Date, signature" }
+                        th scope="row" { "Signed" }
                         td {}
                     }
                 }

@@ -125,7 +125,7 @@ fn a_record_is_the_head_of_the_report_and_of_no_case() {
     };
     let head = "<table class=\"title-block\">";
     let page = &written(&signed("C. Wright"))[0];
-    for part in [head, "&lt;i&gt;A&lt;/i&gt;", "C. Wright", "Date, signature", "SHA-256 of the study"] {
+    for part in [head, "&lt;i&gt;A&lt;/i&gt;", "C. Wright", "Signed", "SHA-256 of the study"] {
         assert!(page.contains(part), "{part}");
     }
     assert!(!written(ARCH)[0].contains(head));
