@@ -173,7 +173,7 @@ fn a_forged_place_of_a_mechanism_is_found() {
     assert_eq!(forged["cases"][0]["mechanism"]["at"], json!("plateau"));
     forged["cases"][0]["mechanism"]["at"] = json!("peak");
     let found = findings(&*study, &elsewhere(&with_results(&files, &forged)));
-    assert!(found.iter().any(|why| why.contains("the place of the mechanism")), "{found:?}");
+    assert!(found.iter().any(|why| why.contains("mechanism.at is \"peak\", but by field_factor")), "{found:?}");
 }
 
 /// The stored states prove the results of both paths. On another processor no case is solved again; on this one the

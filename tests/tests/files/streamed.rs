@@ -61,9 +61,9 @@ fn what_is_forged_is_found() {
         ("4: is missing", &|v| v["cases"] = list(v)[..4].into()),
         ("1: is missing", &|v| v["cases"] = [&list(v)[..1], &list(v)[2..]].concat().into()),
         ("4: appears twice", &|v| v["cases"] = [&list(v)[..], &list(v)[4..]].concat().into()),
-        ("1: the cases are not in their order", &|v| v["cases"].as_array_mut().expect("cases").swap(1, 2)),
-        ("0: results of", &|v| v["study"] = json!("another")),
-        ("0: what kind = \"run\" adds", &|v| v["worsts"] = json!([])),
+        ("1: the entries of cases are not in the order", &|v| v["cases"].as_array_mut().expect("cases").swap(1, 2)),
+        ("0: study is", &|v| v["study"] = json!("another")),
+        ("0: the entries of kind = \"run\"", &|v| v["worsts"] = json!([])),
         ("0: only_cases", &|v| v["only_cases"] = json!([0, 1, 2, 3, 4])),
     ];
     for (why, change) in forgeries {

@@ -167,7 +167,7 @@ fn the_head_decides_how_results_are_compared() {
     }
     let mut later = original.clone();
     later["format"] = json!(99);
-    assert!(findings(&study, &later).iter().any(|why| why.contains("format 99")));
+    assert!(findings(&study, &later).iter().any(|why| why.contains("format is 99")));
     // Results without a head are from an older format.
     let mut older = original.clone();
     ["format", "commit", "sources", "platform", "processor_features", "mathematics", "plugins", "files"]
