@@ -30,7 +30,7 @@ voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::FillResistance,
         tag: "backing",
-        summary: "solid backing: resists up to a pressure, whatever stands on it",
+        summary: "solid backing: resists up to a given pressure that does not depend on the fill above it",
         sources: &["Gilbert 2007, ARCH'07 (backing beside the ring)"],
         file: file!(),
         package: voussoir_core::package!(),

@@ -63,7 +63,7 @@ voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::InterfaceLaw,
         tag: "coulomb",
-        summary: "no tension, Coulomb friction; slip does not dilate (non-associated) unless dilatancy_angle says so",
+        summary: "no tension, Coulomb friction; slip does not dilate (non-associated) unless dilatancy_angle is given",
         provides: &[Capability::FACETS, Capability::RESPONSE],
         claims: &[Property::DISSIPATIVE],
         samples: &[

@@ -63,7 +63,7 @@ voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::FillResistance,
         tag: "fill_pressure",
-        summary: "shares of Rankine's passive pressure, from nothing, the active pressure or that at rest upwards",
+        summary: "a share of Rankine's passive pressure; the least pressure is zero, active or at rest",
         sources: &[
             "Rankine 1857, Phil. Trans. R. Soc. 147",
             "Jaky 1944 (pressure at rest)",

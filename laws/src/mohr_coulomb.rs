@@ -91,7 +91,7 @@ voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::InterfaceLaw,
         tag: "mohr_coulomb",
-        summary: "friction with cohesion, tension cut-off and crushing; associated unless dilatancy_angle says otherwise",
+        summary: "friction with cohesion, tension cut-off and crushing; associated unless dilatancy_angle is given",
         provides: &[Capability::FACETS, Capability::RESPONSE],
         claims: &[Property::DISSIPATIVE],
         samples: &[

@@ -88,7 +88,7 @@ voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::BulkMaterial,
         tag: "rankine",
-        summary: "tears where its greatest principal stress reaches the tensile strength, perfectly plastic",
+        summary: "cracks where its greatest principal stress reaches the tensile strength, perfectly plastic",
         provides: &[Capability::STRESS_UPDATE, Capability::RIGID_LIMIT],
         claims: &[Property::ASSOCIATED, Property::DISSIPATIVE, Property::ISOTROPIC, Property::SYMMETRIC_TANGENT],
         samples: &[

@@ -27,7 +27,7 @@ voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::StudyKind,
         tag: "envelope",
-        summary: "moves a load over a range, both ways and for several vehicles: the worst place, and the factor at all of them",
+        summary: "moves a load over a range, in both directions and for several vehicles: the worst position, and the factor at each position",
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("envelope.md"),

@@ -12,7 +12,7 @@ voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::StudyKind,
         tag: "run",
-        summary: "answers every case of the study (variants × sweep) on its own",
+        summary: "solves every case of the study (variants × sweep)",
         file: file!(),
         package: voussoir_core::package!(),
         page: "# `run`\n\nAnswers every case, variants outermost, then the axes of the sweep. One row of the table and one entry of results.json a case. Cases are made, solved, stored and forgotten one after another: memory does not grow with their forces and motions. Of more than 1000 cases the table, the report and the chart show some hundreds: the least and the greatest load factor of every few neighbours, and cases without a certified answer; all of them are in results.json and results.csv.\n",

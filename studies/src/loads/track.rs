@@ -10,19 +10,19 @@ pub struct Track {
     /// distance of sleepers
     #[key(unit = "m", range = "> 0")]
     pub sleeper_spacing: f64,
-    /// of a sleeper, along the track
+    /// size of a sleeper along the track
     #[key(unit = "m", range = "> 0")]
     pub sleeper_width: f64,
-    /// of a sleeper, across the track
+    /// size of a sleeper across the track
     #[key(unit = "m", range = "> 0", optional = "the wheel_width of the axle counts for an effective width")]
     pub sleeper_length: Option<f64>,
-    /// of the ballast below the sleepers
+    /// depth of the ballast below the sleepers
     #[key(unit = "m", range = ">= 0", default = 0.0)]
     pub ballast_depth: f64,
-    /// of the spread in the ballast, from the vertical; the default is 4 : 1
+    /// angle of the spread in the ballast, from the vertical; the default is 4 : 1
     #[key(unit = "deg", range = ">= 0, < 90", default = 14.036243467926479)]
     pub ballast_angle: f64,
-    /// of an axle on the sleeper before it, under it and after it
+    /// shares of an axle on the sleeper before it, under it and after it
     #[key(unit = "-", range = ">= 0, <= 1", default = [0.25, 0.5, 0.25])]
     pub shares: [f64; 3],
 }

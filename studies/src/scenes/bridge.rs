@@ -40,7 +40,7 @@ pub struct BridgeScene {
     #[key(like = SceneKeys)]
     pub joint: String,
     /// interface law of the joints between rings
-    #[key(reference = "joints", optional = "that of joint")]
+    #[key(reference = "joints", optional = "the law of joint")]
     pub ring_joint: Option<String>,
     /// from left to right
     #[key(len = ">= 1, <= 1000")]

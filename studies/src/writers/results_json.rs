@@ -28,6 +28,6 @@ pub fn add_cases<W: Write>(text: &mut ResultsText<W>, cases: &[CaseResult]) -> i
 register!(
     "results_json",
     ResultsJson,
-    "results.json: every number of every case, with what proves it",
+    "results.json: every number of every case, with its certificate",
     "# `results_json`\n\n`results.json` is written by every run. Numbers read back to the last bit; `null` is no number.\n"
 );

@@ -51,7 +51,7 @@ impl CaseTable for Rows {
 register!(
     "results_parquet",
     ResultsParquet,
-    "results.parquet: the rows of results.csv with types, where it is asked for by name",
+    "results.parquet: the rows of results.csv with types, on request",
     "# `results_parquet`\n\nWrites `results.parquet`: the columns of `results.csv` as texts, numbers, counts and truths, a value that is \
      not there as null; numbers keep every bit. pandas, polars and DuckDB read it. It writes only where it is named:\n\n\
      ```toml\n[output]\nwriters = [\"results_csv\", \"results_parquet\"]\n```\n"

@@ -126,7 +126,7 @@ pub(super) fn table(study: &StudyOutput) -> Markup {
 register!(
     "sensitivities_csv",
     Sensitivities,
-    "sensitivities.csv: derivatives of load factors, where [output] asks for sensitivities",
+    "sensitivities.csv: derivatives of load factors, if [output] requests them",
     "# `sensitivities_csv`\n\nWrites `sensitivities.csv` where `[output] sensitivities = true`: one row for each case and number of \
      its study that the load factor of limit analysis depends on, with the derivatives on both sides.\n"
 );

@@ -38,7 +38,7 @@ voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::LimitSolver,
         tag: "limit_chain",
-        summary: "limit analysis of arches, viaducts and whatever few joints close to rings, in its redundants and λ, by simplex, to rounding",
+        summary: "limit analysis of arches, viaducts and other scenes with few closed rings, by simplex in the redundant forces and λ, exact to rounding",
         requires: &[&[Capability::FACETS], &[Capability::RIGID_LIMIT]],
         cost: Some(20),
         sources: &["Livesley 1978, Int. J. Numer. Meth. Engng 12", "Dantzig 1963, Linear Programming and Extensions"],

@@ -52,7 +52,7 @@ voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::LimitSolver,
         tag: "limit_least",
-        summary: "the least load factor with the laws' own flow, with a proved lower bound",
+        summary: "the least load factor with the flow rules of the laws, with a proved lower bound",
         provides: &[Capability::NON_ASSOCIATED],
         requires: &[&[Capability::FACETS], &[Capability::RIGID_LIMIT]],
         cost: Some(10),

@@ -17,7 +17,7 @@ voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::LimitSolver,
         tag: "limit_sequential",
-        summary: "a load factor with the laws' own flow, by sequential linear programs with fictitious cohesion",
+        summary: "a load factor with the flow rules of the laws, by sequential linear programs with fictitious cohesion",
         requires: &[&[Capability::FACETS], &[Capability::RIGID_LIMIT]],
         sources: &["Gilbert, Casapulla & Ahmed 2006, Computers & Structures 84"],
         file: file!(),

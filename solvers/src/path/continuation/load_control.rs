@@ -40,7 +40,7 @@ voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::Continuation,
         tag: "load_control",
-        summary: "steps of the load factor; stops at the first limit point and says so",
+        summary: "steps of the load factor; stops at the first limit point",
         sources: &["Crisfield 1991, Non-linear Finite Element Analysis of Solids and Structures 1, section 1.2"],
         file: file!(),
         package: voussoir_core::package!(),

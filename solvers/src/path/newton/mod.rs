@@ -48,7 +48,7 @@ voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::PathSolver,
         tag: "newton_path",
-        summary: "pieces between located events, or load steps by semismooth Newton: any law of joints, blocks that yield, small or finite displacements",
+        summary: "paths with any joint law, blocks that yield, small or finite displacements: pieces between located events, or load steps by semismooth Newton",
         provides: &[Capability::FINITE_DISPLACEMENTS, Capability::SETTLEMENT],
         requires: &[&[Capability::FACETS, Capability::RESPONSE]],
         cost: Some(20),
