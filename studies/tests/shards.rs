@@ -145,7 +145,7 @@ fn parts_that_do_not_fit_are_refused() {
     case["load_factor"] = factor.into();
     case["case_hash"] = "0".repeat(32).into();
     change(&whole.replacen(lines[1], sealed(&case).trim_end(), 1));
-    refused(&["merge", "parts"], &["it is not this study's"]);
+    refused(&["merge", "parts"], &["differs from the hash of this case"]);
     change(&whole);
     std::fs::rename(&path, at.join(part(2)).join("unfinished.jsonl")).expect("renamed");
     refused(&["merge", "parts"], &["is not finished: run it again with --resume"]);

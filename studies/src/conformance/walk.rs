@@ -10,8 +10,9 @@ use std::collections::BTreeMap;
 use voussoir_core::plugin::{Property, Sample};
 use voussoir_core::random::Random;
 
-/// Number of walks of each sample, and of steps of each walk.
+/// Number of walks of each sample, the number if a branch is rare, and the number of steps of each walk.
 const WALKS: usize = 200;
+const MAX_WALKS: usize = 400;
 const STEPS: usize = 25;
 /// Least number of visits of each branch of a sample, and of comparisons of its tangent.
 const LEAST: usize = 50;
@@ -46,11 +47,16 @@ pub(super) fn check(recorder: &mut Recorder, subject: &Subject, options: &Option
     state(recorder, subject);
     extremes(recorder, subject);
     let (mut random, mut seen) = (Random::new(3), Seen::default());
-    for _ in 0..WALKS {
+    let branches = subject.sample.branches;
+    let is_rare = |map: &BTreeMap<&str, usize>| branches.iter().any(|own| map.get(own).is_none_or(|&n| n < LEAST));
+    for index in 0..MAX_WALKS {
+        if index >= WALKS && !is_rare(&seen.met) && !is_rare(&seen.compared) {
+            break;
+        }
         walk(recorder, subject, &mut random, &mut seen);
     }
-    recorder.hold("branches", !subject.sample.branches.is_empty(), || "the sample names no branch".into());
-    for branch in subject.sample.branches {
+    recorder.hold("branches", !branches.is_empty(), || "the sample names no branch".into());
+    for branch in branches {
         let count = |map: &BTreeMap<&str, usize>| map.get(branch).copied().unwrap_or(0);
         let (met, compared) = (count(&seen.met), count(&seen.compared));
         recorder.hold("branches", met >= LEAST, || {
