@@ -183,7 +183,9 @@ fn a_forged_ray_of_a_settlement_is_found() {
             ray.iter_mut().flat_map(|entry| &mut entry.force).for_each(|v| *v *= -1.0);
         }),
         ("no ray", |r| r.proof.ray = None),
-        ("stored residuals", |r| _ = r.certificate.residuals.insert("settlement_ray".into(), 1e-7)),
+        ("certificate.residuals.settlement_ray is 1e-7", |r| {
+            _ = r.certificate.residuals.insert("settlement_ray".into(), 1e-7)
+        }),
     ];
     for (what, forge) in forgeries {
         let mut forged = honest.clone();
