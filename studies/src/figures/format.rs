@@ -99,6 +99,12 @@ pub fn status_meaning(status: Status) -> &'static str {
     }
 }
 
+/// Capitalises the first letter.
+pub fn capitalised(text: &str) -> String {
+    let mut characters = text.chars();
+    characters.next().map_or(String::new(), |first| first.to_uppercase().chain(characters).collect())
+}
+
 /// The verdict of a certificate: only the bounds of an open result are proved.
 pub fn certificate_verdict(case: &CaseResult) -> &'static str {
     match (case.certificate.passed, case.status) {

@@ -5,7 +5,7 @@ use super::page;
 use super::register::register;
 use super::study_output::StudyOutput;
 use super::writer::{CaseTable, Writer};
-use crate::figures::format::{format_force, format_number, status_word};
+use crate::figures::format::{capitalised, format_force, format_number, status_word};
 use crate::results::CaseResult;
 use crate::results::carried::{JointEntry, PermissibleEntry, ReserveEntry, ReserveFlow};
 use maud::{Markup, html};
@@ -137,6 +137,12 @@ pub(super) fn carried_lines(case: &CaseResult) -> Vec<String> {
     lines
 }
 
+/// The same lines as sentences of one paragraph.
+pub(super) fn carried_sentences(case: &CaseResult) -> String {
+    let sentences: Vec<String> = carried_lines(case).iter().map(|line| format!("{}.", capitalised(line))).collect();
+    sentences.join(" ")
+}
+
 fn format_stress(pascals: f64) -> String {
     format!("{} kPa", format_number(pascals / 1e3, 4))
 }
@@ -154,7 +160,8 @@ pub(super) fn section(study: &StudyOutput) -> Markup {
             }
             @for case in carried.iter().take(CASES) {
                 h3 { "Case " (case.label.id) }
-                @for line in carried_lines(case) { p { (line) } }
+                // The answer to a single case already contains them.
+                @if study.totals.cases > 1 { p { (carried_sentences(case)) } }
                 (joints(&case.carried.joints))
             }
             @if carried.len() > CASES { p { "The first " (CASES) " of " (carried.len()) " cases; all are in joints.csv." } }

@@ -3,12 +3,13 @@
 use super::cases::hinges;
 use crate::figures::envelope::place_name;
 use crate::figures::format::{
-    certificate_verdict, format_force, format_number, format_short, headline, kind_words, open_bounds, proved_interval,
-    status_meaning, status_word, unit_load,
+    capitalised, certificate_verdict, format_force, format_number, format_short, headline, kind_words, open_bounds,
+    proved_interval, status_meaning, status_word, unit_load,
 };
+use crate::results::carried::ReserveFlow;
 use crate::results::{CaseResult, Comparison, WorstEntry, least_of};
 use crate::writers::StudyOutput;
-use crate::writers::joints_csv::carried_lines;
+use crate::writers::joints_csv::carried_sentences;
 use crate::writers::record::section;
 use crate::writers::table::id_list;
 use maud::{Markup, html};
@@ -50,7 +51,9 @@ pub(super) fn answer(study: &StudyOutput) -> Markup {
     html! {
         p class="summary" { strong { (sentence(study)) } @if study.totals.cases > 1 { " " (counts(study)) } }
         (proof(study))
-        @if let [case] = study.results.cases.as_slice() { @for line in carried_lines(case) { p class="proof" { (line) } } }
+        @if let [case] = study.results.cases.as_slice() && !case.carried.is_empty() {
+            p class="proof" { (carried_sentences(case)) }
+        }
     }
 }
 
@@ -68,7 +71,14 @@ fn sentence(study: &StudyOutput) -> String {
     let own = &study.results.own;
     let worst = own.worsts.iter().flatten().find(|worst| worst.place.case == case.label.id);
     match study.totals.cases {
-        1 => format!("{}.", capital(&words)),
+        1 if let Some((target, factor)) = reserve(case) => {
+            format!(
+                "Stands at factor {}; by limit analysis it collapses at factor {}.",
+                format_number(target, 6),
+                format_number(factor, 6)
+            )
+        }
+        1 => format!("{}.", capitalised(&words)),
         _ if let Some(entry) = worst => {
             format!("The most onerous position of the load is {}: {words}.", position(study, entry))
         }
@@ -89,10 +99,10 @@ fn position(study: &StudyOutput, WorstEntry { place, parameter, .. }: &WorstEntr
     if words.is_empty() { format!("{value}{unit}") } else { format!("{value}{unit} ({words})") }
 }
 
-/// Capitalises the first letter.
-fn capital(text: &str) -> String {
-    let mut characters = text.chars();
-    characters.next().map_or(String::new(), |first| first.to_uppercase().chain(characters).collect())
+/// The factor that is carried and the collapse factor, if all laws have associated flow.
+fn reserve(case: &CaseResult) -> Option<(f64, f64)> {
+    let reserve = case.carried.reserve.as_ref().filter(|own| own.flow == ReserveFlow::Associated)?;
+    Some((reserve.target, reserve.factor?))
 }
 
 /// Variant, scene and swept values of a case.
