@@ -9,13 +9,18 @@ use crate::results::CaseResult;
 use crate::writers::StudyOutput;
 use voussoir_core::limit::Status;
 
+/// The value of a swept key in each case; NaN in cases that a search has solved without it. `None` if a value is not a number.
+fn swept_values(study: &StudyOutput, key: &str) -> Option<Vec<f64>> {
+    let value = |case: &CaseResult| case.label.parameters.get(key).map_or(Some(f64::NAN), |value| value.as_f64());
+    study.results.cases.iter().map(value).collect()
+}
+
 /// The axis of a study's sweep chart: its label, and the value of each case. `None` unless exactly one key is swept and all its
 /// values are numbers.
 pub fn sweep_axis(study: &StudyOutput) -> Option<(String, Vec<f64>)> {
     let [key] = study.sweep_keys.as_slice() else { return None };
-    let cases = &study.results.cases;
-    let values: Vec<f64> = cases.iter().map(|case| case.label.parameters.get(key)?.as_f64()).collect::<Option<_>>()?;
-    (cases.len() > 1).then(|| (study.keys.title(key), values))
+    let values = swept_values(study, key)?;
+    (values.len() > 1).then(|| (study.keys.title(key), values))
 }
 
 /// More lines than this are not drawn in one chart.
@@ -26,17 +31,18 @@ const LINES: usize = 8;
 fn two_axes(study: &StudyOutput) -> Option<(String, Vec<f64>, Vec<String>)> {
     let [first, second] = study.sweep_keys.as_slice() else { return None };
     let cases = &study.results.cases;
-    let of =
-        |key: &str| -> Option<Vec<f64>> { cases.iter().map(|case| case.label.parameters.get(key)?.as_f64()).collect() };
     let different = |values: &[f64]| {
-        let mut values = values.to_vec();
+        let mut values: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
         values.sort_by(f64::total_cmp);
         values.dedup();
         values.len()
     };
-    let (a, b) = (of(first)?, of(second)?);
+    let (a, b) = (swept_values(study, first)?, swept_values(study, second)?);
     let (key, values, other, others) =
         if different(&a) >= different(&b) { (first, a, second, b) } else { (second, b, first, a) };
+    if others.iter().any(|value| value.is_nan()) {
+        return None;
+    }
     let line = |(case, value): (&CaseResult, &f64)| {
         let unit = study.keys.unit(other).map_or(String::new(), |unit| format!(" {unit}"));
         let swept = format!("{} {}{unit}", study.keys.words(other), format_short(*value, 5));
