@@ -57,7 +57,7 @@ fn forged_forces_zones_and_reserves_are_found() {
 fn pages_show_a_load_that_is_carried() {
     let written = Written::of(&carried());
     let report = written.text("report.html");
-    for words in ["Loads that are carried", "permissible limit state fulfilled", "zone of thrust", "collapse at factor"]
+    for words in ["Loads that are carried", "Permissible limit state fulfilled", "zone of thrust", "collapse at factor"]
     {
         assert!(report.contains(words), "{words}");
     }
