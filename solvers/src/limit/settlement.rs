@@ -126,7 +126,7 @@ fn own_flow(systems: &Systems, driven: &[f64]) -> Result<Vec<f64>, String> {
     for step in 0..MAX_PROGRAMS {
         let program = fictitious(systems, &reference);
         let Ok(Some(force)) = field(&program, driven) else {
-            // The forces may violate the strengths so much that no field carries the loads in the next program.
+            // The forces violate the strengths too far: the next program has no field that carries the loads.
             reference.iter_mut().zip(&start).for_each(|(old, own)| *old += 0.5 * (own - *old));
             continue;
         };

@@ -142,7 +142,7 @@ mod tests {
         let found = SecondOrderWork::of(&flexibility, 1e-12).expect("eigenvalues");
         assert_eq!((found.negative, found.turned, found.symmetric), (1, 1, true));
         assert!((found.curvature + 1.0).abs() < 1e-12 && (found.critical_mode()[0].abs() - c).abs() < 1e-12);
-        // With a held load point the structure is stable if the load softens it at that point, otherwise unstable.
+        // With a held load point, the structure is stable if the load softens it at that point, and unstable if not.
         assert!(found.stable_under_control(-1.0) && !found.stable_under_control(1.0));
     }
 

@@ -73,7 +73,7 @@ pub struct StoredCase {
     pub scene: Option<String>,
     /// Swept key → value.
     pub parameters: Map<String, Json>,
-    /// Status.
+    /// Its status, as in results.json.
     pub status: String,
     pub(super) load_factor: Option<f64>,
     pub(super) bounds: Option<[Option<f64>; 2]>,

@@ -81,9 +81,10 @@ pub fn flow_residual(problem: &PathProblem, force: &[[f64; 2]], motion: &[[f64; 
 /// Greatest slack, relative to the greatest contact force, of a facet that yields.
 const YIELDING: f64 = 1e-9;
 
-/// Returns the length of a vector, without the scaling of `hypot`: forces and gaps have squares.
+/// Returns the length of a vector. Only vectors whose square is too small or too large need the scaling of `hypot`.
 pub(super) fn length(v: [f64; 2]) -> f64 {
-    (v[0] * v[0] + v[1] * v[1]).sqrt()
+    let square = v[0] * v[0] + v[1] * v[1];
+    if square.is_normal() { square.sqrt() } else { v[0].hypot(v[1]) }
 }
 
 /// Returns the distance of v from the cone of some directions in the plane.
@@ -103,4 +104,20 @@ pub(super) fn outside(v: [f64; 2], mut cone: impl Iterator<Item = [f64; 2]> + Cl
         }
     }
     least
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A motion outside the cone of its flow is seen at any size, also if its square is no number of the machine.
+    #[test]
+    fn motions_outside_are_seen_at_any_size() {
+        for size in [1e-200, 1e-160, 1e-9, 1.0, 1e160, 1e200] {
+            let off = outside([-3.0 * size, 4.0 * size], [[1.0, 0.0], [1.0, -1.0]].into_iter());
+            assert!((off / size - 5.0).abs() < 1e-12, "{size}: {off}");
+            assert!((length([3.0 * size, 4.0 * size]) / size - 5.0).abs() < 1e-12, "{size}");
+        }
+        assert!(length([f64::NAN, 1.0]).is_nan() && length([0.0; 2]) == 0.0);
+    }
 }

@@ -142,8 +142,8 @@ impl<'a> OptimalFace<'a> {
             return Err("some blocks are held by nothing".into());
         }
         let count = self.field.len();
-        // Where the mechanism moves, the difference of a field from r̂ does no work; a yielding stress block keeps
-        // its forces.
+        // If a joint moves in the mechanism, the difference of a field from r̂ does no work at it, and a yielding stress
+        // block keeps its forces.
         let mut held: Vec<DVector<f64>> = Vec::new();
         let jumps: Vec<[f64; 3]> = (0..problem.joints.len()).map(|joint| self.jump(joint, motion)).collect();
         let greatest = jumps.iter().flatten().fold(0.0f64, |m, x| m.max(x.abs()));

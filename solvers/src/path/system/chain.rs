@@ -41,7 +41,7 @@ pub fn ranks(problem: &PathProblem, free: &[Option<usize>]) -> Option<Vec<usize>
             beside[b].push(a);
         }
     }
-    // Levels of each part come after those of the previous part, with a free rank at both ends.
+    // Levels of each part follow the levels of the previous part, with a free rank at both ends.
     let mut rank_of: Vec<Option<(usize, usize)>> = vec![None; bodies];
     let mut first = 1;
     for body in 0..bodies {
