@@ -122,11 +122,9 @@ fn verify_one(py: Python<'_>, dir: &Path, jobs: usize, later: &mut Vec<PathBuf>)
     let file = dir.join("resolved.toml").display().to_string();
     let study = Source::Toml { text: resolved, file, sets: Vec::new() }.load()?;
     later.extend(study.parts().iter().map(|part| dir.join(&part.folder)));
-    let stored = |name: &str| {
-        std::fs::File::open(dir.join(name)).ok().map(|file| Box::new(file) as Box<dyn std::io::Read>)
-    };
-    let found =
-        interruptible(py, None, |told| study.verify_stored(&StoredResults { jobs, file: &stored }, told))?;
+    let stored =
+        |name: &str| std::fs::File::open(dir.join(name)).ok().map(|file| Box::new(file) as Box<dyn std::io::Read>);
+    let found = interruptible(py, None, |told| study.verify_stored(&StoredResults { jobs, file: &stored }, told))?;
     found.map_err(|error| PyValueError::new_err(format!("{}: not a results file: {error}", dir.display())))
 }
 

@@ -65,7 +65,8 @@ fn every_cell_is_that_of_the_csv_file() {
     for frictions in [1, GROUP / 4, GROUP / 4 + 1, 2100] {
         std::fs::write(at.join("a.toml"), study(frictions)).expect("written");
         let out = at.join(frictions.to_string());
-        let run = Command::new(program()).args(["run", "a.toml", "--quiet", "--out"]).arg(&out).current_dir(&at).output();
+        let run =
+            Command::new(program()).args(["run", "a.toml", "--quiet", "--out"]).arg(&out).current_dir(&at).output();
         let run = run.expect("the program: build it, or give its place as VOUSSOIR");
         assert!(matches!(run.status.code(), Some(0 | 1)), "{}", String::from_utf8_lossy(&run.stderr));
         let mut csv = csv::Reader::from_path(out.join("results.csv")).expect("a table");
