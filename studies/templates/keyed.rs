@@ -37,11 +37,7 @@ impl InterfaceLaw for Keyed {
 const KNOWN_PATHS: &[KnownPath] = &[KnownPath {
     table: "friction = 0.5\nkey_strength = 2e5\nnormal_stiffness = 1e10\nshear_stiffness = 5e9",
     source: "by hand: stick with k_t, slip at c + μ t_n at constant volume",
-    steps: &[
-        (&[-1e-4, 0.0], &[1e6, 0.0]),
-        (&[-1e-4, 4e-4], &[1e6, -7e5]),
-        (&[-1e-4, 3e-4], &[1e6, -2e5]),
-    ],
+    steps: &[(&[-1e-4, 0.0], &[1e6, 0.0]), (&[-1e-4, 4e-4], &[1e6, -7e5]), (&[-1e-4, 3e-4], &[1e6, -2e5])],
     tolerance: 1e-12,
 }];
 
