@@ -101,21 +101,21 @@ pub const PEAK: Tolerance = row(
     "`displacement`, `fall`, `released_energy` and `next_state` of `limit_points`, `followed_to`",
     [None, Some(1e-7), Some(1e-5)],
     GREATEST,
-    "the load is flat at a peak: an error e of the factor is one of √e of the place",
+    "the load is flat at a peak: an error e of the factor means an error √e of the displacement",
 );
 /// Load-displacement curves.
 pub const CURVE: Tolerance = row(
     "`curve`, as a function: each vertex of either curve lies on the other",
     [None, Some(1e-7), Some(1e-3)],
     "range of each axis",
-    "steps may end elsewhere; between two vertices the curve is a chord",
+    "steps may end at other points; between two vertices the curve is a chord",
 );
 /// Events beyond the greatest load, if the number of steps differs.
 pub const BEYOND: Tolerance = row(
     "beyond the greatest factor: factors of events; if the second run has another number of steps, `followed_to`, `fall`, `released_energy` and `next_state` (the last two relative to themselves), and the share of events that may be missing",
     [None, None, Some(0.05)],
     "greatest factor",
-    "a step that is cut elsewhere sees other short events; up to the greatest factor all events must agree",
+    "steps that end at other points find other short events; up to the greatest factor all events must agree",
 );
 /// Estimates of errors.
 pub const ESTIMATE: Tolerance = row(
@@ -143,7 +143,7 @@ pub const SEARCHED: Tolerance = row(
     "`parameters` of cases that `optimise` and `envelope` make; the case is then solved again at the stored values",
     [Some(1e-6), Some(1e-6), Some(1e-6)],
     "the number itself",
-    "a search goes on from the factors of earlier cases",
+    "a search depends on the factors of earlier cases",
 );
 
 /// All tolerances, in the order of docs/theory/verifying.md.
