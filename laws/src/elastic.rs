@@ -58,7 +58,8 @@ voussoir_core::inventory::submit! {
         sources: &["Hooke's law; Timoshenko & Goodier, Theory of Elasticity"],
         file: file!(),
         package: voussoir_core::package!(),
-        page: "# `elastic`\n\nHooke's law with E and ν. Limit loads do not depend on them: limit analysis reads such blocks as rigid.\n",
+        page: "# `elastic`\n\nHooke's law with E and ν. Limit loads do not depend on them, because limit analysis \
+               treats such blocks as rigid.\n",
         ..Card::of::<Elastic>()
     }
 }

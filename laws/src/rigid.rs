@@ -38,7 +38,7 @@ voussoir_core::inventory::submit! {
         sources: &["Heyman 1966, Int. J. Solids Struct. 2"],
         file: file!(),
         package: voussoir_core::package!(),
-        page: "# `rigid`\n\nBlocks that do not deform: ε = 0. Limit loads are those of rigid blocks.\n",
+        page: "# `rigid`\n\nBlocks of this material do not deform: ε = 0.\n",
         ..Card::of::<Rigid>()
     }
 }
