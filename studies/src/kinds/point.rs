@@ -24,10 +24,11 @@ voussoir_core::inventory::submit! {
         summary: "drives one law at one point through strains, stresses or both",
         file: file!(),
         package: voussoir_core::package!(),
-        page: "# `point`\n\nDrives a material or a joint through `[[point.path]]`, segment by segment. Each segment moves the components it names, \
-               in `steps` equal steps, to the strains (gaps) or stresses (tractions) given; a component that is not named keeps \
-               the strain or the stress it was controlled by last, at first a strain of zero. Strains are tension positive with \
-               engineering shears; a joint's gap opens and its traction presses positive.\n",
+        page: "# `point`\n\nThis kind of study drives a material or a joint through `[[point.path]]`, segment by \
+               segment. Each segment moves the components that it names, in `steps` equal steps, to the given strains (gaps) \
+               or stresses (tractions). A component that is not named keeps its last prescribed strain or stress; at first \
+               this is a strain of zero. Strains are positive in tension, with engineering shears. The gap of a joint is \
+               positive if the joint is open, and its traction is positive in compression.\n",
         ..Card::of::<study::PointTable>()
     }
 }

@@ -15,7 +15,11 @@ voussoir_core::inventory::submit! {
         summary: "solves every case of the study (variants × sweep)",
         file: file!(),
         package: voussoir_core::package!(),
-        page: "# `run`\n\nAnswers every case, variants outermost, then the axes of the sweep. One row of the table and one entry of results.json a case. Cases are made, solved, stored and forgotten one after another: memory does not grow with their forces and motions. Of more than 1000 cases the table, the report and the chart show some hundreds: the least and the greatest load factor of every few neighbours, and cases without a certified answer; all of them are in results.json and results.csv.\n",
+        page: "# `run`\n\nThis kind of study solves every case: variants outermost, then the axes of the sweep. Each \
+               case has one row in the table and one entry in results.json. Cases are made, solved and stored one after \
+               another, so the memory does not grow with their forces and motions. If there are more than 1000 cases, the \
+               table, the report and the chart show a few hundred of them: the least and the greatest load factor of each \
+               group of neighbours, and cases without a certified answer. All cases are in results.json and results.csv.\n",
         ..Card::BLANK
     }
 }

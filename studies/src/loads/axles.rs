@@ -61,8 +61,9 @@ voussoir_core::inventory::submit! {
         summary: "wheels or axles on the extrados of an arch",
         file: file!(),
         package: voussoir_core::package!(),
-        page: "# `axles`\n\nDownward forces on the extrados of an arch at distances from a span fraction, as of a vehicle. An axle \
-               that is not yet or no longer on the extrados counts nothing, and a note says so.\n",
+        page: "# `axles`\n\nDownward forces act on the extrados of an arch at distances from a span fraction, like \
+               the axles of a vehicle. If some of the axles are not on the extrados, they are ignored, and a note reports \
+               it.\n",
         ..Card::of::<Axles>()
     }
 }

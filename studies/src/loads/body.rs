@@ -28,7 +28,8 @@ voussoir_core::inventory::submit! {
         summary: "acceleration of every block, times its mass",
         file: file!(),
         package: voussoir_core::package!(),
-        page: "# `body`\n\nAn acceleration of every block, times its mass: for pushover and tilting.\n",
+        page: "# `body`\n\nAn acceleration acts on every block; the force is the acceleration times the mass. Use it \
+               for pushover and tilting.\n",
         ..Card::of::<BodyLoad>()
     }
 }

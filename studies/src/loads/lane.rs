@@ -46,8 +46,9 @@ voussoir_core::inventory::submit! {
         summary: "an even load along the road of a bridge, as of a lane or a track",
         file: file!(),
         package: voussoir_core::package!(),
-        page: "# `lane`\n\nAn even vertical pressure on the plan area between two x, over the full width. Each block carries what stands \
-               above its upper face; at its ends the load does not spread. What lies beyond the bridge goes to the ground.\n",
+        page: "# `lane`\n\nA uniform vertical pressure acts on the plan area between two x, over the full width. Each \
+               block carries the part above its upper face; the load does not spread at its ends. The part beyond the bridge \
+               goes to the ground.\n",
         ..Card::of::<Lane>()
     }
 }

@@ -75,8 +75,9 @@ voussoir_core::inventory::submit! {
         summary: "a force at a point",
         file: file!(),
         package: voussoir_core::package!(),
-        page: "# `point`\n\nA force at a point: on the extrados of an arch at `span_fraction`, or in or on a `block` at `point`. \
-               At the boundary of two voussoirs it goes to the one nearer to midspan, at midspan half to each.\n",
+        page: "# `point`\n\nA force acts at a point: on the extrados of an arch at `span_fraction`, or in or on a \
+               `block` at `point`. At the boundary of two voussoirs it acts on the one nearer to midspan; at midspan each \
+               carries half of it.\n",
         ..Card::of::<PointLoad>()
     }
 }

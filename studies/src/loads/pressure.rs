@@ -43,7 +43,8 @@ voussoir_core::inventory::submit! {
         summary: "pressure on an edge of a block",
         file: file!(),
         package: voussoir_core::package!(),
-        page: "# `pressure`\n\nAn even pressure on one edge of a block, over the full width: > 0 pushes inwards.\n",
+        page: "# `pressure`\n\nA uniform pressure acts on one edge of a block, over the full width. A positive \
+               pressure pushes inwards.\n",
         ..Card::of::<Pressure>()
     }
 }

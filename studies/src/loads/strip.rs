@@ -54,8 +54,8 @@ voussoir_core::inventory::submit! {
         summary: "vertical pressure on the extrados of an arch, over the full width",
         file: file!(),
         package: voussoir_core::package!(),
-        page: "# `strip`\n\nAn even vertical pressure on the plan area between two span fractions, over the full width. Each \
-               voussoir carries what stands above its straight extrados.\n",
+        page: "# `strip`\n\nA uniform vertical pressure acts on the plan area between two span fractions, over the \
+               full width. Each voussoir carries the part above its straight extrados.\n",
         ..Card::of::<Strip>()
     }
 }

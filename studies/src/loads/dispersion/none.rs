@@ -21,7 +21,8 @@ voussoir_core::inventory::submit! {
         summary: "loads reach the extrados without dispersion",
         file: file!(),
         package: voussoir_core::package!(),
-        page: "# `none`\n\nThe load acts on the extrados where it stands, as where `dispersion` is not given.\n",
+        page: "# `none`\n\nThe load acts on the extrados without spreading. This is also the behaviour if \
+               `dispersion` is not given.\n",
         ..Card::of::<Undispersed>()
     }
 }

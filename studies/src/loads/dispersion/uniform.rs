@@ -38,9 +38,10 @@ voussoir_core::inventory::submit! {
         sources: &["Highways Agency 2001, BD 21/01, The Assessment of Highway Bridges and Structures"],
         file: file!(),
         package: voussoir_core::package!(),
-        page: "# `uniform`\n\nA load that stands between two x reaches the extrados evenly between these x widened by depth × tan(angle) \
-               on both sides; the force stays. In the fill of a bridge the depth is that of the straight extrados chord under the \
-               load's centre, the same for the whole patch; layers may have angles of their own. Elsewhere it is given.\n",
+        page: "# `uniform`\n\nA load between two x acts uniformly on the extrados between these x, widened by depth × \
+               tan(angle) on both sides; the force stays the same. In the fill of a bridge the depth is the depth of the \
+               straight extrados chord under the centre of the load, the same for the whole patch; each layer can have a \
+               separate angle. In other scenes you give the depth.\n",
         ..Card::of::<Uniform>()
     }
 }
