@@ -1,7 +1,7 @@
 # Chores of the project: `just` lists them (https://just.systems). Each line also works in a shell.
 
-# Tests compile the large crate without optimisation. Use the same flags each time, or everything is compiled again.
-light := "--config profile.release.package.voussoir.opt-level=0 --config profile.release.package.voussoir.codegen-units=256 --config profile.release.incremental=true"
+# Tests compile the crates below studies/ without optimisation. Use the same flags each time, or everything is compiled again.
+light := "--config .ci/light.toml"
 
 # The list.
 default:
@@ -10,7 +10,7 @@ default:
 # The inner loop: less than a minute once compiled.
 fast:
     cargo fmt --all --check
-    cargo test --release --locked {{light}} -p voussoir-core -p voussoir-laws -p voussoir-solvers -p voussoir --lib
+    cargo test --release --locked {{light}} --workspace --exclude voussoir-tests --exclude voussoir-benches --lib
     cargo test --release --locked {{light}} -p voussoir-tests --test architecture --test messages
 
 # All tests.

@@ -19,6 +19,7 @@ pub mod law;
 pub mod limit;
 pub mod linear;
 pub mod model;
+pub mod number_text;
 pub mod path;
 pub mod plugin;
 pub mod random;

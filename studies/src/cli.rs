@@ -8,13 +8,15 @@ pub use crate::commands::{CliError, ErrorKind, Outcome, Verdict};
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::LazyLock;
+use voussoir_study::results::COMMIT;
 
 /// Version and commit of the program.
-const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (commit ", env!("VOUSSOIR_COMMIT"), ")");
+static VERSION: LazyLock<String> = LazyLock::new(|| format!("{} (commit {COMMIT})", env!("CARGO_PKG_VERSION")));
 
 /// Stability and collapse of masonry made of blocks.
 #[derive(Parser)]
-#[command(name = "voussoir", version = VERSION)]
+#[command(name = "voussoir", version = VERSION.as_str())]
 struct Cli {
     #[command(subcommand)]
     command: Command,

@@ -38,27 +38,109 @@
 #![forbid(unsafe_code)]
 
 pub mod bench;
-mod caught;
 pub mod cli;
 mod commands;
-pub mod config;
-pub mod conformance;
-pub mod difference;
-pub mod figures;
-mod fnv;
-pub mod kinds;
-pub mod loads;
-pub mod postprocess;
 pub mod prelude;
-mod regular_file;
-pub mod results;
-pub mod scenes;
 pub mod serve;
-mod side_by_side;
-pub mod solve;
-pub mod study;
-pub mod verify;
-pub mod writers;
+
+/// Study files: places of keys, mistakes, and the description of keys.
+pub mod config {
+    pub use voussoir_study::config::common_keys::common_parameters;
+    pub use voussoir_study::config::diagnostic::LocatedDiagnostic;
+    pub use voussoir_study::config::dotted_key::join;
+    pub use voussoir_study::config::key_meaning::{KeyMeaning, key_meaning};
+    pub use voussoir_study::config::origin::Origin;
+    pub use voussoir_study::config::source_line::with_source;
+}
+
+/// Checks that plug-ins keep the promises of their cards and traits.
+pub mod conformance {
+    pub use voussoir_verify::conformance::*;
+}
+
+/// Comparison of two runs.
+pub mod difference {
+    pub use voussoir_report::difference::*;
+}
+
+/// Drawings and charts as SVG, and how numbers and words are written in them.
+pub mod figures {
+    pub use voussoir_plot::chart::chart_svg;
+    pub use voussoir_plot::series::{ChartStyle, Marker, Series, Spot};
+    pub use voussoir_report::figures::hinges::hinge_list;
+    pub use voussoir_report::figures::map::map_svg;
+    pub use voussoir_report::figures::{curve_charts, curve_svg, mechanism_svg, scene_svg, sweep_axis, sweep_chart};
+    pub use voussoir_study::results::format;
+}
+
+/// Study kinds, and studies of any kind.
+pub mod kinds {
+    pub use voussoir_report::kinds::json_schema::json_schema;
+    pub use voussoir_report::kinds::{
+        Made, SceneStudy, altered, one_case, read_head, read_source, read_source_beside, read_stored_cases, read_study,
+        write_files,
+    };
+    pub use voussoir_study::kind::*;
+    pub use voussoir_verify::{Backing, BackingCount, backing, resumed};
+}
+
+/// Loads of a stage, and the dispersion of live loads in the fill.
+pub mod loads {
+    pub use voussoir_study::loads::{
+        Axle, BlockName, LoadKind, LoadSite, LoadTables, Placed, Track, VehicleAxles, fill_layers, footprints,
+        load_shape,
+    };
+    pub use voussoir_study::scenes::dispersion;
+}
+
+/// Data derived from results: the order in which joints changed, and displaced meshes with stresses.
+pub mod postprocess {
+    pub use voussoir_report::postprocess::displaced_mesh::{DisplacedBlock, displaced_blocks};
+    pub use voussoir_report::postprocess::joint_events::{JointEvent, JointState, joint_events};
+}
+
+/// Results of cases and studies, as they are written to files.
+pub mod results {
+    pub use voussoir_study::results::{
+        BranchEntry, COMMIT, CaseLabel, CaseResult, Comparison, ComparisonCell, ComparisonRow, DisplacementEntry,
+        EndProof, EventEntry, FORMAT, FieldEntry, FillEntry, FinishedCases, FiniteEntry, FollowedTo, HEAD,
+        IntervalEntry, KindEntries, LimitPointEntry, LoadEntry, LoadFactorError, LoadOrigin, MAX_SHOWN, MapAxes,
+        MotionEntry, NextState, NonAssociatedAnswer, OptimumEntry, Origin, PathRecord, PlaceEntry, PluginCrate, Proof,
+        ProofFields, RESULTS_SCHEMA, SensitivityEntry, StabilityEntry, StageResult, StateEntry, StoredEntry,
+        StoredOutline, StudyResults, TakeCases, Totals, WorstEntry, YieldedEntry, carried, head, inelastic_state,
+        least_of, load_rank, other_limit_point, sealed_line, stored_path, this_program, without_origin, words,
+    };
+}
+
+/// From a case to its certified result.
+pub mod solve {
+    pub use voussoir_study::cases::*;
+    pub use voussoir_study::solve::CaseInput;
+    pub use voussoir_study::solve::auto::{limit_solvers, path_solvers};
+    pub use voussoir_study::solve::explain::explain;
+}
+
+/// Studies, their files and their cases.
+pub mod study {
+    pub use voussoir_study::file::*;
+    pub use voussoir_study::study::*;
+}
+
+/// Checks of results.
+pub mod verify {
+    pub use voussoir_study::checks::{Agreement, case, misfits, tolerances};
+    pub use voussoir_verify::{
+        COMPARISON, CheckedCase, KeyDifference, added, against, by_itself, first_difference, key_differences,
+        path_proofs, solve_again, verify, verify_against,
+    };
+}
+
+/// Result files.
+pub mod writers {
+    pub use voussoir_report::output::{SceneOutput, StudyOutput, columns};
+    pub use voussoir_report::writers::vtu;
+    pub use voussoir_report::writers::{CaseTable, Writer, WriterEntry, tables, writers, written};
+}
 
 pub use kinds::RunOptions;
 pub use results::{CaseResult, StudyResults};

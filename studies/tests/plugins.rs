@@ -7,10 +7,10 @@ use std::path::Path;
 use voussoir::core::limit::{Counters, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, Status};
 use voussoir::core::model::stage_loads;
 use voussoir::core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Quantity, Range, Shape};
-use voussoir::kinds::{KindEntry, LoadedStudy, OwnResults, RunRequest, StudyKind, read_study};
+use voussoir::kinds::{KindEntry, LoadedStudy, OwnResults, RunRequest, SceneStudy, StudyKind, read_study};
 use voussoir::results::{CaseLabel, CaseResult};
-use voussoir::solve::auto::{limit_solvers, path_solvers};
 use voussoir::solve::{CaseInput, Observer, solve_case, solve_cases};
+use voussoir::solve::{limit_solvers, path_solvers};
 use voussoir::study::{Case, Outline, SelectedSolver, Study, StudyError, StudySource, load};
 
 /// A number; the card allows values up to 10, the solver up to 5.
@@ -244,7 +244,7 @@ impl Try {
 
 impl StudyKind for Try {
     fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, StudyError> {
-        Ok(Box::new(Study::from_source(source)?))
+        Ok(Box::new(SceneStudy(Study::from_source(source)?)))
     }
 
     fn check(&self, outline: &Outline) -> Vec<Diagnostic> {
@@ -314,7 +314,7 @@ fn a_study_kind_of_ones_own() {
     let factor = json["cases"][1]["load_factor"].to_string();
     assert_ne!(factor, "null");
     assert!(!study.verify(&results.replace(&factor, "1.0")).expect("results").findings.is_empty());
-    assert!(voussoir::kinds::json_schema::json_schema().to_string().contains("\"try_value\""));
+    assert!(voussoir::kinds::json_schema().to_string().contains("\"try_value\""));
     let wrong = read_study(&with("kee = \"scene.thickness\"\nvalue = 0.4\n"), "a.toml", &[]).err().expect("a mistake");
     assert!(wrong.mistakes().iter().any(|one| one.to_string().contains("did you mean \"key\"?")), "{wrong:?}");
     let wrong = read_study(&format!("{kind}{ARCH}"), "a.toml", &[]).err().expect("a mistake");
@@ -374,9 +374,19 @@ fn mistakes_in_loads_have_the_nearest_right_name() {
     assert!(message[0].contains("did you mean \"angle\"?"), "{message:?}");
     let message = with("{ kind = \"stripe\", from = 0.1, to = 0.2, pressure = 1.0 }");
     assert!(message[0].contains("did you mean \"strip\"?"), "{message:?}");
-    let schema = voussoir::kinds::json_schema::json_schema();
+    let schema = voussoir::kinds::json_schema();
     let text = schema.to_string();
     for part in ["dispersion_uniform", "\"const\":\"axles\"", "\"drawn\"", "point_study", "\"efort_of_old\""] {
         assert!(text.contains(part), "{part}");
+    }
+}
+
+/// Exactly the study kinds with keys of their own say so on their cards, from which the keys of study files are made.
+#[test]
+fn cards_say_which_kinds_have_keys_of_their_own() {
+    use voussoir::core::plugin::{Capability, card};
+    for entry in voussoir::kinds::kinds() {
+        let offers = card(PluginKind::StudyKind, entry.tag).is_some_and(|card| card.offers(Capability::OWN_FILE));
+        assert_eq!(offers, entry.kind.file_keys().is_some(), "{}", entry.tag);
     }
 }

@@ -7,7 +7,7 @@ use serde_json::{Map, Value as Json};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use voussoir::core::plugin::{Card, Need, Parameter, PluginKind, Shape, cards_of};
-use voussoir::kinds::json_schema::json_schema;
+use voussoir::kinds::json_schema;
 
 /// Root of the tree.
 fn tree() -> PathBuf {

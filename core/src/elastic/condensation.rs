@@ -5,11 +5,11 @@
 //! the body and E the modulus of the material. The axes of the material are those of the shape.
 
 use super::inelastic::{InelasticBody, Strains};
-use super::mesh::MeshDensity;
 use super::shape::{Form, Placement, Response, Shape, agree, placed};
 use super::shared;
 use super::stress::{Recovered, recovered};
 use crate::law::{Elasticity, PlanarUpdate, Plane, PlaneElasticity};
+use crate::model::MeshDensity;
 use crate::model::geometry::Vec2;
 use nalgebra::DMatrix;
 use std::collections::HashMap;

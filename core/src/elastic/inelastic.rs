@@ -27,19 +27,36 @@
 //! only for elements of order 1.
 
 use super::element::strain_operators;
-use super::mesh::{Mesh, MeshDensity};
+use super::mesh::Mesh;
 use super::shape::{Place, Placement, Response, Shape, at_places};
 use super::stress::Recovered;
 use crate::law::{Elasticity, PlanarPoint, PlanarUpdate, Plane, UpdateContext, Voigt};
 use crate::model::geometry::{Vec2, area_and_centroid};
+use crate::model::{Assembly, MeshDensity};
 use nalgebra::{DMatrix, Matrix2};
 use std::fmt;
 use std::sync::Arc;
 
 /// Returns √A of the greatest element \[m\] of a polygon's mesh. An error gives the reason why there is no mesh.
-pub fn largest_element(vertices: &[Vec2], density: &MeshDensity) -> Result<f64, String> {
+fn largest_element(vertices: &[Vec2], density: &MeshDensity) -> Result<f64, String> {
     let mesh = Mesh::new(vertices, density)?;
     Ok((0..mesh.elements.len()).map(|e| area_and_centroid(&mesh.corners(e)).0.sqrt()).fold(0.0, f64::max))
+}
+
+/// Checks that the elements of a body are small enough for its softening material: larger elements would snap back.
+/// The error gives both sizes and the change that is needed.
+pub fn fine_enough(assembly: &Assembly, body: usize) -> Result<(), String> {
+    let (name, material) = &assembly.catalogue.materials[assembly.bodies[body].material];
+    let Some(update) = material.inelastic() else { return Ok(()) };
+    let (most, own) = (update.largest_length(), largest_element(&assembly.bodies[body].vertices, &assembly.mesh)?);
+    if own <= most {
+        return Ok(());
+    }
+    Err(format!(
+        "elements of \"{}\" have the size √area = {own:.4e} m; material \"{name}\" softens too steeply for more than \
+         {most:.4e} m: use more elements, or raise its fracture energy",
+        assembly.bodies[body].name
+    ))
 }
 
 /// Strains at the quadrature points of a mesh of unit area.

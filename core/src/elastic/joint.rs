@@ -1,7 +1,8 @@
 //! Contact points of two bodies along a joint, and their weights.
 
-use super::mesh::{MeshDensity, edge_breaks};
+use super::mesh::edge_breaks;
 use super::quadrature::lobatto;
+use crate::model::MeshDensity;
 use crate::model::geometry::{Vec2, edges};
 
 /// Distance below which two breaks are the same, as a share of the joint.

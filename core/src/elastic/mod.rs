@@ -51,9 +51,10 @@ mod shared;
 mod stress;
 
 pub use self::condensation::{Condensed, Condenser};
-pub use self::inelastic::{InelasticBody, InelasticState, PassedStep, largest_element};
+pub use self::inelastic::{InelasticBody, InelasticState, PassedStep, fine_enough};
 pub use self::joint::{breaks_on_joint, joint_points, union_breaks};
 pub use self::linearisation::Linearisation;
-pub use self::mesh::{Mesh, MeshDensity, edge_breaks, edge_points};
+pub use self::mesh::{Mesh, edge_breaks, edge_points};
 pub use self::shared::SharedFlexibilities;
 pub use self::stress::Recovered;
+pub use crate::model::MeshDensity;

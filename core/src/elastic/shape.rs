@@ -2,9 +2,10 @@
 //! (origin at the centroid, x along edge 0), and its response to forces on its points.
 
 use super::element::{Reference, bilinear, inertia, stiffness, stiffness_of_strains, strain_operators};
-use super::mesh::{Mesh, MeshDensity};
+use super::mesh::Mesh;
 use crate::law::{Plane, PlaneElasticity};
 use crate::linear::{Entries, SparseLdlt};
+use crate::model::MeshDensity;
 use crate::model::geometry::{Vec2, area_and_centroid, bounding_box, turned};
 use nalgebra::{DMatrix, Matrix2};
 use std::sync::Arc;

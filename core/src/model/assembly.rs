@@ -3,7 +3,7 @@
 use super::bridge::{Bridge, Chord, FillReaction};
 use super::geometry::{Vec2, area_and_centroid, bounding_box};
 use super::joints::{Bond, Joint};
-use crate::elastic::{MeshDensity, largest_element};
+use super::mesh_density::MeshDensity;
 use crate::law::{BulkMaterial, InterfaceLaw, Plane};
 use std::sync::Arc;
 
@@ -132,22 +132,6 @@ impl Assembly {
     /// Returns true if the material of a body can yield.
     pub fn yields(&self, body: usize) -> bool {
         self.material(body).inelastic().is_some()
-    }
-
-    /// Checks that the elements of a body are small enough for its softening material: larger elements would snap back.
-    /// The error gives both sizes and the change that is needed.
-    pub fn fine_enough(&self, body: usize) -> Result<(), String> {
-        let (name, material) = &self.catalogue.materials[self.bodies[body].material];
-        let Some(update) = material.inelastic() else { return Ok(()) };
-        let (most, own) = (update.largest_length(), largest_element(&self.bodies[body].vertices, &self.mesh)?);
-        if own <= most {
-            return Ok(());
-        }
-        Err(format!(
-            "elements of \"{}\" have the size √area = {own:.4e} m; material \"{name}\" softens too steeply for more than \
-             {most:.4e} m: use more elements, or raise its fracture energy",
-            self.bodies[body].name
-        ))
     }
 
     /// Returns true if a free block deforms or a joint is compliant.

@@ -6,6 +6,7 @@ mod contact;
 pub mod geometry;
 mod joints;
 mod loads;
+mod mesh_density;
 mod scene;
 mod self_crossing;
 mod wrench;
@@ -17,6 +18,7 @@ pub use self::joints::{Bond, Gap, Joint};
 pub use self::loads::{
     LoadSpread, PointForce, Settlement, Stage, StageLoads, Target, fill_bounds, fill_weights, stage_loads,
 };
+pub use self::mesh_density::MeshDensity;
 pub use self::scene::Scene;
 pub use self::self_crossing::crosses_itself;
 pub use self::wrench::{Wrenches, add_force};

@@ -5,7 +5,7 @@ use super::point_law::PointLaw;
 use super::problem::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem};
 use super::response_check::check_response;
 use super::sliding::Sliding;
-use crate::elastic::{Condenser, breaks_on_joint, joint_points, union_breaks};
+use crate::elastic::{Condenser, breaks_on_joint, fine_enough, joint_points, union_breaks};
 use crate::law::PlanarUpdate;
 use crate::limit::Counters;
 use crate::model::geometry::{Vec2, turned};
@@ -273,7 +273,7 @@ fn condense(problem: &mut PathProblem, assembly: &Assembly) -> Result<(), String
                 updates.entry(index).or_insert(Arc::new(update)).clone()
             }
         };
-        assembly.fine_enough(block)?;
+        fine_enough(assembly, block)?;
         let inelastic = condenser.inelastic(vertices, &elasticity, update, &assembly.mesh, &body.points)?;
         body.flexibility = Some(inelastic.flexibility());
         body.inelastic = Some(Arc::new(inelastic));

@@ -34,6 +34,25 @@ pub(crate) struct Family {
     pub sizes: [usize; 4],
 }
 
+impl Family {
+    /// Cohesive zone models, for joints.
+    pub const COHESIVE_ZONE: Family = Family {
+        hypothesis: "PlaneStrain",
+        kind: [3, 2],
+        words: "cohesive zone model",
+        names: ["OpeningDisplacement", "CohesiveForce"],
+        sizes: [1, 4, 2, 5],
+    };
+    /// Behaviours of small strains, for materials.
+    pub const SMALL_STRAIN: Family = Family {
+        hypothesis: "Tridimensional",
+        kind: [1, 1],
+        words: "behaviour of small strains",
+        names: ["Strain", "Stress"],
+        sizes: [1, 6, 3, 9],
+    };
+}
+
 /// A behaviour with its parameters.
 #[derive(Debug)]
 pub(crate) struct Behaviour {

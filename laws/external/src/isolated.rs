@@ -7,7 +7,6 @@
 
 use crate::behaviour::{Behaviour, Family, INELASTIC, Request, Step, Wrong, check_step, message, names, wrong};
 use crate::library::{allow, allowed};
-use crate::{joint, material};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -241,8 +240,8 @@ pub fn serve() -> io::Result<()> {
     from.read_line(&mut line)?;
     let asked: Asked = serde_json::from_str(&line)?;
     match asked.size {
-        2 => serve_steps::<2>(&asked, &joint::FAMILY, &mut from, &mut to),
-        6 => serve_steps::<6>(&asked, &material::FAMILY, &mut from, &mut to),
+        2 => serve_steps::<2>(&asked, &Family::COHESIVE_ZONE, &mut from, &mut to),
+        6 => serve_steps::<6>(&asked, &Family::SMALL_STRAIN, &mut from, &mut to),
         other => Err(io::Error::other(format!("no behaviour has gradients of {other} numbers"))),
     }
 }

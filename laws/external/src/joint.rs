@@ -29,14 +29,6 @@ pub struct ExternalJoint {
     pub isolate: bool,
 }
 
-pub(crate) const FAMILY: Family = Family {
-    hypothesis: "PlaneStrain",
-    kind: [3, 2],
-    words: "cohesive zone model",
-    names: ["OpeningDisplacement", "CohesiveForce"],
-    sizes: [1, 4, 2, 5],
-};
-
 impl ExternalJoint {
     fn load(&self) -> Result<Runner, Wrong> {
         let request = Request {
@@ -47,7 +39,7 @@ impl ExternalJoint {
             temperature: self.temperature,
             density: 0.0,
         };
-        Runner::load::<2>(&request, &FAMILY, self.isolate)
+        Runner::load::<2>(&request, &Family::COHESIVE_ZONE, self.isolate)
     }
 }
 

@@ -37,14 +37,6 @@ pub struct ExternalMaterial {
     pub density: f64,
 }
 
-pub(crate) const FAMILY: Family = Family {
-    hypothesis: "Tridimensional",
-    kind: [1, 1],
-    words: "behaviour of small strains",
-    names: ["Strain", "Stress"],
-    sizes: [1, 6, 3, 9],
-};
-
 /// Place of each of our components in the order of the library, and the factor from our engineering strains to its
 /// strains; the same factor converts its stresses to ours.
 const PLACES: [(usize, f64); 6] =
@@ -64,7 +56,7 @@ impl ExternalMaterial {
             temperature: self.temperature,
             density: self.density,
         };
-        Runner::load::<6>(&request, &FAMILY, self.isolate)
+        Runner::load::<6>(&request, &Family::SMALL_STRAIN, self.isolate)
     }
 }
 

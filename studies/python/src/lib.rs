@@ -131,7 +131,7 @@ fn verify_one(py: Python<'_>, dir: &Path, jobs: usize, later: &mut Vec<PathBuf>)
 /// Returns the JSON Schema of study files.
 #[pyfunction]
 fn schema() -> String {
-    voussoir::kinds::json_schema::json_schema().to_string()
+    voussoir::kinds::json_schema().to_string()
 }
 
 /// Returns (kind, tag, summary) of every plug-in.

@@ -4,8 +4,8 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use std::path::Path;
-use voussoir::config::diagnostic::LocatedDiagnostic;
-use voussoir::config::origin::Origin;
+use voussoir::config::LocatedDiagnostic;
+use voussoir::config::Origin;
 use voussoir::kinds::{LoadedStudy, read_source_beside};
 use voussoir::study::{StudySource, beside, no_files};
 

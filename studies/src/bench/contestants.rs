@@ -1,10 +1,10 @@
 //! The contestants of a bench: the variants of a study, or solvers with accuracy settings that differ one at a time.
 
-use crate::solve::knobs::{Sets, finer_mesh, other_order, smaller_steps};
-use crate::solve::restated::restated;
-use crate::study::Case;
 use serde_json::json;
 use voussoir_core::plugin::{Card, PluginKind, candidates};
+use voussoir_study::solve::knobs::{Sets, finer_mesh, other_order, smaller_steps};
+use voussoir_study::solve::restated::restated;
+use voussoir_study::study::Case;
 
 /// A name with its case, or the reason why the case is not possible.
 pub(super) struct Contestant {

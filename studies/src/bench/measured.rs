@@ -1,6 +1,6 @@
 //! Measured data of a bench: problems, results and errors of the contestants.
 
-use crate::results::CaseResult;
+use voussoir_study::results::CaseResult;
 
 /// The measurement of one contestant for one problem.
 #[derive(Debug, Clone)]

@@ -10,11 +10,11 @@ mod output;
 pub use measured::{Bench, Measurement, Problem};
 pub use output::{csv, error_chart, profile_chart, table};
 
-use crate::solve::accuracy::ends_at_limit_load;
-use crate::solve::solve_case;
-use crate::study::{Case, Study};
 use contestants::{Contestant, contestants, of_variants};
 use voussoir_core::plugin::{PluginKind, card};
+use voussoir_study::cases::solve_case;
+use voussoir_study::solve::accuracy::ends_at_limit_load;
+use voussoir_study::study::{Case, Study};
 
 /// Least duration of a timed measurement \[s\].
 const TICKS: f64 = 0.05;

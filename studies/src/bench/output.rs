@@ -1,11 +1,11 @@
 //! Output of a bench: a table, a CSV file and two charts.
 
 use super::measured::{Bench, Measurement};
-use crate::figures::format::{format_number, format_short, status_word};
-use crate::figures::plot::chart::chart;
-use crate::figures::plot::series::{ChartStyle, Series};
-use crate::writers::csv_table::csv_table;
 use comfy_table::{ContentArrangement, Table, presets};
+use voussoir_plot::chart::chart;
+use voussoir_plot::series::{ChartStyle, Series};
+use voussoir_report::writers::csv_table::csv_table;
+use voussoir_study::results::format::{format_number, format_short, status_word};
 
 /// Smaller errors are drawn as this value: they are rounding errors.
 const NO_ERROR: f64 = 1e-16;

@@ -6,11 +6,12 @@ use super::files;
 use super::folder::ResultFolder;
 use super::print::{complain, say};
 use crate::bench::{Bench, BenchOptions, Measurement, Reference, bench, csv, error_chart, names, profile_chart, table};
-use crate::config::diagnostic::suggest;
-use crate::figures::format::{format_short, status_word};
-use crate::figures::plot::svg::as_file;
-use crate::study::{HELD, Study};
 use std::path::{Path, PathBuf};
+use voussoir_plot::svg::as_file;
+use voussoir_study::config::diagnostic::suggest;
+use voussoir_study::file::HELD;
+use voussoir_study::results::format::{format_short, status_word};
+use voussoir_study::study::Study;
 
 /// The options of `voussoir bench`.
 pub struct BenchArguments {

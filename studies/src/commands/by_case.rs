@@ -6,19 +6,21 @@ use super::error::CliError;
 use super::folder::{JOURNAL, ResultFolder};
 use super::options::{Options, useful_jobs};
 use super::progress::Progress;
-use crate::kinds::{Backing, BackingCount, read_stored_cases, resumed};
-use crate::results::CaseResult;
-use crate::results::case_with_path::{CaseWithPath, read_case};
-use crate::results::sealed_line::sealed;
-use crate::results::stored_path::PATH_PROOFS;
-use crate::side_by_side::{in_order, side_by_side, threads};
-use crate::study::Study;
-use crate::verify::path_proofs::PathProofLines;
-use crate::writers::files::OutputFile;
 use serde::Deserialize;
 use std::collections::BTreeSet;
 use std::io::{self, Write};
 use voussoir_core::limit::Status;
+use voussoir_report::kinds::read_stored_cases;
+use voussoir_report::writers::files::OutputFile;
+use voussoir_study::results::CaseResult;
+use voussoir_study::results::case_with_path::{CaseWithPath, read_case};
+use voussoir_study::results::sealed_line::sealed;
+use voussoir_study::results::stored_path::PATH_PROOFS;
+use voussoir_study::side_by_side::{in_order, side_by_side, threads};
+use voussoir_study::study::Study;
+use voussoir_verify::backing;
+use voussoir_verify::path_proofs::PathProofLines;
+use voussoir_verify::{Backing, BackingCount, resumed};
 
 /// The cases of a result folder after a run.
 pub struct Solved {
@@ -113,7 +115,7 @@ pub fn backings(study: &Study, lines: &CaseLines, jobs: usize) -> io::Result<Vec
         for from in (0..count).step_by(AT_ONCE * threads()) {
             let texts = (from..count.min(from + AT_ONCE * threads())).map(|index| lines.line(index));
             found.extend(in_order(&texts.collect::<io::Result<Vec<_>>>()?, |text| match read_case(text) {
-                Ok(case) => study.backing(&case),
+                Ok(case) => backing(study, &case),
                 Err(error) => Err(vec![error.to_string()]),
             }));
         }

@@ -1,16 +1,16 @@
 //! Finished cases as lines of files. Lines are found by id; they are not held in memory.
 
-use crate::regular_file::open_regular;
-use crate::results::case_with_path::read_case;
-use crate::results::sealed_line::case_in;
-use crate::results::{FinishedCases, TakeCases};
-use crate::side_by_side::{in_order, threads};
 use serde::Deserialize;
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 use voussoir_core::limit::Status;
+use voussoir_study::regular_file::open_regular;
+use voussoir_study::results::case_with_path::read_case;
+use voussoir_study::results::sealed_line::case_in;
+use voussoir_study::results::{FinishedCases, TakeCases};
+use voussoir_study::side_by_side::{in_order, threads};
 
 /// Greatest length of a line; a case of a million blocks has half a gigabyte.
 const MAX_LINE_BYTES: u64 = 2 << 30;
@@ -168,7 +168,7 @@ fn frames_a_part(line: &[u8]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::sealed_line::sealed_text;
+    use voussoir_study::results::sealed_line::sealed_text;
 
     #[test]
     fn the_last_whole_line_of_a_case_counts() {

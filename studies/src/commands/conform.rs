@@ -2,10 +2,10 @@
 
 use super::error::{CliError, ErrorKind, Outcome, Verdict, joined};
 use super::print::say;
-use crate::config::diagnostic::suggest;
-use crate::conformance::{Options, Report, conform, conform_all};
 use std::path::Path;
 use voussoir_core::plugin::{PluginKind, cards_of};
+use voussoir_study::config::diagnostic::suggest;
+use voussoir_verify::conformance::{Options, Report, conform, conform_all};
 
 /// Kinds of plug-ins that have checks.
 const KINDS: [PluginKind; 5] = [

@@ -4,11 +4,11 @@ use super::error::{CliError, Outcome, Verdict};
 use super::files;
 use super::print::{say, say_data};
 use super::shard::PART;
-use crate::difference::{RunDifference, StoredRun, compare};
-use crate::regular_file::open_regular;
 use std::collections::BTreeSet;
 use std::io::ErrorKind;
 use std::path::{Component, Path};
+use voussoir_report::difference::{RunDifference, StoredRun, compare};
+use voussoir_study::regular_file::open_regular;
 
 /// Greatest length of a results.json.
 const MAX_RESULTS_BYTES: u64 = 1 << 40;

@@ -1,13 +1,13 @@
 //! The errors of the command line. A command returns them as values, and `main` prints them.
 
-use crate::config::characters::escape;
-use crate::config::diagnostic::LocatedDiagnostic;
-use crate::config::limits::MAX_MISTAKES_PRINTED;
-use crate::config::source_line::with_source;
-use crate::study::{StudyError, beside};
 use std::fmt::{self, Display};
 use std::io::IsTerminal;
 use std::path::Path;
+use voussoir_study::config::characters::escape;
+use voussoir_study::config::diagnostic::LocatedDiagnostic;
+use voussoir_study::config::limits::MAX_MISTAKES_PRINTED;
+use voussoir_study::config::source_line::with_source;
+use voussoir_study::study::{StudyError, beside};
 
 /// The kind of an error. It decides the exit code of the program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -3,11 +3,11 @@
 use super::error::{CliError, Outcome, Verdict};
 use super::print::{print, say, say_data};
 use super::{files, topics};
-use crate::config::synonyms::nearest_name;
-use crate::kinds::json_schema::json_schema;
-use crate::results::RESULTS_SCHEMA;
 use std::path::Path;
 use voussoir_core::plugin::{Card, PluginKind, cards, cards_of, describe};
+use voussoir_report::kinds::json_schema::json_schema;
+use voussoir_study::config::synonyms::nearest_name;
+use voussoir_study::results::RESULTS_SCHEMA;
 
 /// Lists plug-ins, of one kind or all.
 pub fn list(kind: Option<&str>) -> Outcome {

@@ -1,11 +1,12 @@
 //! Reads files and studies.
 
 use super::error::CliError;
-use crate::kinds::{LoadedStudy, read_source_beside};
 use crate::serve::Session;
-use crate::study::{StudySource, beside, read_bounded};
 use std::path::Path;
 use voussoir_core::plugin::nearest;
+use voussoir_report::kinds::read_source_beside;
+use voussoir_study::kind::LoadedStudy;
+use voussoir_study::study::{StudySource, beside, read_bounded};
 
 /// Reads a text file.
 pub fn read(path: &Path) -> Result<String, CliError> {

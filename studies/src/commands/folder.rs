@@ -3,14 +3,14 @@
 //! unchanged.
 
 use super::error::CliError;
-use crate::kinds::read_head;
-use crate::regular_file::open_regular;
-use crate::writers::files::{Files, OutputFile};
 use serde_json::Value as Json;
 use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, BufWriter, ErrorKind, Read, Write};
 use std::path::{Component, Path, PathBuf};
+use voussoir_report::kinds::read_head;
+use voussoir_report::writers::files::{Files, OutputFile};
+use voussoir_study::regular_file::open_regular;
 
 /// Finished cases during a run, one line of JSON each.
 pub const JOURNAL: &str = "unfinished.jsonl";

@@ -9,14 +9,14 @@ use super::options::useful_jobs;
 use super::outputs::{tally, verdict, write_outputs};
 use super::print::say;
 use super::shard::{PART, PartEnd, PartHead, study_hash};
-use crate::caught::{caught, silence_caught_panics};
-use crate::kinds::BackingCount;
-use crate::regular_file::open_regular;
-use crate::side_by_side::side_by_side;
-use crate::study::Study;
 use std::collections::BTreeSet;
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
+use voussoir_study::caught::{caught, silence_caught_panics};
+use voussoir_study::regular_file::open_regular;
+use voussoir_study::side_by_side::side_by_side;
+use voussoir_study::study::Study;
+use voussoir_verify::BackingCount;
 
 /// Greatest number of ids in a message.
 const NAMED: usize = 12;

@@ -89,8 +89,9 @@ pub fn new(what: Template, name: Option<&str>) -> Outcome {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kinds::{RunRequest, read_study};
-    use crate::solve::Unobserved;
+    use voussoir_report::kinds::read_study;
+    use voussoir_study::cases::Unobserved;
+    use voussoir_study::kind::RunRequest;
 
     /// Every template is valid and gives a proved result.
     #[test]

@@ -5,13 +5,15 @@ use super::error::{CliError, Verdict};
 use super::folder::{JOURNAL, ResultFolder};
 use super::options::useful_jobs;
 use super::today::today;
-use crate::figures::format::{format_number, format_value, status_word};
-use crate::kinds::{Made, RunRequest};
-use crate::results::{FinishedCases, Totals};
-use crate::study::Study;
-use crate::writers::files::{Files, OutputFile};
 use std::cell::Cell;
 use std::io::{self, Write};
+use voussoir_report::kinds::Made;
+use voussoir_report::kinds::write_files;
+use voussoir_report::writers::files::{Files, OutputFile};
+use voussoir_study::kind::RunRequest;
+use voussoir_study::results::format::{format_number, format_value, status_word};
+use voussoir_study::results::{FinishedCases, Totals};
+use voussoir_study::study::Study;
 
 /// A folder in which the resolved study is written together with the results.
 struct RunFiles<'a> {
@@ -70,7 +72,7 @@ pub fn write_outputs(
         ..Default::default()
     };
     let files = RunFiles { folder, resolved };
-    let made = study.write_files(&request, lines, &files, &mut |names| folder.make_room(names));
+    let made = write_files(study, &request, lines, &files, &mut |names| folder.make_room(names));
     let made = made.map_err(CliError::of_io)?;
     folder.remove(JOURNAL);
     Ok(made)

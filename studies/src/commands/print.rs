@@ -1,10 +1,10 @@
 //! Functions that print. All other code prints through them.
 
 use super::error::{CliError, Outcome, Verdict};
-use crate::config::characters::escape;
 use std::fmt::Display;
 use std::io::{ErrorKind, Write};
 use std::sync::Mutex;
+use voussoir_study::config::characters::escape;
 
 /// The error of writing to standard output; `None` if there was none.
 static UNWRITTEN: Mutex<Option<std::io::Error>> = Mutex::new(None);

@@ -3,10 +3,6 @@
 use super::interrupt;
 use super::journal::Journal;
 use super::print::say_data;
-use crate::results::CaseResult;
-use crate::results::case_with_path::CaseWithPath;
-use crate::results::sealed_line::sealed;
-use crate::solve::{Observer, PathProgress};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::collections::BTreeSet;
 use std::fs::File;
@@ -14,6 +10,10 @@ use std::io::{Error, Result};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
+use voussoir_study::cases::{Observer, PathProgress};
+use voussoir_study::results::CaseResult;
+use voussoir_study::results::case_with_path::CaseWithPath;
+use voussoir_study::results::sealed_line::sealed;
 
 /// The progress display of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

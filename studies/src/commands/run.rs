@@ -11,15 +11,16 @@ use super::print::{say, say_data};
 use super::progress::Progress;
 use super::today::today;
 use super::{interrupt, shard};
-use crate::kinds::{LoadedStudy, RunRequest, one_case};
-use crate::regular_file::open_regular;
-use crate::results::FinishedCases;
-use crate::side_by_side::side_by_side;
-use crate::solve::{Observer, label_of};
-use crate::study::Study;
 use serde_json::{Value as Json, json};
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
+use voussoir_report::kinds::one_case;
+use voussoir_study::cases::{Observer, label_of};
+use voussoir_study::kind::{LoadedStudy, RunRequest};
+use voussoir_study::regular_file::open_regular;
+use voussoir_study::results::FinishedCases;
+use voussoir_study::side_by_side::side_by_side;
+use voussoir_study::study::Study;
 
 /// Returns the arguments that continue a run after an interruption.
 pub fn going_on(arguments: &[String]) -> Vec<String> {

@@ -6,8 +6,6 @@ use super::http::{self, Answer, Gate};
 use super::open::open;
 use super::print::say;
 use crate::serve::{Asked, Session};
-use crate::solve::Observer;
-use crate::writers::page::served_policy;
 use serde_json::Value as Json;
 use std::collections::hash_map::RandomState;
 use std::hash::{BuildHasher, Hasher};
@@ -15,6 +13,8 @@ use std::io;
 use std::net::TcpListener;
 use std::path::Path;
 use std::time::{Duration, Instant};
+use voussoir_report::writers::page::served_policy;
+use voussoir_study::cases::Observer;
 
 /// A report whose path takes longer is cancelled.
 const PATIENCE: Duration = Duration::from_secs(60);

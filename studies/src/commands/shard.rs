@@ -11,13 +11,13 @@ use super::folder::{JOURNAL, ResultFolder};
 use super::options::{Options, Shard, useful_jobs};
 use super::print::say;
 use super::progress::Progress;
-use crate::kinds::LoadedStudy;
-use crate::results::sealed_line::{checksum, sealed_text};
-use crate::study::Study;
-use crate::writers::files::OutputFile;
 use serde::{Deserialize, Serialize};
 use std::io::Write;
 use std::path::Path;
+use voussoir_report::writers::files::OutputFile;
+use voussoir_study::kind::LoadedStudy;
+use voussoir_study::results::sealed_line::{checksum, sealed_text};
+use voussoir_study::study::Study;
 
 /// The file of a part.
 pub const PART: &str = "cases.jsonl";

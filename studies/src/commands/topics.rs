@@ -1,11 +1,11 @@
 //! The topics of `voussoir explain` besides plug-ins: words about studies, and every key of a study file.
 
-use crate::config::documented_vehicles;
-use crate::config::key_meaning::quantity_of;
-use crate::config::synonyms::GLOSSARY;
-use crate::study::study_keys;
 use std::collections::BTreeSet;
 use voussoir_core::plugin::{Card, Need, Parameter, PluginKind, Quantity, Shape, Variant, cards, cards_of};
+use voussoir_study::config::documented_vehicles;
+use voussoir_study::config::key_meaning::quantity_of;
+use voussoir_study::config::synonyms::GLOSSARY;
+use voussoir_study::study::study_keys;
 
 /// Words with their own page. The first word of each row is the name of the page.
 const PAGES: [(&[&str], &str); 9] = [

@@ -5,14 +5,14 @@ use super::files;
 use super::options::useful_jobs;
 use super::print::say;
 use super::progress::{Progress, Shown};
-use crate::caught::{caught, silence_caught_panics};
-use crate::kinds::{LoadedStudy, StoredResults, Verification};
-use crate::regular_file::open_regular;
-use crate::results::stored_path::PATH_PROOFS;
-use crate::verify::first_difference;
 use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
+use voussoir_study::caught::{caught, silence_caught_panics};
+use voussoir_study::kind::{LoadedStudy, StoredResults, Verification};
+use voussoir_study::regular_file::open_regular;
+use voussoir_study::results::stored_path::PATH_PROOFS;
+use voussoir_verify::first_difference;
 
 /// Greatest length of a results.json that is read into memory.
 const MAX_HELD_BYTES: u64 = 4 << 30;

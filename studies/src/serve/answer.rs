@@ -1,14 +1,15 @@
 //! The result of a case as data for the script of the page.
 
 use super::handles::handles;
-use crate::config::document::Node;
-use crate::figures::format::{format_number, headline, hinge_list, kind_words, proved_interval};
-use crate::figures::{curve_svg, scene_svg};
-use crate::results::CaseResult;
-use crate::study::Case;
-use crate::writers::live::case_data;
 use serde_json::{Value as Json, json};
 use voussoir_core::limit::Status;
+use voussoir_report::figures::hinges::hinge_list;
+use voussoir_report::figures::{curve_svg, scene_svg};
+use voussoir_report::writers::live::case_data;
+use voussoir_study::config::document::Node;
+use voussoir_study::results::CaseResult;
+use voussoir_study::results::format::{format_number, headline, kind_words, proved_interval};
+use voussoir_study::study::Case;
 
 /// Greatest number of hinges that are listed by their joints.
 const LISTED: usize = 12;

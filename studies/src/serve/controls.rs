@@ -2,13 +2,13 @@
 //! solvers from the registry.
 
 use super::swap;
-use crate::config::key_meaning::key_meaning;
-use crate::figures::format::format_short;
-use crate::figures::plot::number::step_below;
-use crate::study::{NumberKind, NumericKey, PluginTable, numeric_keys, study_keys};
 use maud::{Markup, html};
 use serde_json::Value as Json;
 use voussoir_core::plugin::{Quantity, Range};
+use voussoir_plot::number::step_below;
+use voussoir_study::config::key_meaning::key_meaning;
+use voussoir_study::results::format::format_short;
+use voussoir_study::study::{NumberKind, NumericKey, PluginTable, numeric_keys, study_keys};
 
 /// Greatest length of a list of numbers with controls.
 const LONGEST: usize = 400;
@@ -189,7 +189,7 @@ mod tests {
             [materials.stone]\nlaw = \"rigid\"\ndensity = 2000.0\n[joints.dry]\nlaw = \"coulomb\"\nfriction = 0.5\n\
             [[stages]]\nname = \"live\"\ngravity = 9.81\n\
             loads = [{ kind = \"point\", block = \"pier\", point = [1.0, 1.0], force = [-1.0, 0.0] }]\n";
-        let study = crate::study::load(text, "pier.toml", &[]).unwrap_or_else(|wrong| panic!("{wrong}"));
+        let study = voussoir_study::file::load(text, "pier.toml", &[]).unwrap_or_else(|wrong| panic!("{wrong}"));
         let resolved = study.cases[0].resolved.to_json();
         let keys = numeric_keys(study_keys(), &resolved, LONGEST);
         for (key, words) in [

@@ -3,14 +3,14 @@
 use super::answer;
 use super::handles::{key_of_position, span};
 use super::runs::Run;
-use crate::config::diagnostic::LocatedDiagnostic;
-use crate::config::document::{Node, from_json};
-use crate::config::origin::Origin;
-use crate::config::overlay::set;
-use crate::loads::VehicleAxles;
-use crate::solve::Observer;
-use crate::study::{Case, Study, StudyError, StudySource};
 use serde_json::{Value as Json, json};
+use voussoir_study::cases::Observer;
+use voussoir_study::config::diagnostic::LocatedDiagnostic;
+use voussoir_study::config::document::{Node, from_json};
+use voussoir_study::config::origin::Origin;
+use voussoir_study::config::overlay::set;
+use voussoir_study::loads::VehicleAxles;
+use voussoir_study::study::{Case, Study, StudyError, StudySource};
 
 /// Positions of the scan for a load that has no envelope in its study.
 const SCAN: usize = 21;

@@ -1,12 +1,12 @@
 //! Loads that you can drag: the position of each, and the keys that change with it.
 
-use crate::config::document::Node;
-use crate::config::dotted_key::join;
-use crate::loads::VehicleAxles;
-use crate::study::Case;
 use serde_json::{Value as Json, json};
 use voussoir_core::model::Assembly;
 use voussoir_core::model::geometry::Vec2;
+use voussoir_study::config::document::Node;
+use voussoir_study::config::dotted_key::join;
+use voussoir_study::loads::VehicleAxles;
+use voussoir_study::study::Case;
 
 /// Returns the start and the length of the span of span fractions \[m\].
 pub(super) fn span(assembly: &Assembly) -> Option<(f64, f64)> {

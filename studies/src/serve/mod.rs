@@ -7,6 +7,8 @@ mod critical;
 mod handles;
 mod page;
 mod runs;
+#[cfg(test)]
+mod safe_pages;
 mod session;
 mod swap;
 

@@ -1,7 +1,7 @@
 //! The page in the browser: drawings, result, sliders.
 
-use crate::writers::page;
 use maud::{Markup, PreEscaped, html};
+use voussoir_report::writers::page;
 
 /// The data of a page.
 #[derive(Debug)]

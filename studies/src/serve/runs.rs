@@ -1,11 +1,11 @@
 //! The requests that are being solved, one for each page: their progress, and their end when a newer request arrives.
 
-use crate::solve::{Observer, PathProgress};
 use serde_json::{Value as Json, json};
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
+use voussoir_study::cases::{Observer, PathProgress};
 
 /// A page that does not ask for the progress of its request for this time is closed; its request ends.
 const UNSEEN: Duration = Duration::from_secs(10);

@@ -2,17 +2,18 @@
 
 use super::runs::{Run, Runs, Stop};
 use super::{answer, controls, critical, page, swap};
-use crate::config::diagnostic::LocatedDiagnostic;
-use crate::config::document::{Node, Value, from_json};
-use crate::config::origin::Origin;
-use crate::config::overlay::set;
-use crate::results::Totals;
-use crate::solve::{Observer, solve_unless_cancelled};
-use crate::study::{Case, Study, StudyError, StudyFile, StudySource, value_of};
-use crate::writers::StudyOutput;
-use crate::writers::report::report_html;
 use serde::Deserialize;
 use serde_json::{Value as Json, json};
+use voussoir_report::output::StudyOutput;
+use voussoir_report::writers::report::report_html;
+use voussoir_study::cases::{Observer, solve_unless_cancelled};
+use voussoir_study::config::diagnostic::LocatedDiagnostic;
+use voussoir_study::config::document::{Node, Value, from_json};
+use voussoir_study::config::origin::Origin;
+use voussoir_study::config::overlay::set;
+use voussoir_study::file::StudyFile;
+use voussoir_study::results::Totals;
+use voussoir_study::study::{Case, Study, StudyError, StudySource, value_of};
 
 /// A study with a scene whose cases are shown in the browser.
 #[derive(Debug)]
@@ -93,7 +94,7 @@ impl Session {
 
     /// Returns the study file of a request, with one case, and the keys whose values come from samples of laws.
     fn root(&self, asked: &Asked) -> Result<(Node, Vec<String>), Vec<LocatedDiagnostic>> {
-        let mut root = self.study.expansion.case(asked.case)?.root;
+        let mut root = self.study.root(asked.case)?;
         let run = Node { value: Value::String("run".into()), origin: root.place("kind") };
         set(&mut root, "kind", run, &Origin::Value).map_err(|wrong| vec![*wrong])?;
         let case = self.study.case(asked.case).filter(|_| !asked.swap.is_empty());
@@ -175,7 +176,7 @@ impl Session {
 
     /// Returns the `[envelope]` of the study as it is for a case, if the study is an envelope.
     fn own_envelope(&self, asked: &Asked) -> Option<Node> {
-        let root = self.study.expansion.case(asked.case).ok().filter(|_| self.kind() == "envelope")?.root;
+        let root = self.study.root(asked.case).ok().filter(|_| self.kind() == "envelope")?;
         root.table()?.get("envelope").cloned()
     }
 

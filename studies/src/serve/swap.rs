@@ -1,14 +1,14 @@
 //! Replaces the law or the solver of a table. Keys that both plug-ins have keep their values.
 
-use crate::config::common_keys::common_parameters;
-use crate::config::diagnostic::LocatedDiagnostic;
-use crate::config::document::{Node, from_json};
-use crate::config::dotted_key::join;
-use crate::config::origin::Origin;
-use crate::config::overlay::set;
-use crate::study::{Case, PluginTable, plugin_tables, study_keys};
 use serde_json::{Map, Value as Json};
 use voussoir_core::plugin::{Card, Need, PluginKind, candidates};
+use voussoir_study::config::common_keys::common_parameters;
+use voussoir_study::config::diagnostic::LocatedDiagnostic;
+use voussoir_study::config::document::{Node, from_json};
+use voussoir_study::config::dotted_key::join;
+use voussoir_study::config::origin::Origin;
+use voussoir_study::config::overlay::set;
+use voussoir_study::study::{Case, PluginTable, plugin_tables, study_keys};
 
 /// The tag of the choice of a solver by the program.
 pub(super) const AUTO: &str = "auto";

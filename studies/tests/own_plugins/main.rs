@@ -6,7 +6,7 @@ mod tower;
 use std::path::Path;
 use voussoir::core::limit::Status;
 use voussoir::core::plugin::nearest;
-use voussoir::kinds::json_schema::json_schema;
+use voussoir::kinds::json_schema;
 use voussoir::solve_case;
 use voussoir::study::load;
 

@@ -22,7 +22,14 @@ fn the_arrows_hold() {
     assert_eq!(ours("laws"), ["voussoir-core"]);
     assert_eq!(ours("solvers"), ["voussoir-core"]);
     assert_eq!(ours("laws/external"), ["voussoir-core"]);
-    assert_eq!(ours("studies"), ["voussoir-core", "voussoir-external", "voussoir-laws", "voussoir-solvers"]);
+    assert_eq!(ours("studies/plot"), ["voussoir-core"]);
+    assert_eq!(ours("studies/study"), ["voussoir-core", "voussoir-solvers"]);
+    assert_eq!(ours("studies/verify"), ["voussoir-core", "voussoir-study"]);
+    let of_report = ["voussoir-core", "voussoir-plot", "voussoir-solvers", "voussoir-study", "voussoir-verify"];
+    assert_eq!(ours("studies/report"), of_report);
+    // The facade names every crate.
+    let own = ["core", "external", "laws", "plot", "report", "solvers", "study", "verify"];
+    assert_eq!(ours("studies"), own.map(|name| format!("voussoir-{name}")));
     // Tests register their own plug-ins, as any other project would.
     assert_eq!(ours("tests"), ["voussoir", "voussoir-core"]);
     assert_eq!(ours("benches"), ["voussoir", "voussoir-tests"]);

@@ -91,20 +91,38 @@ impl Graph {
 
     /// Returns the sets of files that import each other, directly or in a circle.
     pub fn circles(&self) -> Vec<Vec<String>> {
-        let edges = self.edges();
-        let reached: BTreeMap<&Module, BTreeSet<&Module>> =
-            edges.keys().map(|module| (module, reachable(&edges, module))).collect();
-        let mut circles = Vec::new();
-        let mut seen = BTreeSet::new();
-        for module in edges.keys() {
-            let circle: Vec<&Module> =
-                reached[module].iter().copied().filter(|other| reached[other].contains(module)).collect();
-            if circle.len() > 1 && seen.insert(circle.clone()) {
-                circles.push(circle.iter().map(|module| module.join("/")).collect());
-            }
-        }
-        circles
+        circles_of(&self.edges())
     }
+
+    /// Returns the sets of folders and files directly below `src` that import each other, directly or in a circle.
+    pub fn folder_circles(&self) -> Vec<Vec<String>> {
+        let mut edges: BTreeMap<Module, BTreeSet<Module>> = BTreeMap::new();
+        for (module, targets) in self.edges() {
+            let folder = |module: &Module| module[..module.len().min(1)].to_vec();
+            let own = folder(&module);
+            let others = targets.iter().map(folder).filter(|other| *other != own);
+            edges.entry(own.clone()).or_default().extend(others);
+        }
+        // The root declares the folders.
+        edges.remove(&Module::new());
+        circles_of(&edges)
+    }
+}
+
+/// Returns the sets of nodes that reach each other.
+fn circles_of(edges: &BTreeMap<Module, BTreeSet<Module>>) -> Vec<Vec<String>> {
+    let reached: BTreeMap<&Module, BTreeSet<&Module>> =
+        edges.keys().map(|module| (module, reachable(edges, module))).collect();
+    let mut circles = Vec::new();
+    let mut seen = BTreeSet::new();
+    for module in edges.keys() {
+        let circle: Vec<&Module> =
+            reached[module].iter().copied().filter(|other| reached[other].contains(module)).collect();
+        if circle.len() > 1 && seen.insert(circle.clone()) {
+            circles.push(circle.iter().map(|module| module.join("/")).collect());
+        }
+    }
+    circles
 }
 
 /// Returns all files that a file imports, directly or through other files.

@@ -33,7 +33,14 @@ fn keys_are_declared_by_structs() {
 /// A default is written once: serde's own attribute of defaults is in no struct whose keys a study file has.
 #[test]
 fn defaults_of_keys_have_one_source() {
-    for folder in ["laws", "laws/external", "solvers", "studies/src/scenes", "studies/src/loads", "studies/src/kinds"] {
+    for folder in [
+        "laws",
+        "laws/external",
+        "solvers",
+        "studies/study/src/scenes",
+        "studies/study/src/loads",
+        "studies/report/src/kinds",
+    ] {
         let root = workspace().join(folder);
         let root = if root.join("src").is_dir() { root.join("src") } else { root };
         each_source(&root, &mut |path, text| {

@@ -69,7 +69,7 @@ fn crates_can_be_published() {
             }
         }
     }
-    assert!(workspace().join("studies/LICENSE-DEJAVU").exists(), "the font of PNG has its licence");
+    assert!(workspace().join("studies/report/LICENSE-DEJAVU").exists(), "the font of PNG has its licence");
 }
 
 /// Files that a crate includes when it is compiled are in its package: below its folder and in no crate inside it.
@@ -101,12 +101,12 @@ fn packages_hold_what_they_include() {
 fn copies_are_up_to_date() {
     let read = |path: &str| std::fs::read_to_string(workspace().join(path)).expect("a file");
     for (copy, original) in [
-        ("keyed.rs", "studies/examples/my_law/src/keyed.rs"),
-        ("keyed.md", "studies/examples/my_law/src/keyed.md"),
-        ("test.rs", "studies/examples/my_law/tests/keyed.rs"),
-        ("glossary.md", "docs/reference/glossary.md"),
+        ("templates/keyed.rs", "studies/examples/my_law/src/keyed.rs"),
+        ("templates/keyed.md", "studies/examples/my_law/src/keyed.md"),
+        ("templates/test.rs", "studies/examples/my_law/tests/keyed.rs"),
+        ("study/templates/glossary.md", "docs/reference/glossary.md"),
     ] {
-        let copy = format!("studies/templates/{copy}");
+        let copy = format!("studies/{copy}");
         assert!(read(&copy) == read(original), "cp {original} {copy}");
     }
 }

@@ -5,7 +5,7 @@
 
 use std::collections::BTreeSet;
 use std::io::{Cursor, Read};
-use voussoir::kinds::{LoadedStudy, RunRequest, StoredResults, read_study};
+use voussoir::kinds::{LoadedStudy, RunRequest, StoredResults, altered, read_study};
 use voussoir::solve::Unobserved;
 use voussoir::verify::Agreement;
 use voussoir_tests::{Arch, changed, elastic, friction};
@@ -76,7 +76,7 @@ fn each_is_found(name: &str, text: &str) {
             forged[index].1 = forgery.into_bytes();
             let own = files[index..=index].iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()));
             let open = |name: &str| stored(&forged[index..=index], name);
-            let altered = StoredResults { jobs: 1, file: &open }.altered(own, Agreement::Bits);
+            let altered = altered(&StoredResults { jobs: 1, file: &open }, own, Agreement::Bits);
             assert_eq!(altered.len(), 1, "{name}: {file}, byte {from}");
             tried += 1;
         }

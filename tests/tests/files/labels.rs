@@ -2,7 +2,8 @@
 
 use voussoir::core::certificate::{CRUSHES, MechanismKind};
 use voussoir::core::limit::{Greatest, Status};
-use voussoir::figures::format::{headline, hinge_list};
+use voussoir::figures::format::headline;
+use voussoir::figures::hinge_list;
 use voussoir::figures::{curve_svg, mechanism_svg, scene_svg};
 use voussoir::results::CaseResult;
 use voussoir::study::Case;

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::io::{Cursor, Read};
 use std::sync::atomic::{AtomicUsize, Ordering};
-use voussoir::kinds::{LoadedStudy, RunRequest, StoredResults, Verification, read_study};
+use voussoir::kinds::{LoadedStudy, RunRequest, SceneStudy, StoredResults, Verification, read_study};
 use voussoir::results::CaseResult;
 use voussoir::results::sealed_line::{case_in, sealed_text};
 use voussoir::results::stored_path::PATH_PROOFS;
@@ -413,7 +413,10 @@ fn claims_beyond_the_states_are_found() {
 #[test]
 fn streamed_cases_have_their_lines() {
     let source = StudySource::parse(&changed(RINGS, "curve = true", "path_proofs = true"), "paths.toml", &[]);
-    let sweep = StudyFile::read(source.expect("a study")).and_then(StudyFile::study_unchecked).expect("a sweep");
+    let sweep = StudyFile::read(source.expect("a study"))
+        .and_then(StudyFile::study_unchecked)
+        .map(SceneStudy)
+        .expect("a sweep");
     let request = RunRequest { wanted: vec![0, 1], jobs: 1, ..RunRequest::default() };
     let files: Files = LoadedStudy::run(&sweep, &request, &Unobserved).files.into_iter().collect();
     let there = elsewhere(&files);

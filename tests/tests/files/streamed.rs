@@ -2,30 +2,30 @@
 
 use serde_json::{Value, json};
 use std::io::{Cursor, Read};
-use voussoir::kinds::{LoadedStudy, RunRequest, StoredResults};
+use voussoir::kinds::{LoadedStudy, RunRequest, SceneStudy, StoredResults};
 use voussoir::solve::Unobserved;
-use voussoir::study::{Study, StudyFile, StudySource};
+use voussoir::study::{StudyFile, StudySource};
 use voussoir_tests::Arch;
 
 /// A change of a result file.
 type Forgery<'f> = &'f dyn Fn(&mut Value);
 
 /// Returns five cases as a sweep that is not stored in memory.
-fn sweep() -> Study {
+fn sweep() -> SceneStudy {
     let arch = Arch { voussoirs: 7, ends: "jointed", ..Arch::default() };
     let text = arch.study()
         + "[output]\nwriters = [\"results_json\", \"results_csv\", \"results_parquet\"]\n[sweep]\n\"scene.width\" = { list = [1.0, 2.0, 3.0, 4.0, 5.0] }\n";
     let source = StudySource::parse(&text, "test.toml", &[]).expect("a study");
-    StudyFile::read(source).and_then(StudyFile::study_unchecked).expect("a sweep")
+    StudyFile::read(source).and_then(StudyFile::study_unchecked).map(SceneStudy).expect("a sweep")
 }
 
 /// Returns the findings of `verify` for results.json and results.csv.
-fn findings(sweep: &Study, results: &[u8], table: Option<&[u8]>) -> Vec<String> {
+fn findings(sweep: &SceneStudy, results: &[u8], table: Option<&[u8]>) -> Vec<String> {
     findings_of(sweep, results, table, None)
 }
 
 /// Returns the findings of `verify` for results.json and both tables.
-fn findings_of(sweep: &Study, results: &[u8], table: Option<&[u8]>, parquet: Option<&[u8]>) -> Vec<String> {
+fn findings_of(sweep: &SceneStudy, results: &[u8], table: Option<&[u8]>, parquet: Option<&[u8]>) -> Vec<String> {
     let bytes = |name: &str| match name {
         "results.json" => Some(results.to_vec()),
         "results.csv" => table.map(<[u8]>::to_vec),

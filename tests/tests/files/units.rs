@@ -3,9 +3,9 @@
 use serde_json::{Map, Value as Json, json};
 use std::collections::{BTreeSet, HashSet};
 use std::path::{Path, PathBuf};
-use voussoir::config::common_keys::common_parameters;
-use voussoir::config::dotted_key::join;
-use voussoir::config::key_meaning::{KeyMeaning, key_meaning};
+use voussoir::config::common_parameters;
+use voussoir::config::join;
+use voussoir::config::{KeyMeaning, key_meaning};
 use voussoir::core::plugin::{Parameter, Quantity, Shape, candidates, cards};
 use voussoir::kinds::{RunRequest, kind, kinds, read_source};
 use voussoir::solve::Unobserved;

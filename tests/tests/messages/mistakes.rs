@@ -5,7 +5,7 @@
 
 use std::fs;
 use std::path::Path;
-use voussoir::config::source_line::with_source;
+use voussoir::config::with_source;
 use voussoir::kinds::read_study;
 
 fn message_of(path: &Path) -> String {

@@ -227,7 +227,7 @@ set = {{ "joints.dry.law" = "coulomb_associated" }}
         assert_eq!(row.parameters["joints.dry.friction"].as_f64(), Some(map.x_values[place / 2]));
         assert_close(row.cells[0].load_factor.expect("a factor"), map.x_values[place / 2], 1e-9);
     }
-    let svg = voussoir::figures::map::map_svg("axes", &comparison).expect("a figure");
+    let svg = voussoir::figures::map_svg("axes", &comparison).expect("a figure");
     assert!(svg.contains("friction [-]") && svg.contains("sliding (6)"), "{svg}");
 }
 

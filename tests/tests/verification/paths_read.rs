@@ -1,8 +1,8 @@
 //! Quantities derived from a path: joints that became hinges, curves, recovered stresses and their files.
 
 use voussoir::core::model::geometry::Vec2;
-use voussoir::postprocess::displaced_mesh::{DisplacedBlock, displaced_blocks};
-use voussoir::postprocess::joint_events::{JointState, joint_events};
+use voussoir::postprocess::{DisplacedBlock, displaced_blocks};
+use voussoir::postprocess::{JointState, joint_events};
 use voussoir::results::CaseResult;
 use voussoir::solve::{Observer, PathProgress};
 use voussoir::solve::{solve_case, solve_cases};

@@ -1,0 +1,29 @@
+//! Drawings of scenes and mechanisms, charts of sweeps, and how numbers are written in them.
+//!
+//! Everything here is a pure function from results to text (SVG). No file is touched.
+
+pub mod comparison;
+pub mod curve;
+pub mod displaced;
+pub mod drawing;
+pub mod envelope;
+mod fill;
+pub mod hinge_closure;
+pub mod hinges;
+pub mod loads;
+pub mod map;
+pub mod mechanism;
+pub mod moving_load;
+pub mod scene_canvas;
+pub mod sweep;
+pub mod symbols;
+pub mod thrust;
+
+#[cfg(test)]
+pub(crate) mod sample;
+
+pub use curve::{curve_charts, curve_svg};
+pub use drawing::scene_svg;
+pub use mechanism::mechanism_svg;
+pub(crate) use mechanism::moving_blocks;
+pub use sweep::{sweep_axis, sweep_chart};

@@ -1,0 +1,15 @@
+//! What becomes of results: drawings, charts, tables, files and pages, and the study kinds that write them.
+//!
+//! Users name the crate `voussoir`, which has all public names.
+#![forbid(unsafe_code)]
+
+// Tests use the laws of the project.
+#[cfg(test)]
+use voussoir_laws as _;
+
+pub mod difference;
+pub mod figures;
+pub mod kinds;
+pub mod output;
+pub mod postprocess;
+pub mod writers;

@@ -1,0 +1,24 @@
+//! Loads of a stage: from the keys of a study to forces on blocks. One file each; file = tag.
+
+pub mod axles;
+pub mod body;
+mod extrados;
+mod keys;
+pub mod lane;
+mod load_kind;
+pub mod point;
+pub mod pressure;
+mod site;
+pub mod strip;
+#[cfg(test)]
+mod tests;
+mod track;
+pub mod vehicle;
+mod vehicle_axles;
+
+pub use extrados::fill_layers;
+pub use keys::load_shape;
+pub use load_kind::{LoadKind, Placed};
+pub use site::{BlockName, LoadSite, LoadTables};
+pub use track::{Track, footprints};
+pub use vehicle_axles::{Axle, VehicleAxles};

@@ -1,0 +1,83 @@
+//! `point`: a force at a point.
+
+use super::extrados::{dispersed, on_extrados, on_patch, x_at};
+use super::keys::LoadKeys;
+use super::load_kind::{LoadKind, Placed};
+use super::site::{BlockName, LoadSite};
+use crate::scenes::dispersion::{Dispersion, Patch};
+use voussoir_core::model::geometry::Vec2;
+use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind};
+
+/// A force at a point.
+#[derive(Debug, Keys)]
+pub struct PointLoad {
+    /// place on the extrados of an arch, along the span from the left
+    #[key(unit = "-", optional = "block and point are given")]
+    pub span_fraction: Option<f64>,
+    /// The block, instead of `span_fraction`.
+    #[key(like = LoadKeys, optional = "span_fraction is given")]
+    pub block: Option<BlockName>,
+    /// point in or on the block
+    #[key(names = ["x", "y"], unit = "m", optional = "span_fraction is given")]
+    pub point: Option<[f64; 2]>,
+    /// force, x to the right and y upwards
+    #[key(names = ["x", "y"], unit = "N")]
+    pub force: [f64; 2],
+    /// Law of dispersion on the way to the extrados.
+    #[key(like = LoadKeys)]
+    pub dispersion: Option<Box<dyn Dispersion>>,
+}
+
+#[typetag::serde(name = "point")]
+impl LoadKind for PointLoad {
+    fn place(&self, site: &LoadSite) -> Result<Placed, Vec<Diagnostic>> {
+        site.finite(&[("force", &self.force)])?;
+        let force = Vec2::from(self.force);
+        match (self.span_fraction, &self.block, self.point) {
+            (Some(fraction), None, None) => {
+                let x = x_at(site, fraction, "span_fraction")?;
+                let Some(dispersion) = &self.dispersion else {
+                    return Ok(on_extrados(site, x, force, "span_fraction")?.into());
+                };
+                let mut forces = Vec::new();
+                let patch = Patch { from: x, to: x, share: 1.0 };
+                for Patch { from, to, share } in dispersed(site, dispersion.as_ref(), patch, "span_fraction")? {
+                    forces.extend(if from == to {
+                        on_extrados(site, from, force * share, "span_fraction")?
+                    } else {
+                        on_patch(site, [from, to], force * (share / (to - from)), ["span_fraction"; 2])?
+                    });
+                }
+                Ok(forces.into())
+            }
+            (None, Some(block), Some(point)) => {
+                site.finite(&[("point", &point)])?;
+                if self.dispersion.is_some() {
+                    return site.fail("dispersion", "spreads a load above an arch: give span_fraction");
+                }
+                Ok(vec![site.on_block(block, Vec2::from(point), force)?].into())
+            }
+            (Some(_), _, _) => {
+                let key = if self.block.is_some() { "block" } else { "point" };
+                site.fail(key, "given besides span_fraction; give span_fraction, or block and point")
+            }
+            (None, Some(_), None) => site.fail("point", "is missing: where on the block the force acts"),
+            (None, None, Some(_)) => site.fail("block", "is missing: the block on which the force acts"),
+            (None, None, None) => site.fail("", "needs span_fraction, or block and point"),
+        }
+    }
+}
+
+voussoir_core::inventory::submit! {
+    Card {
+        kind: PluginKind::LoadKind,
+        tag: "point",
+        summary: "a force at a point",
+        file: file!(),
+        package: voussoir_core::package!(),
+        page: "# `point`\n\nA force acts at a point: on the extrados of an arch at `span_fraction`, or in or on a \
+               `block` at `point`. At the boundary of two voussoirs it acts on the one nearer to midspan; at midspan each \
+               carries half of it.\n",
+        ..Card::of::<PointLoad>()
+    }
+}
