@@ -192,7 +192,7 @@ impl PrincipalUpdate {
 
 /// Returns the principal values in descending order, with their axes as rows. Jacobi rotations keep axes orthogonal also if
 /// values are equal.
-fn principal(stress: &Voigt) -> (Vector, [Vector; 3]) {
+pub fn principal(stress: &Voigt) -> (Vector, [Vector; 3]) {
     let mut m =
         [[stress[0], stress[3], stress[5]], [stress[3], stress[1], stress[4]], [stress[5], stress[4], stress[2]]];
     let mut axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -224,7 +224,7 @@ fn principal(stress: &Voigt) -> (Vector, [Vector; 3]) {
 }
 
 /// Returns Σ v_i n_i ⊗ n_i; `shear` is 2 for strains, because they have engineering shears.
-fn in_space(v: &Vector, axes: &[Vector; 3], shear: f64) -> Voigt {
+pub fn in_space(v: &Vector, axes: &[Vector; 3], shear: f64) -> Voigt {
     let entry = |i: usize, j: usize| (0..3).map(|k| v[k] * axes[k][i] * axes[k][j]).sum::<f64>();
     [entry(0, 0), entry(1, 1), entry(2, 2), shear * entry(0, 1), shear * entry(1, 2), shear * entry(2, 0)]
 }

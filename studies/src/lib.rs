@@ -131,7 +131,7 @@ pub mod verify {
     pub use voussoir_study::checks::{Agreement, case, misfits, tolerances};
     pub use voussoir_verify::{
         COMPARISON, CheckedCase, KeyDifference, added, against, by_itself, first_difference, key_differences,
-        path_proofs, solve_again, verify, verify_against,
+        solve_again, verify, verify_against,
     };
 }
 

@@ -83,15 +83,16 @@ impl Strains {
 pub struct InelasticState {
     /// State of the law, Gauss point by Gauss point.
     pub history: Vec<f64>,
-    /// ε^p (xx, yy, zz, engineering xy) of each Gauss point in the shape's frame.
-    pub plastic_strain: Vec<[f64; 4]>,
-    /// Cumulated √(2/3 ε̇^p:ε̇^p) of each Gauss point.
+    /// Inelastic strain (xx, yy, zz, engineering xy) of each Gauss point in the shape's frame: as the law defines it, otherwise
+    /// ε − C⁻¹ σ.
+    pub inelastic_strain: Vec<[f64; 4]>,
+    /// Cumulated √(2/3 ε̇:ε̇) of the inelastic strain of each Gauss point.
     pub equivalent: Vec<f64>,
     /// The part of `equivalent` that yielded under compression.
     pub crushed: Vec<f64>,
     /// True if any point has ever yielded.
     pub yielded: bool,
-    /// Plastic work so far \[J\].
+    /// Energy dissipated so far \[J\].
     pub dissipated: f64,
 }
 
@@ -222,7 +223,7 @@ impl InelasticBody {
         history.chunks_mut(size.max(1)).for_each(|state| self.update.initial_state(state));
         InelasticState {
             history,
-            plastic_strain: vec![[0.0; 4]; count],
+            inelastic_strain: vec![[0.0; 4]; count],
             equivalent: vec![0.0; count],
             crushed: vec![0.0; count],
             yielded: false,
@@ -284,20 +285,20 @@ impl InelasticBody {
         strains
     }
 
+    /// Returns the context of the updates in an element.
+    pub(super) fn context(&self, element: usize) -> UpdateContext<'static> {
+        UpdateContext::of_length(self.strains.lengths[element] * self.size)
+    }
+
     pub(super) fn stresses(
         &self,
         strains: &[[f64; 3]],
         history: &[f64],
         new: &mut [f64],
     ) -> Result<Vec<PlanarPoint>, String> {
-        let context = |length: &f64| UpdateContext::of_length(length * self.size);
-        let contexts: Vec<UpdateContext> = self
-            .strains
-            .operators
-            .iter()
-            .zip(&self.strains.lengths)
-            .flat_map(|(points, length)| std::iter::repeat_n(context(length), points.len()))
-            .collect();
+        let operators = self.strains.operators.iter().enumerate();
+        let contexts: Vec<UpdateContext> =
+            operators.flat_map(|(e, points)| std::iter::repeat_n(self.context(e), points.len())).collect();
         let mut points = vec![PlanarPoint::ZERO; strains.len()];
         self.update
             .update(strains, &contexts, history, new, &mut points)

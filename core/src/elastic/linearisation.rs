@@ -16,6 +16,15 @@ const RESIDUAL: f64 = 1e-10;
 /// iteration slower but does not change its result.
 const SOFTEST: f64 = 1e-3;
 
+/// Greatest difference of a tangent from the elastic stiffness, relative to E, up to which both count as equal.
+const UNCHANGED: f64 = 1e-9;
+
+/// Relative difference up to which the dissipation of a law is that of plastic flow, σ · Δε^p.
+const PLASTIC_WORK: f64 = 1e-9;
+
+/// Step of the differences of a dissipation, relative to the greatest strain.
+const DIFFERENCE: f64 = 1e-6;
+
 /// Flexibility, relative to that of the elastic body, above which a tangent counts as singular.
 const LARGEST: f64 = 1e4;
 
@@ -36,10 +45,10 @@ pub struct Linearisation {
     pub end: Arc<InelasticState>,
     /// Elastic energy \[J\].
     pub stored: f64,
-    /// ∂(plastic work)/∂v \[J\].
-    slope: Vec<f64>,
-    /// Number of Gauss points that yield in the step.
+    /// Number of Gauss points at which something irreversible happens in the step.
     pub yielding: usize,
+    /// True if the tangent differs from the elastic stiffness: the flexibility is that of this state, and need not be symmetric.
+    pub changed: bool,
     /// Number of matrices factorised for it.
     pub factorisations: u64,
 }
@@ -67,15 +76,59 @@ impl InelasticBody {
         [0, 1, 2, 3].map(entry)
     }
 
-    /// Returns ∂(σ · Δε^p)/∂(ε_xx, ε_yy, γ_xy) of a point \[Pa\].
-    fn dissipation_slope(&self, point: &PlanarPoint, step: &[f64; 4]) -> [f64; 3] {
-        let stress = [point.stress[0], point.stress[1], point.stress_across, point.stress[2]];
-        [0, 1, 2].map(|j| {
-            let t = [point.tangent[0][j], point.tangent[1][j], point.tangent_across[j], point.tangent[2][j]];
-            let elastic = self.elastic_strain(t);
-            let total = [f64::from(j == 0), f64::from(j == 1), 0.0, f64::from(j == 2)];
-            (0..4).map(|i| t[i] * step[i] + stress[i] * (total[i] - elastic[i])).sum()
+    /// Returns the part of a strain (xx, yy, zz, xy) that is not elastic: as the law defines it, otherwise ε − C⁻¹ σ.
+    fn inelastic_strain(&self, point: &PlanarPoint, strain: &[f64; 3], memory: &[f64]) -> [f64; 4] {
+        let total = [strain[0], strain[1], point.strain_across, strain[2]];
+        self.update.inelastic_strain(total, memory).unwrap_or_else(|| {
+            let stress = [point.stress[0], point.stress[1], point.stress_across, point.stress[2]];
+            let elastic = self.elastic_strain(stress);
+            [0, 1, 2, 3].map(|i| total[i] - elastic[i])
         })
+    }
+
+    /// Returns the state of the law at a Gauss point.
+    fn memory<'a>(&self, history: &'a [f64], index: usize) -> &'a [f64] {
+        let size = self.state_size();
+        &history[index * size..index * size + self.memory_size()]
+    }
+
+    /// Returns ∂(dissipated energy)/∂(ε_xx, ε_yy, γ_xy) of a point \[Pa\]. Plastic flow dissipates σ · Δε^p, whose derivative
+    /// follows from the tangent. The dissipation of other laws is differentiated by central differences.
+    fn dissipation_slope(
+        &self,
+        point: &PlanarPoint,
+        strain: &[f64; 3],
+        (element, index): (usize, usize),
+        start: &InelasticState,
+    ) -> Result<[f64; 3], String> {
+        let stress = [point.stress[0], point.stress[1], point.stress_across, point.stress[2]];
+        let (elastic, total) = (self.elastic_strain(stress), [strain[0], strain[1], point.strain_across, strain[2]]);
+        let before = start.inelastic_strain[index];
+        let step = [0, 1, 2, 3].map(|i| total[i] - elastic[i] - before[i]);
+        let terms = [0, 1, 2, 3].map(|i| stress[i] * step[i]);
+        let size = terms.iter().map(|term| term.abs()).sum::<f64>().max(point.dissipated.abs());
+        if (terms.iter().sum::<f64>() - point.dissipated).abs() <= PLASTIC_WORK * size {
+            return Ok([0, 1, 2].map(|j| {
+                let t = [point.tangent[0][j], point.tangent[1][j], point.tangent_across[j], point.tangent[2][j]];
+                let elastic = self.elastic_strain(t);
+                let unit = [f64::from(j == 0), f64::from(j == 1), 0.0, f64::from(j == 2)];
+                (0..4).map(|i| t[i] * step[i] + stress[i] * (unit[i] - elastic[i])).sum()
+            }));
+        }
+        let width = DIFFERENCE * strain.iter().fold(point.strain_across.abs(), |a, e| a.max(e.abs()));
+        let (context, size) = (self.context(element), self.state_size());
+        let (old, mut new) = (&start.history[index * size..(index + 1) * size], vec![0.0; size]);
+        let mut at = |j: usize, by: f64| {
+            let mut moved = *strain;
+            moved[j] += by;
+            let found = self.update.update_point(&moved, &context, old, &mut new);
+            found.map(|found| found.dissipated).map_err(|why| format!("a stress update beside a state failed: {why}"))
+        };
+        let mut slope = [0.0; 3];
+        for (j, slope) in slope.iter_mut().enumerate() {
+            *slope = (at(j, width)? - at(j, -width)?) / (2.0 * width);
+        }
+        Ok(slope)
     }
 
     /// Linearises the body at displacements of its nodes; `start` is the state at the start of the step.
@@ -87,43 +140,33 @@ impl InelasticBody {
         let strains = self.strains_at(&displacement);
         let mut end = start.clone();
         let points = self.stresses(&strains, &start.history, &mut end.history)?;
-        let (mut stored, mut slope, mut yielding) = (0.0, vec![0.0; displacement.len()], 0);
-        let mut index = 0;
-        for (nodes, operators) in self.shape.mesh.elements.iter().zip(&self.strains.operators) {
-            for (b, weight) in operators {
-                let (point, strain) = (&points[index], &strains[index]);
-                stored += weight * volume * point.stored;
-                if !point.branch.is_elastic() {
-                    let stress = [point.stress[0], point.stress[1], point.stress_across, point.stress[2]];
-                    let (elastic, total) =
-                        (self.elastic_strain(stress), [strain[0], strain[1], point.strain_across, strain[2]]);
-                    let plastic = [0, 1, 2, 3].map(|i| total[i] - elastic[i]);
-                    let before = start.plastic_strain[index];
-                    let step = [0, 1, 2, 3].map(|i| plastic[i] - before[i]);
-                    let [x, y, z, xy] = step;
-                    let equivalent = (2.0 / 3.0 * (x * x + y * y + z * z + 0.5 * xy * xy)).sqrt();
-                    end.plastic_strain[index] = plastic;
-                    end.equivalent[index] += equivalent;
-                    if point.branch.effect != Effect::Tearing && stress[0] + stress[1] + stress[2] < 0.0 {
-                        end.crushed[index] += equivalent;
-                    }
-                    end.dissipated += weight * volume * point.dissipated;
-                    let by_strain = self.dissipation_slope(point, &step).map(|s| s * weight * volume);
-                    for (j, column) in b.column_iter().enumerate() {
-                        slope[2 * nodes[j / 2] + j % 2] +=
-                            column[0] * by_strain[0] + column[1] * by_strain[1] + column[2] * by_strain[2];
-                    }
-                    yielding += 1;
-                }
-                index += 1;
+        let (mut stored, mut yielding) = (0.0, 0);
+        let weights = self.strains.operators.iter().flatten().map(|(_, weight)| weight * volume);
+        for (index, (point, weight)) in points.iter().zip(weights).enumerate() {
+            stored += weight * point.stored;
+            end.dissipated += weight * point.dissipated;
+            if point.branch.is_elastic() {
+                continue;
             }
+            let inelastic = self.inelastic_strain(point, &strains[index], self.memory(&end.history, index));
+            let before = start.inelastic_strain[index];
+            let [x, y, z, xy] = [0, 1, 2, 3].map(|i| inelastic[i] - before[i]);
+            let equivalent = (2.0 / 3.0 * (x * x + y * y + z * z + 0.5 * xy * xy)).sqrt();
+            end.inelastic_strain[index] = inelastic;
+            end.equivalent[index] += equivalent;
+            if point.branch.effect != Effect::Tearing && point.stress[0] + point.stress[1] + point.stress_across < 0.0 {
+                end.crushed[index] += equivalent;
+            }
+            yielding += 1;
         }
         end.yielded |= yielding > 0;
+        // The tangent of a law decides, not the name of its branch: a damaged material unloads with less stiffness.
+        let changed = yielding > 0 || !points.iter().all(|point| self.is_unchanged(point));
         let internal = self.internal(&points);
         let (mut rest, mut response, mut flexibility) =
             (vec![0.0; displacement.len()], self.response.clone(), self.flexibility.clone());
         let mut factorisations = 0;
-        if yielding > 0 {
+        if changed {
             let mut solved = None;
             for share in [0.0, SOFTEST] {
                 factorisations += 1;
@@ -151,10 +194,17 @@ impl InelasticBody {
             internal,
             end: Arc::new(end),
             stored,
-            slope,
             yielding,
+            changed,
             factorisations,
         })
+    }
+
+    /// Returns true if a point has the elastic tangent and nothing irreversible happens there.
+    fn is_unchanged(&self, point: &PlanarPoint) -> bool {
+        let elastic = &self.shape.elasticity.stiffness;
+        let same = |i: usize, j: usize| (point.tangent[i][j] / self.modulus - elastic[(i, j)]).abs() <= UNCHANGED;
+        point.branch.is_elastic() && (0..3).all(|i| (0..3).all(|j| same(i, j)))
     }
 
     /// Returns P K⁺ Pᵀ Nᵀ and P K⁺ f_int with the tangents of yielding points and the elastic stiffness elsewhere.
@@ -167,13 +217,13 @@ impl InelasticBody {
         for (nodes, operators) in self.shape.mesh.elements.iter().zip(&self.strains.operators) {
             let here = &points[first..first + operators.len()];
             first += operators.len();
-            let k = if here.iter().all(|point| point.branch.is_elastic()) {
+            let k = if here.iter().all(|point| self.is_unchanged(point)) {
                 stiffness_of_strains(operators, elastic)
             } else {
                 let mut k = DMatrix::zeros(2 * nodes.len(), 2 * nodes.len());
                 for ((b, weight), point) in operators.iter().zip(here) {
                     let mut d = nalgebra::Matrix3::from_fn(|i, j| point.tangent[i][j] / self.modulus);
-                    if !point.branch.is_elastic() {
+                    if !self.is_unchanged(point) {
                         d += elastic * share;
                     }
                     k += b.transpose() * (d * *weight) * b;
@@ -215,17 +265,38 @@ impl InelasticBody {
         Some((all.columns(0, right.len() - 1).into_owned(), own))
     }
 
-    /// Returns ∂(plastic work of the step)/∂(forces on the points) \[J/N\].
-    pub fn dissipation_by_force(&self, linear: &Linearisation) -> Vec<f64> {
+    /// Returns ∂(energy dissipated in the step)/∂(forces on the points) \[J/N\]; `start` is the state at the start of the step.
+    ///
+    /// # Errors
+    /// If an update of the law fails.
+    pub fn dissipation_by_force(&self, linear: &Linearisation, start: &InelasticState) -> Result<Vec<f64>, String> {
         if linear.yielding == 0 {
-            return vec![0.0; 2 * self.places.len()];
+            return Ok(vec![0.0; 2 * self.places.len()]);
+        }
+        let volume = self.size.powi(2) * self.width;
+        let strains = self.strains_at(&linear.displacement);
+        let mut history = start.history.clone();
+        let points = self.stresses(&strains, &start.history, &mut history)?;
+        let (mut slope, mut index) = (vec![0.0; linear.displacement.len()], 0);
+        for (element, (nodes, operators)) in self.shape.mesh.elements.iter().zip(&self.strains.operators).enumerate() {
+            for (b, weight) in operators {
+                if !points[index].branch.is_elastic() {
+                    let by_strain = self.dissipation_slope(&points[index], &strains[index], (element, index), start)?;
+                    let by_strain = by_strain.map(|s| s * weight * volume);
+                    for (j, column) in b.column_iter().enumerate() {
+                        slope[2 * nodes[j / 2] + j % 2] +=
+                            column[0] * by_strain[0] + column[1] * by_strain[1] + column[2] * by_strain[2];
+                    }
+                }
+                index += 1;
+            }
         }
         let scale = 1.0 / (self.modulus * self.width * self.size);
         let local: Vec<f64> = linear
             .response
             .column_iter()
-            .map(|column| column.iter().zip(&linear.slope).map(|(x, s)| x * s).sum::<f64>() * scale)
+            .map(|column| column.iter().zip(&slope).map(|(x, s)| x * s).sum::<f64>() * scale)
             .collect();
-        local.chunks(2).flat_map(|s| <[f64; 2]>::from(self.rotation * Vec2::new(s[0], s[1]))).collect()
+        Ok(local.chunks(2).flat_map(|s| <[f64; 2]>::from(self.rotation * Vec2::new(s[0], s[1]))).collect())
     }
 }

@@ -8,6 +8,8 @@ use serde::{Serialize, Serializer};
 pub enum Effect {
     /// Nothing irreversible happens.
     Elastic,
+    /// Nothing irreversible happens; the stiffness is that of a material that was damaged before.
+    Unloading,
     /// A joint slides.
     Sliding,
     /// Strength is lost.
@@ -35,6 +37,9 @@ impl UpdateBranch {
     /// The joint is open, and nothing irreversible happens in this step.
     pub const OPEN: Self = Self::new("open", Effect::Elastic);
 
+    /// A damaged material unloads or loads again; nothing irreversible happens in this step.
+    pub const UNLOADING: Self = Self::new("unloading", Effect::Unloading);
+
     /// Creates a branch of a law.
     pub const fn new(name: &'static str, effect: Effect) -> Self {
         UpdateBranch { name, effect }
@@ -42,7 +47,7 @@ impl UpdateBranch {
 
     /// Returns true if nothing irreversible happened.
     pub fn is_elastic(self) -> bool {
-        self.effect == Effect::Elastic
+        matches!(self.effect, Effect::Elastic | Effect::Unloading)
     }
 }
 

@@ -117,6 +117,11 @@ impl PlanarUpdate {
         state[own..].fill(0.0);
     }
 
+    /// Returns the inelastic strain (xx, yy, zz, xy) that the law defines; see [`StressUpdate::inelastic_strain`].
+    pub fn inelastic_strain(&self, [xx, yy, zz, xy]: [f64; 4], memory: &[f64]) -> Option<[f64; 4]> {
+        self.law.inelastic_strain(&[xx, yy, zz, xy, 0.0, 0.0], memory).map(|strain| [0, 1, 2, 3].map(|i| strain[i]))
+    }
+
     /// Updates one point; see [`StressUpdate::update_point`].
     ///
     /// # Errors

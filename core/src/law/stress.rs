@@ -21,7 +21,7 @@ pub struct StressPoint {
     pub branch: UpdateBranch,
     /// Energy stored per volume at the end of the step \[J/m³\].
     pub stored: f64,
-    /// Energy dissipated per volume in the step \[J/m³\]: σ · Δε^p with σ at the end of the step.
+    /// Energy dissipated per volume in the step \[J/m³\]. For plastic flow it is σ · Δε^p with σ at the end of the step.
     pub dissipated: f64,
 }
 
@@ -67,6 +67,13 @@ pub trait StressUpdate: Debug + Send + Sync {
     /// Larger elements are an input error.
     fn largest_length(&self) -> f64 {
         f64::INFINITY
+    }
+
+    /// Returns the part of the strain at the end of a step that is not elastic, for results. By default it is ε − C⁻¹ σ with the
+    /// elasticity of the undamaged material; a law whose stiffness changes defines it here.
+    fn inelastic_strain(&self, strain: &Voigt, state: &[f64]) -> Option<Voigt> {
+        let _ = (strain, state);
+        None
     }
 
     /// Updates a group of points: one strain, context and result per point; the states of the points follow one

@@ -13,7 +13,7 @@ pub mod caught;
 pub mod checks;
 pub mod config;
 pub mod file;
-pub mod fnv;
+mod fnv;
 pub mod kind;
 pub mod loads;
 pub mod regular_file;

@@ -10,6 +10,7 @@ mod cohesive;
 mod compare;
 mod contact;
 mod crushing;
+mod damage;
 mod elements;
 mod energy;
 mod event;

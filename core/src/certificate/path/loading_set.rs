@@ -209,7 +209,7 @@ impl PathChain {
             for _ in 0..ITERATIONS {
                 linear = inelastic.linearise(inelastic.displaced(&linear, &forces), &end)?;
             }
-            let power = if linear.yielding > 0 { inelastic.dissipation_by_force(&linear) } else { Vec::new() };
+            let power = if linear.yielding > 0 { inelastic.dissipation_by_force(&linear, &end)? } else { Vec::new() };
             let dissipated = linear.end.dissipated - end.dissipated;
             Ok(Some(Block { flexibility: linear.flexibility, power, dissipated }))
         };

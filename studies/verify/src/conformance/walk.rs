@@ -7,6 +7,7 @@ use super::point::{Point, Said};
 use super::random::random_step;
 use super::subject::Subject;
 use std::collections::BTreeMap;
+use voussoir_core::law::UpdateBranch;
 use voussoir_core::plugin::{Property, Sample};
 use voussoir_core::random::Random;
 
@@ -218,6 +219,14 @@ fn said_of_itself(
     let elastic = here.branch.is_elastic();
     recorder.hold_on("regions", !elastic || here.dissipated.abs() <= 1e-12 * work, path, || {
         format!("calls the step elastic, but dissipates {:e}", here.dissipated)
+    });
+    // The state of an open joint follows its position.
+    let keeps = old == new || here.branch == UpdateBranch::OPEN;
+    recorder.hold_on("regions", !elastic || keeps, path, || {
+        format!(
+            "calls the step \"{}\", which is elastic, but changes the state from {old:?} to {new:?}",
+            here.branch.name
+        )
     });
     recorder.hold_on("regions", elastic || old != new, path, || {
         format!("calls the step \"{}\", but the state is the same after it", here.branch.name)

@@ -195,9 +195,9 @@ fn add_rotations(
     let columns = forces_by_rotations(geometry, body, place, v, out);
     let products: Vec<Vec<f64>> =
         columns.iter().map(|(_, column)| times_flexibility(geometry, body, column, place.blocks)).collect();
-    // If a block yields, C need not be symmetric: gaps by rotations use C, moments by forces use Cᵀ.
-    let yields = matches!(place.blocks.get(body), Some(Some(inner)) if inner.linear.yielding > 0);
-    let across: Option<Vec<Vec<f64>>> = yields.then(|| {
+    // The tangent of a law need not be symmetric: gaps by rotations use C, moments by forces use Cᵀ.
+    let changed = matches!(place.blocks.get(body), Some(Some(inner)) if inner.linear.changed);
+    let across: Option<Vec<Vec<f64>>> = changed.then(|| {
         let times = |column: &[f64]| flexibility.column_iter().map(|c| inner(c.as_slice(), column)).collect();
         columns.iter().map(|(_, column)| times(column)).collect()
     });

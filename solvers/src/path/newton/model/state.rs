@@ -42,6 +42,11 @@ impl State {
             && self.blocks.iter().zip(&other.blocks).all(same)
     }
 
+    /// Returns true if the tangent of a block differs from its elastic stiffness.
+    pub fn changes_stiffness(&self) -> bool {
+        self.blocks.iter().flatten().any(|inner| inner.linear.changed)
+    }
+
     /// Returns true if a block yields in the step that ends here.
     pub fn yields(&self) -> bool {
         self.blocks.iter().flatten().any(|inner| inner.linear.yielding > 0)

@@ -233,7 +233,7 @@ impl<'a> StepSystem<'a> {
 
     /// Returns gaps and balance linearised at a state.
     pub fn equations(&mut self, state: &State) -> Rc<Equations> {
-        if self.finite() || state.yields() {
+        if self.finite() || state.changes_stiffness() {
             let known = self.cache.at.iter().position(|(at, _)| at.is_at_place_of(state));
             let own = match known.and_then(|known| self.cache.at.remove(known)) {
                 Some(own) => own,
