@@ -101,8 +101,6 @@ tolerances! {
         clear = 1e2,
         /// Factor in its unit above which it may have no bound.
         greatest_factor = 1e7,
-        /// Strength in units of the loads above which tangents replace a stress block.
-        flat = 1e6,
         /// Strength in units of the loads above which programs are also tried in the unit of the strength.
         strong = 1e2,
         /// Growth of the error beyond the least one after which the tangents count as divergent.
@@ -166,7 +164,7 @@ mod tests {
             (LimitSettings { rounding: f64::NAN, ..SETTINGS }, "rounding"),
             (LimitSettings { active: -1e-9, ..SETTINGS }, "active"),
             (LimitSettings { shift: 0.0, ..SETTINGS }, "shift"),
-            (LimitSettings { flat: f64::INFINITY, ..SETTINGS }, "flat"),
+            (LimitSettings { diverged: f64::INFINITY, ..SETTINGS }, "diverged"),
             (LimitSettings { strong: 0.5, ..SETTINGS }, "strong"),
             (LimitSettings { carried: 1e-12, ..SETTINGS }, "carried"),
             (LimitSettings { great_shift: 1e-8, ..SETTINGS }, "great_shift"),

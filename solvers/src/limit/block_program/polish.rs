@@ -3,7 +3,7 @@
 //! Forces move along the null space Z of the carrying rows of each joint, so that E Z Zᵀ Eᵀ, with a shift of δ, is the
 //! stiffness of the remaining structure. At collapse it is singular only in the mechanism; θ balances the equilibrium
 //! error along it. The solution gives the forces nearest to the interior point, and the nearest velocities that no
-//! joint resists. Rows with a negative multiplier leave the set; violated rows enter it.
+//! joint resists.
 
 use super::cone::{Cone, ROWS, dot, span};
 use super::program::Program;
@@ -14,11 +14,7 @@ use super::stiffness::{Root, Stiffness};
 use crate::limit::settings::SETTINGS;
 use crate::linear::inner;
 
-/// Greatest number of sets of carrying rows.
-const MAX_SETS: usize = 6;
-/// Number of sets after which all wrong rows change at once; after later sets only the worst row changes.
-const SETS_CHANGED_TOGETHER: usize = 3;
-/// Greatest number of corrections of one set.
+/// Greatest number of corrections of forces, and of velocities.
 const MAX_CORRECTIONS: usize = 12;
 
 /// The free directions of the forces of one joint, with its carrying rows and their multipliers.
@@ -68,7 +64,7 @@ fn least_squares(
     (std::array::from_fn(|c| if c < rank { solved[c] } else { 0.0 }), l)
 }
 
-/// A state during the polish with one set of carrying rows.
+/// A state during the polish.
 struct Polish<'a> {
     program: &'a Program,
     state: State,
@@ -88,25 +84,9 @@ pub fn polish(
     let carrying = carrying.map(|(s, z)| std::array::from_fn(|row| z[row] > s[row])).collect();
     let capped = program.cap.is_some() && start.cap[1] > start.cap[0];
     let mut polish = Polish { program, state: start.clone(), carrying, capped, frames: Vec::new() };
-    let mut best: Option<(f64, State, bool)> = None;
-    for round in 0..MAX_SETS {
-        if round < SETS_CHANGED_TOGETHER {
-            polish.state = start.clone();
-        }
-        let v = polish.factorise(stiffness)?;
-        *corrections += polish.statics(stiffness, &v) + polish.kinematics(stiffness, &v);
-        let capped = polish.capped;
-        let (error, changed) = polish.judge(round >= SETS_CHANGED_TOGETHER);
-        if best.as_ref().is_none_or(|best| error < best.0) {
-            best = Some((error, polish.state.clone(), capped));
-        }
-        if !changed {
-            break;
-        }
-    }
-    let (error, state, capped) = best?;
-    (polish.state, polish.capped) = (state, capped);
-    Some((error, polish.solution(stiffness)?))
+    let v = polish.factorise(stiffness)?;
+    *corrections += polish.statics(stiffness, &v) + polish.kinematics(stiffness, &v);
+    Some((polish.error(), polish.solution(stiffness)?))
 }
 
 /// Returns a state without polish, for optima without a clear set of carrying rows.
@@ -262,54 +242,31 @@ impl Polish<'_> {
         }
     }
 
-    /// Returns the greatest error, and true if the set changed. Rows with negative multipliers leave and violated rows
-    /// enter: all of them, or with `single` only the worst.
-    fn judge(&mut self, single: bool) -> (f64, bool) {
-        let mut worst = (SETTINGS.rounding, 0, 0);
-        let program = self.program;
-        let scale = self.greatest_multiplier();
-        let (mut error, mut changed) = (0.0f64, false);
+    /// Returns the greatest error, negative multiplier or violation of a row.
+    fn error(&self) -> f64 {
+        let (program, scale) = (self.program, self.greatest_multiplier());
+        let mut error = 0.0f64;
         for (index, member) in program.members.iter().enumerate() {
             let slacks = self.state.true_slacks(program, index);
             let mut flow = program.jump(member, &self.state.q);
             for (row, normal) in program.cones[member.cone].normals.iter().enumerate() {
                 let z = self.state.multipliers[index][row];
                 (0..3).for_each(|k| flow[k] += z * normal[k]);
-                let carries = &mut self.carrying[index][row];
-                let wrong = if *carries { -z / scale } else { -slacks[row] };
-                if *carries {
-                    error = error.max(slacks[row].abs());
-                }
-                error = error.max(wrong);
-                if single {
-                    if wrong > worst.0 {
-                        worst = (wrong, index, row);
-                    }
-                } else if wrong > SETTINGS.rounding {
-                    *carries = !*carries;
-                    changed = true;
-                }
+                error = error.max(match self.carrying[index][row] {
+                    true => slacks[row].abs().max(-z / scale),
+                    false => -slacks[row],
+                });
             }
             error = flow.iter().fold(error, |m, v| m.max(v.abs() / scale));
-        }
-        if worst.0 > SETTINGS.rounding {
-            let carries = &mut self.carrying[worst.1][worst.2];
-            *carries = !*carries;
-            changed = true;
         }
         let residual = imbalance(program, &self.state.x, self.state.theta);
         error = residual.iter().fold(error, |m, r| m.max(r.abs()));
         if let Some(cap) = program.cap {
-            let wrong = if self.capped { -self.state.cap[1] } else { self.state.theta - cap };
-            error = error.max(wrong);
-            if wrong > SETTINGS.rounding {
-                self.capped = !self.capped;
-                changed = true;
-            }
+            error = error.max(if self.capped { -self.state.cap[1] } else { self.state.theta - cap });
         }
         let all = self.state.x.iter().flatten().chain(&self.state.q).chain(self.state.multipliers.iter().flatten());
         let finite = self.state.theta.is_finite() && all.copied().all(f64::is_finite);
-        (if finite { error } else { f64::INFINITY }, changed)
+        if finite { error } else { f64::INFINITY }
     }
 
     fn greatest_multiplier(&self) -> f64 {

@@ -1,7 +1,6 @@
 //! The first, approximate solution with Clarabel.
 
 use super::system::System;
-use crate::limit::settings::SETTINGS;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 
@@ -28,25 +27,12 @@ pub enum Word {
     Other(String, u64),
 }
 
-/// Solves a system. If blocks are far from the loads, planes replace them, unless θ has no bound then.
-pub fn solve(system: &System) -> Word {
-    match solve_with(system, SETTINGS.flat) {
-        Word::Pair(pair, iterations) => Word::Pair(pair, iterations),
-        other if system.blocks.iter().all(|block| block.strength.total < SETTINGS.flat) => other,
-        _ => solve_with(system, f64::INFINITY),
-    }
-}
-
 /// A system in the solver's form: A x + s = b, s in a product of cones.
 struct Conic {
     a: CscMatrix<f64>,
     b: Vec<f64>,
     sets: Vec<SupportedConeT<f64>>,
-    /// Blocks represented by planes, in the rows after the linear ones.
-    planes: Vec<usize>,
-    /// Blocks represented by cones, three rows each.
-    cones: Vec<usize>,
-    /// First row of the cones.
+    /// First row of the cones of stress blocks, three rows each.
     first_cone: usize,
 }
 
@@ -56,11 +42,9 @@ fn balance(total: f64) -> f64 {
 }
 
 impl Conic {
-    fn new(system: &System, flat: f64) -> Self {
+    fn new(system: &System) -> Self {
         let e = system.equations.len();
-        let (planes, cones): (Vec<usize>, Vec<usize>) =
-            (0..system.blocks.len()).partition(|&k| system.blocks[k].strength.total >= flat);
-        let first_cone = e + system.rows.len() + planes.len();
+        let first_cone = e + system.rows.len();
         let (mut rows, mut columns, mut values) = (Vec::new(), Vec::new(), Vec::new());
         let mut push = |i: usize, j: usize, v: f64| {
             rows.push(i);
@@ -71,13 +55,7 @@ impl Conic {
             row.iter().for_each(|&(j, v)| push(i, j, v));
         }
         let mut b: Vec<f64> = system.right.iter().chain(&system.bounds).copied().collect();
-        for (i, &k) in planes.iter().enumerate() {
-            let block = &system.blocks[k];
-            push(e + system.rows.len() + i, block.normal[block.end], -2.0);
-            b.push(block.strength.tension);
-        }
-        for (place, &k) in cones.iter().enumerate() {
-            let block = &system.blocks[k];
+        for (place, block) in system.blocks.iter().enumerate() {
             let first = first_cone + 3 * place;
             let (tension, kappa) = (block.strength.tension, balance(block.strength.total));
             let scaled = block.strength.total / kappa;
@@ -89,25 +67,22 @@ impl Conic {
         }
         let a = CscMatrix::new_from_triplets(b.len(), system.variables, rows, columns, values);
         let mut sets = vec![SupportedConeT::ZeroConeT(e), SupportedConeT::NonnegativeConeT(first_cone - e)];
-        sets.extend(cones.iter().map(|_| SupportedConeT::SecondOrderConeT(3)));
-        Conic { a, b, sets, planes, cones, first_cone }
+        sets.extend(system.blocks.iter().map(|_| SupportedConeT::SecondOrderConeT(3)));
+        Conic { a, b, sets, first_cone }
     }
 
     /// Returns the pair of a solution.
     fn pair(&self, system: &System, x: &[f64], z: &[f64]) -> Pair {
         let (e, rows) = (system.equations.len(), system.rows.len());
-        let mut blocks = vec![0.0; system.blocks.len()];
-        self.planes.iter().enumerate().for_each(|(i, &k)| blocks[k] = z[e + rows + i]);
-        for (place, &k) in self.cones.iter().enumerate() {
-            let first = self.first_cone + 3 * place;
-            blocks[k] = balance(system.blocks[k].strength.total) * (z[first] - z[first + 2]);
-        }
+        let blocks = system.blocks.iter().zip(z[self.first_cone..].chunks_exact(3));
+        let blocks = blocks.map(|(block, z)| balance(block.strength.total) * (z[0] - z[2])).collect();
         Pair { x: x.to_vec(), equations: z[..e].to_vec(), rows: z[e..e + rows].to_vec(), blocks }
     }
 }
 
-fn solve_with(system: &System, flat: f64) -> Word {
-    let conic = Conic::new(system, flat);
+/// Solves a system.
+pub fn solve(system: &System) -> Word {
+    let conic = Conic::new(system);
     let p = CscMatrix::<f64>::zeros((system.variables, system.variables));
     let mut q = vec![0.0; system.variables];
     q[system.theta] = -1.0;
