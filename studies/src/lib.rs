@@ -53,7 +53,15 @@ pub mod config {
     pub use voussoir_study::config::source_line::with_source;
 }
 
-/// Checks that plug-ins keep the promises of their cards and traits.
+/// Checks that plug-ins keep the promises of their cards and traits. A law of another crate calls
+/// [`conform`](conformance::conform) in its own test:
+///
+/// ```
+/// use voussoir::conformance::{Options, conform};
+/// use voussoir::core::plugin::{PluginKind, card};
+/// let report = conform(card(PluginKind::InterfaceLaw, "coulomb").unwrap(), &Options::default());
+/// assert!(report.passed(), "{report}");
+/// ```
 pub mod conformance {
     pub use voussoir_verify::conformance::*;
 }

@@ -36,21 +36,6 @@ impl Study {
 
 /// A study that is built step by step. Omitted keys have the defaults of study files. Keys and units are the same as in
 /// study files: `voussoir explain TAG` lists them. [`build`](Self::build) reports all mistakes at once.
-///
-/// ```
-/// use voussoir::prelude::*;
-/// let study = Study::builder("two blocks")
-///     .scene("wall", json!({ "width": 1.0, "brick": [0.4, 0.2], "courses": 2, "bricks": 1, "material": "stone", "joint": "dry" }))
-///     .material("stone", "rigid", json!({ "density": 2000.0 }))
-///     .joint("dry", "coulomb", json!({ "friction": 0.4 }))
-///     .gravity(9.81)
-///     .until_collapse("push", json!([{ "kind": "body", "acceleration": [9.81, 0.0] }]))
-///     .sweep("joints.dry.friction", &[0.4, 0.5])
-///     .build()?;
-/// let factors: Vec<_> = study.run().cases.iter().filter_map(|case| case.load_factor).collect();
-/// assert!((factors[0] - 0.4).abs() < 1e-9 && (factors[1] - 0.5).abs() < 1e-9);
-/// # Ok::<(), StudyError>(())
-/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct StudyBuilder {
     study: Map<String, Json>,

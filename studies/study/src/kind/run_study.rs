@@ -29,23 +29,6 @@ impl Study {
     }
 
     /// Solves the requested cases; ids that the study does not have are ignored.
-    ///
-    /// ```
-    /// use voussoir::prelude::*;
-    /// # let study = Study::builder("block")
-    /// #     .scene("wall", json!({ "width": 1.0, "brick": [0.4, 0.2], "courses": 1, "bricks": 1, "material": "stone", "joint": "dry" }))
-    /// #     .material("stone", "rigid", json!({ "density": 2000.0 }))
-    /// #     .joint("dry", "coulomb", json!({ "friction": 0.4 }))
-    /// #     .gravity(9.81)
-    /// #     .until_collapse("push", json!([{ "kind": "body", "acceleration": [9.81, 0.0] }]))
-    /// #     .sweep("joints.dry.friction", &[0.3, 0.4, 0.5])
-    /// #     .build()?;
-    /// // Stops after the first answer.
-    /// let watch = Watch::new(|event| !matches!(event, RunEvent::Answered(_)));
-    /// let results = study.run_with(&RunOptions { observer: &watch, ..RunOptions::default() });
-    /// assert_eq!(results.cases.len(), 1);
-    /// # Ok::<(), StudyError>(())
-    /// ```
     pub fn run_with(&self, options: &RunOptions) -> StudyResults {
         let known = |id: &usize| *id < self.count();
         let mut wanted: Vec<usize> = match options.cases {

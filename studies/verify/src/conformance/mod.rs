@@ -1,14 +1,7 @@
 //! Conformance: checks that a law keeps the promises of its trait and its card, without knowledge of the law.
 //!
 //! [`conform`] takes a card, walks through its samples and reports every check with its number of repetitions and its
-//! findings; `voussoir conform TAG` prints the report. A law of another crate calls it in its own test:
-//!
-//! ```
-//! use voussoir::conformance::{Options, conform};
-//! use voussoir::core::plugin::{PluginKind, card};
-//! let report = conform(card(PluginKind::InterfaceLaw, "coulomb").unwrap(), &Options::default());
-//! assert!(report.passed(), "{report}");
-//! ```
+//! findings; `voussoir conform TAG` prints the report. A law of another crate calls it in its own test.
 //!
 //! The page `docs/reference/conformance.md` lists the checks by name. Generic checks cannot find a memory that is missing in
 //! a consistent way. Therefore each law that answers at a point has a [known path](voussoir_core::plugin::KnownPath).
