@@ -1,7 +1,9 @@
 //! A step along a piece, which ends at the first event if there is one in it.
 //!
 //! The values and rates of monitors are known at both ends of a step. A monitor that is negative at the end has a root
-//! in the step. The root is bracketed, and located by the roots of Hermite cubics to the tolerance of the monitor.
+//! in the step. A monitor that is positive at both ends may have two roots if its Hermite cubic is negative between
+//! them; the step then ends there. A root is bracketed, and located by the roots of cubics to the tolerance of the
+//! monitor.
 
 use super::corrector::correct;
 use super::monitors::Reading;
@@ -154,7 +156,7 @@ impl Step<'_, '_> {
 }
 
 /// Returns the change from one state to another.
-fn chord(from: &State, to: &State) -> Tangent {
+pub(super) fn chord(from: &State, to: &State) -> Tangent {
     let pairs = |a: &[[f64; 2]], b: &[[f64; 2]]| a.iter().zip(b).map(|(a, b)| [a[0] - b[0], a[1] - b[1]]).collect();
     Tangent {
         force: pairs(&to.force, &from.force),
@@ -190,12 +192,18 @@ pub(super) fn advance(
         return Advance::Target(end);
     }
     let Some(high) = step.trial(&low.end, length) else { return Advance::Failed };
-    if high.readings.iter().any(Reading::is_violated) {
+    let violated = |trial: &Trial| trial.readings.iter().any(Reading::is_violated);
+    if violated(&high) {
         return locate(&mut step, low, high);
     }
-    match length == of_branch {
-        true => at_branch_end(&mut step, low, high),
-        false => Advance::Whole(high.end),
+    match hidden_root(&low, &high, step.watched.sense.is_some()) {
+        Some(share) => match step.trial(&low.end, share * length) {
+            Some(middle) if violated(&middle) => locate(&mut step, low, middle),
+            Some(middle) => Advance::Whole(middle.end),
+            None => Advance::Failed,
+        },
+        None if length == of_branch => at_branch_end(&mut step, low, high),
+        None => Advance::Whole(high.end),
     }
 }
 
@@ -331,6 +339,39 @@ fn cubic_root(of: [f64; 4]) -> Option<f64> {
         if cubic(of, middle) < 0.0 { high = middle } else { low = middle }
     }
     Some(0.5 * (low + high))
+}
+
+/// Returns the share of a step at which a monitor positive at both ends may be negative, or a `watched` factor turn.
+fn hidden_root(low: &Trial, high: &Trial, watched: bool) -> Option<f64> {
+    let width = high.end.length;
+    let hidden = |(a, b): (&Reading, &Reading)| {
+        let (da, db) = (a.rate?, b.rate?);
+        let of = [a.value, da * width, b.value, db * width];
+        // Only a monitor that turns inside the step has its minimum there.
+        if a.value <= a.tolerance || da >= 0.0 || db <= 0.0 {
+            return None;
+        }
+        let below = (1..SAMPLES).any(|k| cubic(of, k as f64 / SAMPLES as f64) < -a.tolerance);
+        below.then(|| cubic_root(of)).flatten()
+    };
+    let monitors = low.readings.iter().zip(&high.readings).filter_map(hidden);
+    let turn = if watched { hidden_turn(low, high) } else { None };
+    monitors.chain(turn).reduce(f64::min)
+}
+
+/// Returns the share of a step at which the factor may turn if it has the same sense at both ends.
+fn hidden_turn(low: &Trial, high: &Trial) -> Option<f64> {
+    let width = high.end.length;
+    let [da, db] = [low, high].map(|trial| trial.end.rate.factor * width);
+    if da * db <= 0.0 {
+        return None;
+    }
+    let gained = high.end.state.factor - low.end.state.factor;
+    // The derivative of the cubic of the factor, in the sense at the ends.
+    let slope = |x: f64| {
+        (6.0 * gained * x * (1.0 - x) + da * (1.0 - x) * (1.0 - 3.0 * x) + db * x * (3.0 * x - 2.0)) * da.signum()
+    };
+    (1..SAMPLES).map(|k| k as f64 / SAMPLES as f64).find(|x| slope(*x) < 0.0)
 }
 
 #[cfg(test)]

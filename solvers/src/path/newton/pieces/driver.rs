@@ -1,8 +1,9 @@
 //! Follows pieces from the start of a load step to its end.
 
-use super::advance::{Advance, StepEnd, Watched, advance, state_at};
+use super::advance::{Advance, StepEnd, Watched, advance, chord, state_at};
 use super::begin::begin;
 use super::corner::corner;
+use super::corrector::correct;
 use super::end::end_of_range;
 use super::loading_set::{LoadingRate, bond_rate, loading_rate};
 use super::monitors::{Monitor, What};
@@ -13,6 +14,7 @@ use super::ray::ray;
 use super::switch::{NextPiece, after_event, is_admissible};
 use crate::contact::mode::ContactMode;
 use crate::linear::inner;
+use crate::path::newton::model::control::Control;
 use crate::path::newton::model::state::{State, Tangent, moved};
 use crate::path::newton::quantities::ahead::{facing_ahead, length_ahead};
 use crate::path::newton::quantities::events::events;
@@ -363,7 +365,12 @@ impl<'d> Run<'d> {
     }
 
     /// Accepts the state at the target.
-    fn arrive(&mut self, tracer: &mut Tracer, end: StepEnd) -> Option<LoadStepEnding> {
+    fn arrive(&mut self, tracer: &mut Tracer, mut end: StepEnd) -> Option<LoadStepEnding> {
+        let control = Control::Factor(self.range.target);
+        let start = tracer.state.clone();
+        if let Some(state) = correct(&mut tracer.system, &start, end.state.clone(), &control) {
+            end.state = state;
+        }
         match self.take(tracer, end) {
             Ok(()) => Some(LoadStepEnding::Reached),
             Err(ending) => ending,
@@ -374,10 +381,15 @@ impl<'d> Run<'d> {
     fn turn(&mut self, tracer: &mut Tracer, end: StepEnd) -> Option<LoadStepEnding> {
         let was = self.rises;
         let length = end.length;
+        // At the turn other rates may be singular too, such as the tilt of a softening block; the chord is not.
+        let chord = (length > SETTINGS.distinct() * self.length.first).then(|| chord(&tracer.state, &end.state));
         if let Err(ending) = self.take(tracer, end) {
             return ending;
         }
         self.length.next = self.length.next.max(length);
+        if let Some(piece) = chord.and_then(|chord| self.piece.turned(&tracer.system, &chord)) {
+            self.piece = piece;
+        }
         // Beyond the turn the rate has the opposite sense; at the turn it is rounding.
         self.rises = !was;
         let slope = SETTINGS.rounding * tracer.system.units().factor;
@@ -484,8 +496,11 @@ impl<'d> Run<'d> {
         let (mut low, mut high) = (0.0, end.length);
         let mut found = None;
         while high - low > SETTINGS.admissible * end.length {
-            let middle = 0.5 * (low + high);
-            let Some(state) = state_at(&mut tracer.system, start, &self.piece, middle) else { break };
+            // At the bifurcation itself the equations are singular.
+            let looked = [0.5, 0.4, 0.6].map(|share| low + share * (high - low)).into_iter().find_map(|length| {
+                state_at(&mut tracer.system, start, &self.piece, length).map(|state| (length, state))
+            });
+            let Some((middle, state)) = looked else { break };
             match instability(&mut tracer.system, &state.state) {
                 Some(here) => (work, high, found) = (here, middle, Some(state)),
                 None => low = middle,
@@ -675,8 +690,16 @@ impl<'d> Run<'d> {
             > SETTINGS.rounding * tracer.system.units().factor * motion_size(&tracer.system, rate)
     }
 
-    /// Returns the ending at a mechanism under a constant load.
+    /// Returns the ending at a mechanism under a constant load. Limit points since which the load has been constant are
+    /// the same one: the load of a sliding block changes slightly if contact points reach a corner.
     fn end_at_plateau(&mut self, tracer: &mut Tracer, found: Plateau) -> LoadStepEnding {
+        let (load_step, factor) = (tracer.in_force.load_step, tracer.state.factor);
+        let same = |other: f64| (other - factor).abs() <= SETTINGS.distinct() * factor.abs();
+        let own = |peak: &ProvenPeak| peak.load_step == load_step && same(peak.factor) && same(peak.lowest);
+        while tracer.limit.proven_peaks.last().is_some_and(own) {
+            tracer.limit.proven_peaks.pop();
+        }
+        tracer.limit.peak.take_if(|peak| same(peak.factor));
         note_peak(tracer, Some(&self.piece.tangent), self.range.direction);
         if let Some(why) = found.unproved {
             tracer.limit.unproven = Some(why);

@@ -25,6 +25,7 @@ pub fn commit(tracer: &mut Tracer, mut next: State) -> bool {
         );
         return false;
     }
+    tracer.system.drop_rounding(&mut next);
     // A point that closes beyond its face has no contact: the path ends at the state before.
     if let Some((apart, why)) = left_its_pairing(tracer, &next, SETTINGS.admissible) {
         end_at_lost_joint(tracer, apart, None, why);
