@@ -129,7 +129,7 @@ pub const DERIVATIVE: Tolerance = row(
     "`left` and `right` of `sensitivities`",
     [Some(1e-6), Some(1e-6), Some(1e-6)],
     "the number itself",
-    "differences of data over a step of 1e-6",
+    "differences of data over a relative step of 1e-5",
 );
 /// Zones of thrust.
 pub const ZONE: Tolerance = row(
