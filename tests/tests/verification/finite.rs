@@ -622,3 +622,47 @@ settlement = [
         assert!(off < 1e-12, "block {block}: {x} {y} {theta}, exactly {exact:?}");
     }
 }
+
+/// An elastic block that is pushed over a rough floor slides at μ times its weight, to rounding, and both limit points are that load:
+/// it moves on under a constant load.
+#[test]
+fn an_elastic_block_slides_at_its_friction() {
+    for friction in [0.1, 0.3, 0.45] {
+        let text = format!(
+            r#"name = "block"
+[scene]
+scene = "blocks"
+material = "stone"
+joint = "dry"
+width = 1.0
+mesh = {{ elements = [1, 1], order = 2 }}
+blocks = [
+ {{ name = "ground", vertices = [[-2.0, -0.3], [3.0, -0.3], [3.0, 0.0], [-2.0, 0.0]], fixed = true }},
+ {{ name = "a", vertices = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.5], [0.0, 0.5]] }},
+]
+[materials.stone]
+law = "elastic"
+young_modulus = 5e9
+poisson_ratio = 0.2
+density = 2000.0
+[joints.dry]
+law = "coulomb"
+friction = {friction}
+[[stages]]
+name = "dead"
+gravity = 9.81
+[[stages]]
+name = "live"
+until = "collapse"
+loads = [{{ kind = "body", acceleration = [9.81, 0.0] }}]
+[solver]
+solver = "newton_path"
+kinematics = "finite"
+"#
+        );
+        let result = answered(&text);
+        assert_eq!(result.status, Status::Collapse, "{:?}", result.notes);
+        assert_close(result.load_factor.expect("a load"), friction, 1e-12);
+        assert_close(result.path.first_limit_point.expect("a limit point"), friction, 1e-12);
+    }
+}
