@@ -22,6 +22,9 @@ const UNCHANGED: f64 = 1e-9;
 /// Relative difference up to which the dissipation of a law is that of plastic flow, σ · Δε^p.
 const PLASTIC_WORK: f64 = 1e-9;
 
+/// Rounding of an inelastic strain, which is the difference of two strains, relative to the greatest of them.
+const STRAIN_ROUNDING: f64 = 1e-14;
+
 /// Step of the differences of a dissipation, relative to the greatest strain.
 const DIFFERENCE: f64 = 1e-6;
 
@@ -93,7 +96,8 @@ impl InelasticBody {
     }
 
     /// Returns ∂(dissipated energy)/∂(ε_xx, ε_yy, γ_xy) of a point \[Pa\]. Plastic flow dissipates σ · Δε^p, whose derivative
-    /// follows from the tangent. The dissipation of other laws is differentiated by central differences.
+    /// follows from the tangent. The dissipation of other laws is differentiated by differences, on one side if the step would be
+    /// elastic on the other.
     fn dissipation_slope(
         &self,
         point: &PlanarPoint,
@@ -107,7 +111,9 @@ impl InelasticBody {
         let step = [0, 1, 2, 3].map(|i| total[i] - elastic[i] - before[i]);
         let terms = [0, 1, 2, 3].map(|i| stress[i] * step[i]);
         let size = terms.iter().map(|term| term.abs()).sum::<f64>().max(point.dissipated.abs());
-        if (terms.iter().sum::<f64>() - point.dissipated).abs() <= PLASTIC_WORK * size {
+        let [largest, force] = [total, stress].map(|all| all.iter().fold(0.0_f64, |a, x| a.max(x.abs())));
+        let rounding = STRAIN_ROUNDING * largest * force;
+        if (terms.iter().sum::<f64>() - point.dissipated).abs() <= PLASTIC_WORK * size + rounding {
             return Ok([0, 1, 2].map(|j| {
                 let t = [point.tangent[0][j], point.tangent[1][j], point.tangent_across[j], point.tangent[2][j]];
                 let elastic = self.elastic_strain(t);
@@ -115,18 +121,24 @@ impl InelasticBody {
                 (0..4).map(|i| t[i] * step[i] + stress[i] * (unit[i] - elastic[i])).sum()
             }));
         }
-        let width = DIFFERENCE * strain.iter().fold(point.strain_across.abs(), |a, e| a.max(e.abs()));
+        let width = DIFFERENCE * largest;
         let (context, size) = (self.context(element), self.state_size());
         let (old, mut new) = (&start.history[index * size..(index + 1) * size], vec![0.0; size]);
         let mut at = |j: usize, by: f64| {
             let mut moved = *strain;
             moved[j] += by;
             let found = self.update.update_point(&moved, &context, old, &mut new);
-            found.map(|found| found.dissipated).map_err(|why| format!("a stress update beside a state failed: {why}"))
+            let found = found.map_err(|why| format!("a stress update beside a state failed: {why}"))?;
+            Ok::<_, String>((!found.branch.is_elastic()).then_some(found.dissipated))
         };
         let mut slope = [0.0; 3];
         for (j, slope) in slope.iter_mut().enumerate() {
-            *slope = (at(j, width)? - at(j, -width)?) / (2.0 * width);
+            *slope = match (at(j, width)?, at(j, -width)?) {
+                (Some(ahead), Some(behind)) => (ahead - behind) / (2.0 * width),
+                (Some(ahead), None) => (ahead - point.dissipated) / width,
+                (None, Some(behind)) => (point.dissipated - behind) / width,
+                (None, None) => 0.0,
+            };
         }
         Ok(slope)
     }
