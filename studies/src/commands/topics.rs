@@ -189,7 +189,7 @@ mod tests {
     /// Words of the glossary and documented vehicles are explained, and they are suggested for similar words.
     #[test]
     fn glossary_and_vehicles_are_known() {
-        assert!(explain("extrados").contains("inner and outer line"), "{}", explain("extrados"));
+        assert!(explain("extrados").contains("the inner and the outer line"), "{}", explain("extrados"));
         assert!(explain("cs454_single").contains("axles = ["));
         let words = words();
         for (wrong, right) in [("extradso", "extrados"), ("cs454_singel", "cs454_single"), ("redundnats", "redundants")]
