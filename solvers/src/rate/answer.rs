@@ -17,8 +17,8 @@
 use super::arrival::Arrival;
 use super::choice::choose;
 use super::counts::{Algorithm, RateCounts};
-use super::lcp::{pivoted_rate, rate_lcp};
-use super::neighbours::{add, neighbours};
+use super::lcp::{associated_modes, pivoted_rate, rate_lcp};
+use super::neighbours::{add, neighbours, rising_from};
 use super::order::Ordered;
 use super::problem::{Rate, RateProblem};
 use super::proof::NoRate;
@@ -216,7 +216,13 @@ impl Inquiry<'_> {
     /// Searches for rates with λ rising; returns a proof if no such rate exists. With `few` combinations the search is complete,
     /// since the rate that another algorithm finds may not be the only one. Otherwise the first rate is kept.
     fn rising(&mut self, few: bool) -> (Option<NoRate>, Algorithm) {
-        let (rate, proof) = pivoted_rate(self.problem, &mut self.counts.trials).unzip();
+        let trials = &mut self.counts.trials;
+        let modes = if few || self.monotone { None } else { associated_modes(self.problem, trials) };
+        if let Some(rate) = modes.and_then(|modes| rising_from(self.problem, modes, trials)) {
+            self.keep(vec![rate]);
+            return (None, Algorithm::Pivoting);
+        }
+        let (rate, proof) = pivoted_rate(self.problem, trials).unzip();
         let (rises, proof) = (rate.as_ref().is_some_and(|rate| rate.factor > 0.0), proof.flatten());
         self.keep(rate.into_iter().collect());
         if proof.is_some() || (rises && (self.monotone || !few)) {

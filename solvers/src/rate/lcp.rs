@@ -158,6 +158,14 @@ pub fn pivoted_rate(problem: &RateProblem, trials: &mut u64) -> Option<(Rate, Op
     problem.admits(&rate).then_some((rate, proof))
 }
 
+/// Modes of the rate with associated flow and λ̇ = 1, by Lemke's pivoting. Its forces are unique, and symmetric if
+/// the structure is. `None` if pivoting finds no such rate.
+pub fn associated_modes(problem: &RateProblem, trials: &mut u64) -> Option<Vec<ContactMode>> {
+    let lcp = rate_lcp(problem, true).filter(|lcp| lcp.facets.len() <= MOST)?;
+    let LemkeResult::Solution(z) = lemke(&lcp.lcp, trials) else { return None };
+    Some(modes_of_solution(problem, &lcp, &z))
+}
+
 /// Returns the modes of multipliers that solve the problem.
 pub fn modes_of_solution(problem: &RateProblem, lcp: &RateLcp, z: &[f64]) -> Vec<ContactMode> {
     let most = z.iter().copied().fold(1e-300, f64::max);

@@ -111,3 +111,10 @@ pub fn settled(
     }
     None
 }
+
+/// A rate with λ̇ = 1 by the active set from some modes. `None` if it finds none.
+pub fn rising_from(problem: &RateProblem, modes: Vec<ContactMode>, trials: &mut u64) -> Option<Rate> {
+    let free = vec![false; modes.len()];
+    let rate = settled(problem, modes, &free, 1.0, trials)?;
+    (rate.factor > 0.0 && problem.admits(&rate)).then_some(rate)
+}

@@ -333,12 +333,24 @@ impl Search<'_> {
         let found = if feasible { self.rate_of_cell(&modes) } else { None };
         match found {
             Some(rate) => add(&mut self.rates, rate),
+            None if !feasible && self.only_rests(&modes) => {}
             None => self.doubtful = true,
         }
         if self.leaves >= self.enough && !self.rates.is_empty() {
             return Err("the search ended with a rate".into());
         }
         Ok((ModeTree::Rate(modes), (0..self.choices.len()).collect()))
+    }
+
+    /// True if the equations of modes with λ̇ = 0 have the solution zero only.
+    fn only_rests(&self, modes: &[PointMode]) -> bool {
+        let known = |(point, mode): (&ActivePoint, &PointMode)| match mode {
+            PointMode::Vertex if !point.apex => None,
+            mode => Some(contact_mode(point, *mode, [0.0; 2])),
+        };
+        let modes: Option<Vec<ContactMode>> = self.problem.points.iter().zip(modes).map(known).collect();
+        let attempt = modes.and_then(|modes| self.problem.attempt(&modes, 0.0));
+        self.program.factor == 0.0 && attempt.is_some_and(|attempt| !attempt.singular)
     }
 
     fn rate_of_cell(&self, modes: &[PointMode]) -> Option<Rate> {

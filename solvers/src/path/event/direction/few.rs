@@ -4,7 +4,7 @@ use super::continued::{Continued, Next};
 use crate::contact::mode::ContactMode;
 use crate::path::event::piece::factorisation::{FactorisedModes, REFINEMENTS};
 use crate::path::event::piece::point::Point;
-use crate::path::event::piece::rates::{Rates, direction_of, leaving, residual};
+use crate::path::event::piece::rates::{Rates, direction_of, leaving, motion_alone, residual};
 use crate::path::event::piece::schur::SchurComplement;
 use crate::path::event::trace::{Log, Trace};
 use crate::path::system::{Load, System};
@@ -35,19 +35,29 @@ pub fn by_active_set(trace: &mut Trace, load: &Load, active: &[usize]) -> Contin
         ))
         .into();
     }
-    // The matrix with closed points of the active set is best conditioned; with flowing points it is nearly singular
-    // close to a collapse.
-    let closed = |p: &Point| p.settled().unwrap_or(ContactMode::Stick);
-    if !trace.factorise(trace.state.points.iter().map(closed).collect(), true) {
-        return Next::Lost(
-            "the system is singular with the contact points of the active set closed: a block is held by nothing"
-                .into(),
-        )
-        .into();
+    // First with the present factorisation, then with a new one.
+    for fresh in [false, true] {
+        // The matrix with closed points of the active set is best conditioned; with flowing points it is nearly
+        // singular close to a collapse.
+        let stale = trace.factors.present.as_ref().is_none_or(|factors| {
+            // The results depend on the responses themselves.
+            !factors.refine_columns
+                || factors.responses() > UPDATES.max(2 * active.len())
+                || active.iter().any(|c| factors.modes[*c] != ContactMode::Stick)
+        });
+        let closed = |p: &Point| p.settled().unwrap_or(ContactMode::Stick);
+        if (fresh || stale) && !trace.factorise(trace.state.points.iter().map(closed).collect(), true) {
+            return Next::Lost(
+                "the system is singular with the contact points of the active set closed: a block is held by nothing"
+                    .into(),
+            )
+            .into();
+        }
+        if let Some(next) = by_rate_problem(trace, load, active) {
+            return next;
+        }
     }
-    by_rate_problem(trace, load, active).unwrap_or_else(|| {
-        Next::Lost("the stiffness of the contact points of the active set could not be found".into()).into()
-    })
+    Next::Lost("the stiffness of the contact points of the active set could not be found".into()).into()
 }
 
 /// Factorises again if the present factorisation cannot be used with the `open` points free in these modes.
@@ -155,6 +165,7 @@ fn by_newcomers(trace: &mut Trace, load: &Load, active: &[usize], open: &[usize]
     }
     let moved = leaving((system, &state.points), (&rates, load), active, &modes)?;
     if moved.is_empty() {
+        let rates = solved_anew(trace, rates, load, &modes);
         let believed = rates.worst <= trace.believed();
         return believed.then(|| {
             let direction = trace.take(modes, rates, load);
@@ -206,12 +217,16 @@ fn by_rate_problem(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<C
     let rate = favoured_twin(&local, base, (problem, at, state.factor), rate, twins, log)?;
     let rates = rates_of(&local, base, at, &rate, (active, &mut modes))?;
     log.counts.solves += rates.refinements;
+    let mut rates = solved_anew(trace, rates, load, &modes);
     if rates.factor != 0.0 && rates.worst > SETTINGS.distinct() {
-        let why = format!(
-            "the rates at λ = {:.9} leave {:.1e} of their equations: the system is singular to rounding",
-            state.factor, rates.worst
-        );
-        return Some(Next::Lost(why).into());
+        let Some(motion) = motion_alone((&trace.system, &trace.state.points), &rates, load, active, &modes) else {
+            let why = format!(
+                "the rates at λ = {:.9} leave {:.1e} of their equations: the system is singular to rounding",
+                trace.state.factor, rates.worst
+            );
+            return Some(Next::Lost(why).into());
+        };
+        rates = motion;
     }
     active.iter().zip(&rate.modes).for_each(|(c, mode)| trace.state.points[*c].mode = *mode);
     let direction = direction_of(&trace.system, &mut trace.state.points, rates, load);
@@ -284,5 +299,27 @@ fn refined(
         }
     }
     rates.worst = worst;
+    rates
+}
+
+/// Solves the direction again with all modes in the factorisation, if refinement leaves residuals.
+fn solved_anew(trace: &mut Trace, rates: Rates, load: &Load, modes: &[ContactMode]) -> Rates {
+    if rates.factor == 0.0 || rates.worst <= SETTINGS.residual() {
+        return rates;
+    }
+    trace.log.counts.factorisations += 1;
+    let system = &trace.system;
+    let Some(mut base) = FactorisedModes::new(system, modes.to_vec(), trace.factors.refine_columns) else {
+        return rates;
+    };
+    let Some(direct) = base.load_rate(system, trace.state.load_step, load) else { return rates };
+    let x: Vec<f64> = direct.iter().map(|v| v * rates.factor).collect();
+    // If the matrix is singular, the sign of its solution is rounding.
+    let along: f64 = x.iter().zip(&rates.x).map(|(a, b)| a * b).sum();
+    let direct = Rates::new(system, x, rates.factor, load);
+    if along > 0.0 && residual(system, &direct, load, modes).0 < rates.worst {
+        trace.factors.present = Some(base);
+        return direct;
+    }
     rates
 }

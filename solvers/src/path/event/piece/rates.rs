@@ -109,6 +109,43 @@ pub fn residual(system: &System, rates: &Rates, load: &Load, modes: &[ContactMod
     (worst, left)
 }
 
+/// Returns the motion without forces of rates whose system is singular to rounding, in the sense in which it keeps its
+/// modes. `None` if forces are not small compared with the motion, or if the motion violates its modes.
+pub fn motion_alone(
+    (system, points): (&System, &[Point]),
+    rates: &Rates,
+    load: &Load,
+    active: &[usize],
+    modes: &[ContactMode],
+) -> Option<Rates> {
+    let forces = 2 * system.contacts;
+    let size = largest(&rates.x[forces..]);
+    if largest(&rates.x[..forces]) > SETTINGS.distinct() * size {
+        return None;
+    }
+    [1.0, -1.0].into_iter().find_map(|sense| {
+        let x = rates.x.iter().enumerate().map(|(i, v)| if i < forces { 0.0 } else { sense * v / size });
+        let motion = Rates::new(system, x.collect(), 0.0, load);
+        let moved = leaving((system, points), (&motion, load), active, modes);
+        let fits = moved.is_some_and(|moved| moved.iter().all(|m| m.0 <= SETTINGS.distinct()));
+        (fits && residual(system, &motion, load, modes).0 <= SETTINGS.distinct()).then_some(motion)
+    })
+}
+
+/// Returns rates with a moving support and zero forces. `None` if the forces are more than rounding, because the motion
+/// alone violates the modes or a load grows too.
+fn at_constant_forces((system, points): (&System, &[Point]), (x, factor): (&[f64], f64), load: &Load) -> Option<Rates> {
+    let forces = 2 * system.contacts;
+    let loaded = load.wrench.iter().flatten().any(|w| *w != 0.0);
+    if loaded || largest(&x[..forces]) > SETTINGS.active * largest(&x[forces..]).max(factor.abs() * load.size) {
+        return None;
+    }
+    let motion = x.iter().enumerate().map(|(i, v)| if i < forces { 0.0 } else { *v });
+    let moved = Rates::new(system, motion.collect(), factor, load);
+    let modes: Vec<ContactMode> = points.iter().map(|p| p.settled().unwrap_or(p.mode)).collect();
+    (residual(system, &moved, load, &modes).0 <= SETTINGS.shift()).then_some(moved)
+}
+
 /// Returns the direction of rates and sets the modes of points without a choice; gaps of stuck points are made exact.
 pub fn direction_of(system: &System, points: &mut [Point], rates: Rates, load: &Load) -> Direction {
     let Rates { mut x, mut gaps, mut factor, .. } = rates;
@@ -117,8 +154,11 @@ pub fn direction_of(system: &System, points: &mut [Point], rates: Rates, load: &
     let stiffest = points.iter().map(|p| p.stiffness).fold(1.0, f64::max);
     let still = if factor == 0.0 { 100.0 * SETTINGS.active * stiffest } else { SETTINGS.active };
     let motions = largest(&x[forces..]);
-    let settles = load.settles && factor != 0.0 && motions * SETTINGS.active <= factor.abs() * load.size;
-    if !settles && largest(&x[..forces]) < still * motions {
+    if load.settles && factor != 0.0 && motions * SETTINGS.active <= factor.abs() * load.size {
+        if let Some(moved) = at_constant_forces((system, points), (&x, factor), load) {
+            (x, gaps) = (moved.x, moved.gaps);
+        }
+    } else if largest(&x[..forces]) < still * motions {
         factor = 0.0;
         x[..forces].fill(0.0);
         let still = Rates::new(system, x, factor, load);
