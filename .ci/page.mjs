@@ -127,10 +127,10 @@ for (const [name, width, dark] of [['rise', 1100, false], ['rise', 400, true], [
 }
 // The page's script moves blocks as displaced.rs does.
 const studies = process.argv[3];
-const script = readFileSync(`${studies}/src/writers/page/draw.js`, 'utf8');
+const script = readFileSync(`${studies}/report/src/writers/page/draw.js`, 'utf8');
 const { carried, twists } = new Function('document', `${script}; return { carried, twists };`)({ getElementById: () => null });
 {
-  const table = JSON.parse(readFileSync(`${studies}/src/figures/placements.json`, 'utf8'));
+  const table = JSON.parse(readFileSync(`${studies}/report/src/figures/placements.json`, 'utf8'));
   const off = table.map(([centre, twist, point, place]) => { const [x, y] = carried(centre, twist, point); return Math.hypot(x - place[0], y - place[1]); });
   expect(table.length > 20 && Math.max(...off) < 1e-12, `draw.js places points as displaced.rs does, to ${Math.max(...off).toExponential(1)} m in ${table.length} cases`);
 }
