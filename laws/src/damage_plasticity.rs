@@ -1,7 +1,7 @@
 //! `damage_plasticity`: masonry that cracks by damage and crushes by plastic flow; cracks close under compression.
 #![doc = include_str!("damage_plasticity.md")]
 
-use crate::mazars_damage::DamageGrowth;
+use crate::damage::{DamageGrowth, positive_norm, strain_tensor};
 use crate::meridian::state_names;
 use crate::principal::{PrincipalFacet, PrincipalUpdate, in_space, principal};
 use crate::shared::MaterialKeys;
@@ -119,8 +119,7 @@ impl MasonryUpdate {
     /// Returns the tensile part ψ⁺ = ½ λ ⟨tr e⟩² + G Σ⟨e_i⟩² with its derivatives.
     fn tension(&self, elastic: &Voigt) -> Tension {
         let [lambda, shear] = self.lame;
-        let [xx, yy, zz, xy, yz, zx] = *elastic;
-        let (values, axes) = principal(&[xx, yy, zz, 0.5 * xy, 0.5 * yz, 0.5 * zx]);
+        let (values, axes) = principal(&strain_tensor(elastic));
         let trace: f64 = values.iter().sum();
         let (volume, positive) = (trace.max(0.0), values.map(|value| value.max(0.0)));
         let energy = 0.5 * lambda * volume * volume + shear * positive.iter().map(|e| e * e).sum::<f64>();
@@ -145,15 +144,8 @@ impl MasonryUpdate {
 
     /// Returns the equivalent strain √Σ⟨σ̃_i⟩² / E and its derivative by the elastic strain.
     fn equivalent(&self, stress: &Voigt) -> (f64, Voigt) {
-        let (values, axes) = principal(stress);
-        let positive = values.map(|value| value.max(0.0));
-        let size = positive.iter().map(|value| value * value).sum::<f64>().sqrt();
-        if size == 0.0 {
-            return (0.0, [0.0; 6]);
-        }
-        // A derivative by the stress has engineering shears.
-        let by_stress = in_space(&positive.map(|value| value / (size * self.young_modulus)), &axes, 2.0);
-        (size / self.young_modulus, times(&self.stiffness, &by_stress))
+        let (norm, by_stress) = positive_norm(stress, 2.0);
+        (norm / self.young_modulus, times(&self.stiffness, &by_stress.map(|entry| entry / self.young_modulus)))
     }
 }
 
@@ -186,22 +178,16 @@ impl StressUpdate for MasonryUpdate {
         old: &[f64],
         new: &mut [f64],
     ) -> Result<StressPoint, UpdateFailure> {
-        if !strain.iter().chain(old).all(|x| x.is_finite()) {
-            return Err(UpdateFailure::NotFinite);
-        }
-        if context.length > self.largest_length() {
-            return Err(UpdateFailure::LengthTooLarge);
-        }
+        self.growth.check(strain, old, context)?;
         let sound = self.plastic.update_point(strain, context, &old[..KAPPA], &mut new[..KAPPA])?;
         let elastic: Voigt = std::array::from_fn(|i| strain[i] - new[i]);
         let flow: Voigt = std::array::from_fn(|i| new[i] - old[i]);
         let (size, by_strain) = self.equivalent(&sound.stress);
-        let grows = size > old[KAPPA].max(self.growth.onset);
-        new[KAPPA] = if grows { size } else { old[KAPPA] };
-        let [damage, slope] = self.growth.at(new[KAPPA], context.length);
-        let [before, _] = self.growth.at(old[KAPPA], context.length);
+        let step = self.growth.step(size, old[KAPPA], context.length);
+        new[KAPPA] = step.kappa;
+        let damage = step.damage;
         let crushes = !sound.branch.is_elastic();
-        let branch = match (crushes, grows) {
+        let branch = match (crushes, step.grows) {
             (true, true) => BOTH,
             (true, false) => CRUSHING,
             (false, true) => DAMAGE,
@@ -209,10 +195,9 @@ impl StressUpdate for MasonryUpdate {
             (false, false) => return Ok(sound),
         };
         let tension = self.tension(&elastic);
-        let slope = if grows { slope } else { 0.0 };
         let by_elastic: [Voigt; 6] = std::array::from_fn(|i| {
             std::array::from_fn(|j| {
-                self.stiffness[i][j] - damage * tension.stiffness[i][j] - tension.stress[i] * slope * by_strain[j]
+                self.stiffness[i][j] - damage * tension.stiffness[i][j] - tension.stress[i] * step.slope * by_strain[j]
             })
         });
         let stress: Voigt = std::array::from_fn(|i| sound.stress[i] - damage * tension.stress[i]);
@@ -225,7 +210,7 @@ impl StressUpdate for MasonryUpdate {
             tangent,
             branch,
             stored: sound.stored - damage * tension.energy,
-            dissipated: dot(&stress, &flow) + (damage - before) * tension.energy,
+            dissipated: dot(&stress, &flow) + step.growth * tension.energy,
         })
     }
 }

@@ -1,6 +1,7 @@
 //! Interface laws and bulk materials, one file each; file = tag.
 #![forbid(unsafe_code)]
 
+mod damage;
 mod meridian;
 mod principal;
 mod shared;

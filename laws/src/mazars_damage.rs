@@ -1,7 +1,7 @@
 //! `mazars_damage`: a material that loses stiffness by positive principal strains.
 #![doc = include_str!("mazars_damage.md")]
 
-use crate::principal::{in_space, principal};
+use crate::damage::{DamageGrowth, positive_norm, strain_tensor};
 use crate::shared::MaterialKeys;
 use std::sync::Arc;
 use voussoir_core::law::{
@@ -55,52 +55,11 @@ impl BulkMaterial for MazarsDamage {
     }
 }
 
-/// Exponential growth of damage D with the greatest equivalent strain κ. The energy of a crack per area does not depend on the
-/// length of the element.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct DamageGrowth {
-    /// κ₀, at which damage begins.
-    pub onset: f64,
-    /// f_t = E κ₀ \[Pa\].
-    pub strength: f64,
-    /// G_f \[J/m²\].
-    pub energy: f64,
-}
-
-impl DamageGrowth {
-    /// Returns D(κ) and dD/dκ in an element with this length \[m\].
-    pub fn at(&self, kappa: f64, length: f64) -> [f64; 2] {
-        if kappa <= self.onset {
-            return [0.0, 0.0];
-        }
-        let tail = self.energy / (length * self.strength) - 0.5 * self.onset;
-        let intact = self.onset / kappa * (-(kappa - self.onset) / tail).exp();
-        [1.0 - intact, intact * (1.0 / kappa + 1.0 / tail)]
-    }
-
-    /// Returns the greatest length of an element \[m\]: half of the length at which the stress would drop at once.
-    pub fn largest_length(&self) -> f64 {
-        self.energy / (self.strength * self.onset)
-    }
-}
-
 /// The law at a point. State: κ, the greatest equivalent strain so far.
 #[derive(Debug)]
 struct DamageUpdate {
     stiffness: [Voigt; 6],
     growth: DamageGrowth,
-}
-
-/// Returns the equivalent strain √Σ⟨ε_i⟩² and its derivative by the strain.
-fn equivalent(strain: &Voigt) -> (f64, Voigt) {
-    let [xx, yy, zz, xy, yz, zx] = *strain;
-    let (values, axes) = principal(&[xx, yy, zz, 0.5 * xy, 0.5 * yz, 0.5 * zx]);
-    let positive = values.map(|value| value.max(0.0));
-    let size = positive.iter().map(|value| value * value).sum::<f64>().sqrt();
-    if size == 0.0 {
-        return (0.0, [0.0; 6]);
-    }
-    (size, in_space(&positive.map(|value| value / size), &axes, 1.0))
 }
 
 impl StressUpdate for DamageUpdate {
@@ -132,34 +91,27 @@ impl StressUpdate for DamageUpdate {
         old: &[f64],
         new: &mut [f64],
     ) -> Result<StressPoint, UpdateFailure> {
-        if !strain.iter().chain(old).all(|x| x.is_finite()) {
-            return Err(UpdateFailure::NotFinite);
-        }
-        if context.length > self.largest_length() {
-            return Err(UpdateFailure::LengthTooLarge);
-        }
-        let (size, by_strain) = equivalent(strain);
-        let grows = size > old[0].max(self.growth.onset);
-        new[0] = if grows { size } else { old[0] };
-        let [damage, slope] = self.growth.at(new[0], context.length);
-        let [before, _] = self.growth.at(old[0], context.length);
+        self.growth.check(strain, old, context)?;
+        let (size, by_strain) = positive_norm(&strain_tensor(strain), 1.0);
+        let step = self.growth.step(size, old[0], context.length);
+        new[0] = step.kappa;
+        let intact = 1.0 - step.damage;
         let sound: Voigt = std::array::from_fn(|i| (0..6).map(|j| self.stiffness[i][j] * strain[j]).sum());
         let energy = 0.5 * sound.iter().zip(strain).map(|(s, e)| s * e).sum::<f64>();
-        let slope = if grows { slope } else { 0.0 };
         let tangent = std::array::from_fn(|i| {
-            std::array::from_fn(|j| (1.0 - damage) * self.stiffness[i][j] - sound[i] * slope * by_strain[j])
+            std::array::from_fn(|j| intact * self.stiffness[i][j] - sound[i] * step.slope * by_strain[j])
         });
-        let branch = match (grows, damage > 0.0) {
+        let branch = match (step.grows, step.damage > 0.0) {
             (true, _) => DAMAGE,
             (false, true) => UpdateBranch::UNLOADING,
             (false, false) => UpdateBranch::ELASTIC,
         };
         Ok(StressPoint {
-            stress: sound.map(|s| (1.0 - damage) * s),
+            stress: sound.map(|s| intact * s),
             tangent,
             branch,
-            stored: (1.0 - damage) * energy,
-            dissipated: (damage - before) * energy,
+            stored: intact * energy,
+            dissipated: step.growth * energy,
         })
     }
 }

@@ -378,7 +378,6 @@ impl InelasticBody {
         let strains = self.strains_at(displacement);
         let mut new = state.history.clone();
         let points = self.stresses(&strains, &state.history, &mut new)?;
-        let full = |p: &PlanarPoint| [p.stress[0], p.stress[1], p.stress_across, p.stress[2]];
         let mesh = &self.shape.mesh;
         let mut sums = vec![([0.0; 4], 0.0); mesh.nodes.len()];
         let mut element_stress = Vec::with_capacity(mesh.elements.len());
@@ -386,12 +385,13 @@ impl InelasticBody {
         for (index, nodes) in mesh.elements.iter().enumerate() {
             let here = &points[index * per..(index + 1) * per];
             for (node, point) in nodes.iter().zip(here) {
-                (0..4).for_each(|i| sums[*node].0[i] += full(point)[i]);
+                (0..4).for_each(|i| sums[*node].0[i] += point.stress_in_space()[i]);
                 sums[*node].1 += 1.0;
             }
             let weights = &self.strains.operators[index];
             let area: f64 = weights.iter().map(|w| w.1).sum();
-            let mean = |i: usize| here.iter().zip(weights).map(|(p, w)| full(p)[i] * w.1).sum::<f64>() / area;
+            let mean =
+                |i: usize| here.iter().zip(weights).map(|(p, w)| p.stress_in_space()[i] * w.1).sum::<f64>() / area;
             element_stress.push([0, 1, 2, 3].map(mean));
         }
         let local: Vec<Vec2> = displacement.chunks(2).map(|u| Vec2::new(u[0], u[1])).collect();

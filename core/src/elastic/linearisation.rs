@@ -81,12 +81,14 @@ impl InelasticBody {
 
     /// Returns the part of a strain (xx, yy, zz, xy) that is not elastic: as the law defines it, otherwise ε − C⁻¹ σ.
     fn inelastic_strain(&self, point: &PlanarPoint, strain: &[f64; 3], memory: &[f64]) -> [f64; 4] {
-        let total = [strain[0], strain[1], point.strain_across, strain[2]];
-        self.update.inelastic_strain(total, memory).unwrap_or_else(|| {
-            let stress = [point.stress[0], point.stress[1], point.stress_across, point.stress[2]];
-            let elastic = self.elastic_strain(stress);
-            [0, 1, 2, 3].map(|i| total[i] - elastic[i])
-        })
+        let own = self.update.inelastic_strain(point.strain_in_space(strain), memory);
+        own.unwrap_or_else(|| self.beyond_elastic(point, strain))
+    }
+
+    /// Returns ε − C⁻¹ σ (xx, yy, zz, xy) of a point.
+    fn beyond_elastic(&self, point: &PlanarPoint, strain: &[f64; 3]) -> [f64; 4] {
+        let (total, elastic) = (point.strain_in_space(strain), self.elastic_strain(point.stress_in_space()));
+        [0, 1, 2, 3].map(|i| total[i] - elastic[i])
     }
 
     /// Returns the state of the law at a Gauss point.
@@ -105,10 +107,9 @@ impl InelasticBody {
         (element, index): (usize, usize),
         start: &InelasticState,
     ) -> Result<[f64; 3], String> {
-        let stress = [point.stress[0], point.stress[1], point.stress_across, point.stress[2]];
-        let (elastic, total) = (self.elastic_strain(stress), [strain[0], strain[1], point.strain_across, strain[2]]);
-        let before = start.inelastic_strain[index];
-        let step = [0, 1, 2, 3].map(|i| total[i] - elastic[i] - before[i]);
+        let (stress, total) = (point.stress_in_space(), point.strain_in_space(strain));
+        let (now, before) = (self.beyond_elastic(point, strain), start.inelastic_strain[index]);
+        let step = [0, 1, 2, 3].map(|i| now[i] - before[i]);
         let terms = [0, 1, 2, 3].map(|i| stress[i] * step[i]);
         let size = terms.iter().map(|term| term.abs()).sum::<f64>().max(point.dissipated.abs());
         let [largest, force] = [total, stress].map(|all| all.iter().fold(0.0_f64, |a, x| a.max(x.abs())));

@@ -8,7 +8,7 @@ use serde::{Serialize, Serializer};
 pub enum Effect {
     /// Nothing irreversible happens.
     Elastic,
-    /// Nothing irreversible happens; the stiffness is that of a material that was damaged before.
+    /// Nothing irreversible happens. The stiffness is less than at first, because the material was damaged in an earlier step.
     Unloading,
     /// A joint slides.
     Sliding,

@@ -71,6 +71,18 @@ impl PlanarPoint {
     };
 }
 
+impl PlanarPoint {
+    /// Returns σ_xx, σ_yy, σ_zz, σ_xy \[Pa\].
+    pub fn stress_in_space(&self) -> [f64; 4] {
+        [self.stress[0], self.stress[1], self.stress_across, self.stress[2]]
+    }
+
+    /// Returns ε_xx, ε_yy, ε_zz, γ_xy at a strain in the plane.
+    pub fn strain_in_space(&self, strain: &[f64; 3]) -> [f64; 4] {
+        [strain[0], strain[1], self.strain_across, strain[2]]
+    }
+}
+
 /// A law in space that is used in a plane.
 #[derive(Debug, Clone)]
 pub struct PlanarUpdate {

@@ -57,7 +57,7 @@ pub fn plastic_work(start: &State, state: &State) -> f64 {
 fn plastic_work_by_force(system: &StepSystem, state: &State) -> Vec<(usize, Vec<f64>)> {
     let yielding = state.blocks.iter().enumerate().filter_map(|(index, inner)| {
         let (inner, inelastic) = (inner.as_ref()?, system.problem.bodies[index].inelastic.as_ref()?);
-        // A law that fails beside a state where it has answered gives no power; the certificate reports the failure.
+        // If the law fails beside this state, the power counts as 0; the certificate reports the failure.
         let by_force = || inelastic.dissipation_by_force(&inner.linear, &inner.base).ok();
         Some((index, (inner.linear.yielding > 0).then(by_force)??))
     });
