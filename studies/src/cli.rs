@@ -8,15 +8,13 @@ pub use crate::commands::{CliError, ErrorKind, Outcome, Verdict};
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::sync::LazyLock;
-use voussoir_study::results::COMMIT;
 
 /// Version and commit of the program.
-static VERSION: LazyLock<String> = LazyLock::new(|| format!("{} (commit {COMMIT})", env!("CARGO_PKG_VERSION")));
+const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (commit ", env!("VOUSSOIR_COMMIT"), ")");
 
 /// Stability and collapse of masonry made of blocks.
 #[derive(Parser)]
-#[command(name = "voussoir", version = VERSION.as_str())]
+#[command(name = "voussoir", version = VERSION)]
 struct Cli {
     #[command(subcommand)]
     command: Command,

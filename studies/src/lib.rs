@@ -37,6 +37,14 @@
 //! This crate names every crate that contains plug-ins: the linker drops a crate that no source names, with its plug-ins.
 #![forbid(unsafe_code)]
 
+voussoir_core::inventory::submit! {
+    voussoir_study::results::Build {
+        commit: env!("VOUSSOIR_COMMIT"),
+        sources: env!("VOUSSOIR_SOURCES"),
+        platform: env!("VOUSSOIR_TARGET"),
+    }
+}
+
 pub mod bench;
 pub mod cli;
 mod commands;
@@ -110,7 +118,7 @@ pub mod postprocess {
 /// Results of cases and studies, as they are written to files.
 pub mod results {
     pub use voussoir_study::results::{
-        BranchEntry, COMMIT, CaseLabel, CaseResult, Comparison, ComparisonCell, ComparisonRow, DisplacementEntry,
+        BranchEntry, Build, CaseLabel, CaseResult, Comparison, ComparisonCell, ComparisonRow, DisplacementEntry,
         EndProof, EventEntry, FORMAT, FieldEntry, FillEntry, FinishedCases, FiniteEntry, FollowedTo, HEAD,
         IntervalEntry, KindEntries, LimitPointEntry, LoadEntry, LoadFactorError, LoadOrigin, MAX_SHOWN, MapAxes,
         MotionEntry, NextState, NonAssociatedAnswer, OptimumEntry, Origin, PathRecord, PlaceEntry, PluginCrate, Proof,

@@ -381,9 +381,9 @@ fn mistakes_in_loads_have_the_nearest_right_name() {
     }
 }
 
-/// Exactly the study kinds with keys of their own say so on their cards, from which the keys of study files are made.
+/// A card reports `OWN_FILE` exactly if its study kind has separate keys. The keys of study files are made from the cards.
 #[test]
-fn cards_say_which_kinds_have_keys_of_their_own() {
+fn cards_report_which_kinds_have_separate_keys() {
     use voussoir::core::plugin::{Capability, card};
     for entry in voussoir::kinds::kinds() {
         let offers = card(PluginKind::StudyKind, entry.tag).is_some_and(|card| card.offers(Capability::OWN_FILE));

@@ -104,6 +104,7 @@ fn copies_are_up_to_date() {
         ("templates/keyed.rs", "studies/examples/my_law/src/keyed.rs"),
         ("templates/keyed.md", "studies/examples/my_law/src/keyed.md"),
         ("templates/test.rs", "studies/examples/my_law/tests/keyed.rs"),
+        ("templates/fnv.rs", "studies/study/src/fnv.rs"),
         ("study/templates/glossary.md", "docs/reference/glossary.md"),
     ] {
         let copy = format!("studies/{copy}");

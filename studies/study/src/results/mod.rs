@@ -36,7 +36,7 @@ pub use finished::{FinishedCases, TakeCases};
 pub use kind_entries::{FiniteEntry, IntervalEntry, KindEntries, OptimumEntry, PlaceEntry, WorstEntry};
 pub use limit_points::{BranchEntry, FollowedTo, LimitPointEntry, NextState, StabilityEntry};
 pub use load_factor_error::LoadFactorError;
-pub use origin::{COMMIT, FORMAT, HEAD, Origin, PluginCrate, head, this_program, without_origin, words};
+pub use origin::{Build, FORMAT, HEAD, Origin, PluginCrate, head, this_program, without_origin, words};
 pub use rank::{least_of, load_rank};
 pub use sensitivity::SensitivityEntry;
 pub use stored_entry::{StoredEntry, StoredOutline};

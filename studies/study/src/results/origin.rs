@@ -118,8 +118,23 @@ pub fn words(study: &toml::Value) -> BTreeSet<String> {
 
 const UNKNOWN: &str = "unknown";
 
-/// The commit from which this program was built.
-pub const COMMIT: &str = env!("VOUSSOIR_COMMIT");
+/// The build of a program. The crate `voussoir` submits its own, so that no other crate is compiled again for a new commit.
+pub struct Build {
+    /// Commit of its sources.
+    pub commit: &'static str,
+    /// Hash of its sources.
+    pub sources: &'static str,
+    /// Its target.
+    pub platform: &'static str,
+}
+
+voussoir_core::inventory::collect!(Build);
+
+/// Returns the build of this program.
+fn build() -> &'static Build {
+    static NONE: Build = Build { commit: UNKNOWN, sources: UNKNOWN, platform: UNKNOWN };
+    voussoir_core::inventory::iter::<Build>.into_iter().next().unwrap_or(&NONE)
+}
 
 static TAGS: LazyLock<BTreeMap<Package, BTreeSet<&'static str>>> = LazyLock::new(|| {
     let mut tags: BTreeMap<Package, BTreeSet<&'static str>> = BTreeMap::new();
@@ -131,9 +146,9 @@ static TAGS: LazyLock<BTreeMap<Package, BTreeSet<&'static str>>> = LazyLock::new
 
 static HERE: LazyLock<Origin> = LazyLock::new(|| Origin {
     format: FORMAT,
-    commit: COMMIT.into(),
-    sources: env!("VOUSSOIR_SOURCES").into(),
-    platform: env!("VOUSSOIR_TARGET").into(),
+    commit: build().commit.into(),
+    sources: build().sources.into(),
+    platform: build().platform.into(),
     processor_features: processor_features(),
     mathematics: mathematics(),
     plugins: TAGS

@@ -1,7 +1,7 @@
 //! Compiles the origin of results into the program: target, commit, and a hash of its sources. Results store it, see
 //! `results::Origin`.
 
-#[path = "src/fnv.rs"]
+#[path = "templates/fnv.rs"]
 #[allow(dead_code, reason = "checksums of results have 128 bits too")]
 mod fnv;
 
@@ -10,15 +10,25 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs};
 
-/// Folders and files of the workspace that affect the numbers of a result.
-const SOURCES: [&str; 6] = ["Cargo.lock", "core", "laws", "solvers", "studies/study/src", "studies/report/src/kinds"];
+/// Folders and files of the workspace with the sources of the program.
+const SOURCES: [&str; 9] = [
+    "Cargo.lock",
+    "core",
+    "laws",
+    "solvers",
+    "studies/plot/src",
+    "studies/study/src",
+    "studies/verify/src",
+    "studies/report/src",
+    "studies/src",
+];
 
 fn main() {
     let folder = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").unwrap_or_default());
     println!("cargo::rerun-if-changed=build.rs");
     set("TARGET", &env::var("TARGET").unwrap_or_else(|_| "unknown".into()));
     set("COMMIT", &commit(&folder).or_else(|| packed(&folder)).unwrap_or_else(|| "unknown".into()));
-    set("SOURCES", &folder.ancestors().nth(2).and_then(sources).unwrap_or_else(|| "unknown".into()));
+    set("SOURCES", &folder.parent().and_then(sources).unwrap_or_else(|| "unknown".into()));
 }
 
 fn set(name: &str, value: &str) {
