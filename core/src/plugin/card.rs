@@ -33,8 +33,8 @@ impl Capability {
     pub const FINITE_DISPLACEMENTS: Self = Self::new(PluginKind::PathSolver, "finite displacements");
     /// Imposed movements of supports.
     pub const SETTLEMENT: Self = Self::new(PluginKind::PathSolver, "settlements");
-    /// Study files with keys of their own, without a scene.
-    pub const OWN_FILE: Self = Self::new(PluginKind::StudyKind, "study files of its own");
+    /// The study files of this kind have separate keys and no scene.
+    pub const OWN_FILE: Self = Self::new(PluginKind::StudyKind, "separate study files");
     /// The bounds of limit analysis for non-associated flow.
     pub const NON_ASSOCIATED: Self = Self::new(PluginKind::LimitSolver, "flow that is not associated");
 

@@ -1,7 +1,6 @@
 //! The canvas of all figures. It writes SVG elements and escapes text.
 
 use super::colours::{INK, PAPER, dark_rules, line};
-use super::text::Area;
 use super::text::Spot;
 use std::fmt::{Display, Write};
 use voussoir_core::number_text::format_short;
@@ -313,24 +312,4 @@ pub fn as_file(svg: &str) -> String {
 pub fn own_ids(svg: &str, prefix: &str) -> String {
     let prefix = escape(prefix);
     svg.replace(" id=\"", &format!(" id=\"{prefix}-")).replace("=\"url(#", &format!("=\"url(#{prefix}-"))
-}
-
-/// The boxes of all texts that are not turned, with their words.
-pub fn text_boxes(svg: &str) -> Vec<(String, Area)> {
-    let attribute = |tag: &str, name: &str| -> String {
-        tag.split_once(&format!(" {name}=\""))
-            .and_then(|(_, rest)| rest.split_once('"'))
-            .map_or("", |found| found.0)
-            .into()
-    };
-    let boxed = |piece: &str| {
-        let (tag, rest) = piece.split_once('>').expect("a tag ends");
-        let tag = format!(" {tag}");
-        let number = |name: &str| attribute(&tag, name).parse::<f64>().expect("a number");
-        let words = rest.split('<').next().unwrap_or("").trim().to_string();
-        let spot = [number("x"), number("y")];
-        let area = Area::of_text(spot, &attribute(&tag, "text-anchor"), number("font-size"), &words);
-        (!tag.contains("rotate(")).then_some((words, area))
-    };
-    svg.split("<text ").skip(1).filter_map(boxed).collect()
 }

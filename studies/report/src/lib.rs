@@ -1,4 +1,4 @@
-//! What becomes of results: drawings, charts, tables, files and pages, and the study kinds that write them.
+//! Drawings, charts, tables, files and pages of results, and the study kinds that write them.
 //!
 //! Users name the crate `voussoir`, which has all public names.
 #![forbid(unsafe_code)]

@@ -6,6 +6,7 @@ use voussoir_plot::colours::{INK, QUIET};
 use voussoir_plot::number::step_below;
 use voussoir_plot::svg::{Canvas, SMALL, WIDTH, hatched};
 use voussoir_plot::text::{Area, Spot, text_width, wrapped};
+use voussoir_study::results::format::format_length;
 
 const TITLE: f64 = 15.0;
 const LINE: f64 = 20.0;
@@ -187,14 +188,7 @@ impl SceneCanvas {
         for x in [left, right] {
             self.line(&[[x, y - 5.0], [x, y + 5.0]], INK, 2.0, "");
         }
-        self.text(
-            [right + 10.0, y + 4.5],
-            "start",
-            SMALL,
-            &voussoir_study::results::format::format_length(length),
-            INK,
-            false,
-        );
+        self.text([right + 10.0, y + 4.5], "start", SMALL, &format_length(length), INK, false);
         y += 28.0;
         let mut x = SIDE;
         for (symbol, words) in legend {

@@ -7,7 +7,7 @@ use voussoir_plot::axis::WIDE;
 use voussoir_plot::chart::chart;
 use voussoir_plot::series::{ChartStyle, Marker, Series, Spot};
 use voussoir_study::results::CaseResult;
-use voussoir_study::results::format::{format_short, kind_words, unit_load};
+use voussoir_study::results::format::{format_short, kind_words, status_word, unit_load};
 
 /// The value of a swept key in each case; NaN in cases that a search has solved without it. `None` if a value is not a number.
 fn swept_values(study: &StudyOutput, key: &str) -> Option<Vec<f64>> {
@@ -117,7 +117,7 @@ pub fn sweep_chart(study: &str, cases: &[(&CaseResult, f64)], x_label: &str, uni
                 .map(|(case, _)| case.label.id.to_string())
                 .collect();
             if !ids.is_empty() {
-                let name = voussoir_study::results::format::status_word(status).replace('_', " ");
+                let name = status_word(status).replace('_', " ");
                 let shown =
                     if ids.len() > 12 { format!("{} cases", ids.len()) } else { format!("case {}", ids.join(", ")) };
                 notes.push(format!("not shown, {name}: {shown}"));

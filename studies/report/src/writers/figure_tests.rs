@@ -14,7 +14,6 @@ use voussoir_core::model::geometry::Vec2;
 use voussoir_core::model::{Assembly, PointForce, Stage};
 use voussoir_plot::chart::chart_svg;
 use voussoir_plot::series::Series;
-use voussoir_plot::svg::text_boxes;
 use voussoir_plot::text::Area;
 use voussoir_study::results::{CaseResult, StudyResults, Totals};
 use voussoir_study::study::{Drawn, Output, Resolved, SweptKeys};
@@ -424,4 +423,24 @@ fn labels_of_near_peaks_stand_apart() {
     for (i, one) in labels.iter().enumerate() {
         assert!(labels[..i].iter().all(|other| one.shared(other) == 0.0), "{labels:?}");
     }
+}
+
+/// The boxes of all texts that are not turned, with their words.
+fn text_boxes(svg: &str) -> Vec<(String, Area)> {
+    let attribute = |tag: &str, name: &str| -> String {
+        tag.split_once(&format!(" {name}=\""))
+            .and_then(|(_, rest)| rest.split_once('"'))
+            .map_or("", |found| found.0)
+            .into()
+    };
+    let boxed = |piece: &str| {
+        let (tag, rest) = piece.split_once('>').expect("a tag ends");
+        let tag = format!(" {tag}");
+        let number = |name: &str| attribute(&tag, name).parse::<f64>().expect("a number");
+        let words = rest.split('<').next().unwrap_or("").trim().to_string();
+        let spot = [number("x"), number("y")];
+        let area = Area::of_text(spot, &attribute(&tag, "text-anchor"), number("font-size"), &words);
+        (!tag.contains("rotate(")).then_some((words, area))
+    };
+    svg.split("<text ").skip(1).filter_map(boxed).collect()
 }

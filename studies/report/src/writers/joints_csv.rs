@@ -9,7 +9,7 @@ use maud::{Markup, html};
 use serde_json::Value as Json;
 use std::io::{self, Write};
 use voussoir_study::results::CaseResult;
-use voussoir_study::results::carried::{JointEntry, PermissibleEntry, ReserveEntry, ReserveFlow};
+use voussoir_study::results::carried::{BlockEntry, JointEntry, PermissibleEntry, ReserveEntry, ReserveFlow};
 use voussoir_study::results::format::{capitalised, format_force, format_number, status_word};
 
 /// Greatest number of joints of a case in the report; the file contains all.
@@ -65,7 +65,7 @@ impl CaseTable for Rows {
 
 fn row(case: &CaseResult, entry: &JointEntry) -> Vec<String> {
     let number = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
-    let block = |part: fn(&voussoir_study::results::carried::BlockEntry) -> f64| number(entry.block.as_ref().map(part));
+    let block = |part: fn(&BlockEntry) -> f64| number(entry.block.as_ref().map(part));
     let [minus, plus] = entry.between.clone();
     vec![
         case.label.id.to_string(),

@@ -21,7 +21,7 @@ pub trait StudyKind: Sync {
         self.read(source)
     }
 
-    /// Returns all keys of its study files; `None` if they are the keys of studies with a scene. A kind with keys of its own also
+    /// Returns all keys of its study files; `None` if they are the keys of studies with a scene. A kind with separate keys also
     /// offers [`Capability::OWN_FILE`](voussoir_core::plugin::Capability::OWN_FILE) on its card.
     fn file_keys(&self) -> Option<&'static [Parameter]> {
         None

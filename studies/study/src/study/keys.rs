@@ -33,7 +33,7 @@ fn output() -> Shape {
 
 /// Returns the cards of study kinds that have their own table, such as `[compare]`, with their tag as its name.
 fn kinds_with_tables() -> impl Iterator<Item = &'static Card> {
-    let in_a_study = |card: &&Card| !card.provides.contains(&Capability::OWN_FILE) && !card.parameters.is_empty();
+    let in_a_study = |card: &&Card| !card.offers(Capability::OWN_FILE) && !card.parameters.is_empty();
     cards_of(PluginKind::StudyKind).into_iter().filter(in_a_study)
 }
 

@@ -73,8 +73,8 @@ fn check_sample(
     }
 }
 
-/// As long as the state is that of the untouched material, an elastic step has the tangent of `elasticity()`, from which solvers
-/// compute the body at first. Later tangents are those of the law.
+/// As long as nothing has changed the material, an elastic step has the tangent of `elasticity()`, because solvers compute the body
+/// from it at first.
 fn elastic_branch(recorder: &mut Recorder, subject: &Subject, elasticity: &Elasticity) {
     let (elastic, mut random) = (elasticity.stiffness(), Random::new(19));
     for _ in 0..40 {
