@@ -25,4 +25,5 @@ pub mod mohr_coulomb_solid;
 pub mod orthotropic_elastic;
 pub mod rankine;
 pub mod rigid;
+pub mod strength_envelope;
 pub mod unilateral;

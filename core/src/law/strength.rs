@@ -7,14 +7,16 @@
 //!   block |M| ≤ (N + F_t)(F_c − N) h / (2 (F_c + F_t));
 //! - sliding: a_n N + a_t T ≤ b A for each facet with a_t ≠ 0.
 //!
-//! These conditions are exact. For b = 0 the two ends span every distribution of tractions. For b > 0 the admissible T
-//! of a distribution of t_n depends on N alone as long as each sense of sliding has one facet. Source of the stress
-//! block: Livesley (1978), rectangular block; the cone form is our own.
+//! These conditions are exact if each sense of sliding has one facet: for b = 0 the two ends span every distribution of
+//! tractions, and for b > 0 the admissible T of a distribution of t_n depends on N alone. If several facets bound
+//! sliding in one sense, the sliding rows are necessary, and [`ShearEnvelope`] is exact. Source of the stress block:
+//! Livesley (1978), rectangular block; the cone form is our own.
 //!
 //! Flow uses the jumps that are dual to (N_0, N_1, T): the openings of the two ends and the slip, (ġ_0, ġ_1, ġ_t) = −Σ
 //! γ_i d_i, γ_i ≥ 0. The d of a sliding row is the flow of its facet; opening and crushing are associated.
 
 use super::facet::{Facet, FacetMode};
+use super::shear_envelope::ShearEnvelope;
 use super::yield_polygon::{YieldPolygon, dot};
 
 /// A linear strength condition on (N_0, N_1, T) \[N\].
@@ -53,6 +55,8 @@ pub struct JointStrength {
     pub rows: Vec<ForceRow>,
     /// Crushing, if the compressive strength is finite; it applies to both ends.
     pub block: Option<StressBlock>,
+    /// The exact bounds of T in each sense that several facets bound; the sliding rows alone are too weak there.
+    pub envelopes: Vec<ShearEnvelope>,
 }
 
 impl JointStrength {
@@ -80,7 +84,9 @@ impl JointStrength {
         if let Some(gone) = self.block.filter(|_| block.is_none()) {
             rows.splice(0..0, opening(gone.tension));
         }
-        Some(JointStrength { rows, block })
+        let bounded = |sense: f64| rows.iter().any(|row| row.normal[2] * sense > 0.0);
+        let envelopes = self.envelopes.iter().filter(|envelope| bounded(envelope.sense)).cloned().collect();
+        Some(JointStrength { rows, block, envelopes })
     }
 }
 
@@ -120,15 +126,16 @@ fn bounds_sliding(facet: &Facet, sense: f64) -> bool {
 pub struct UnitStrength(JointStrength);
 
 impl UnitStrength {
-    /// Integrates facets. An error names the facet form that cannot be integrated.
+    /// Integrates facets. An error says what limit analysis cannot read.
     pub fn of(facets: &[Facet]) -> Result<Self, String> {
         integrate(facets).map(UnitStrength)
     }
 
     /// Returns the strength of a joint with this area \[m²\].
     pub fn over(&self, area: f64) -> JointStrength {
-        let UnitStrength(JointStrength { rows, block }) = self;
+        let UnitStrength(JointStrength { rows, block, envelopes }) = self;
         JointStrength {
+            envelopes: envelopes.iter().map(|envelope| envelope.over(area)).collect(),
             rows: rows.iter().map(|row| ForceRow { bound: row.bound * area, ..*row }).collect(),
             block: block.map(|block| StressBlock { tension: block.tension * area, total: block.total * area }),
         }
@@ -160,27 +167,18 @@ fn integrate(facets: &[Facet]) -> Result<JointStrength, String> {
                 corners + along >= 2
             })
             .collect();
-        match bounding[..] {
-            [] if on_side.is_empty() => {}
-            [] | [_] => {
-                let f = bounding.first().copied().unwrap_or(on_side[0]);
-                rows.push(ForceRow {
-                    normal: [f.normal[0], f.normal[0], f.normal[1]],
-                    bound: f.bound,
-                    mode: FacetMode::Sliding,
-                    flow: [f.flow[0], f.flow[0], f.flow[1]],
-                });
-            }
-            _ => {
-                return Err(format!(
-                    "{} facets bound sliding in one sense; limit analysis integrates one",
-                    bounding.len()
-                ));
-            }
-        }
+        // A facet may touch the polygon in a corner only; then it bounds sliding where no other does.
+        let kept = if bounding.is_empty() { on_side.into_iter().take(1).collect() } else { bounding };
+        rows.extend(kept.into_iter().map(|f| ForceRow {
+            normal: [f.normal[0], f.normal[0], f.normal[1]],
+            bound: f.bound,
+            mode: f.mode,
+            flow: [f.flow[0], f.flow[0], f.flow[1]],
+        }));
     }
+    let envelopes = ShearEnvelope::both(&polygon);
     let block = greatest.is_finite().then_some(StressBlock { tension, total: greatest - least });
-    Ok(JointStrength { rows, block })
+    Ok(JointStrength { rows, block, envelopes })
 }
 
 #[cfg(test)]
@@ -268,10 +266,14 @@ mod tests {
         assert_eq!((left.tangential(), left.block), (Tangential::Stuck, glued.block));
     }
 
+    /// A second facet in one sense gives an envelope in that sense; a facet that touches the polygon nowhere does not.
     #[test]
-    fn two_facets_in_one_sense_are_refused() {
-        let mut facets = mohr_coulomb(0.1, 10.0, 1.0, 0.5);
-        facets.push(Facet::associated(FacetMode::Sliding, [0.0, 1.0], 2.0));
-        assert!(of_area(&facets, 1.0).is_err());
+    fn a_second_facet_gives_an_envelope_in_its_sense() {
+        for (bound, senses) in [(2.0, vec![1.0]), (1e3, vec![])] {
+            let mut facets = mohr_coulomb(0.1, 10.0, 1.0, 0.5);
+            facets.push(Facet::associated(FacetMode::Sliding, [0.0, 1.0], bound));
+            let found: Vec<f64> = of_area(&facets, 1.0).unwrap().envelopes.iter().map(|e| e.sense).collect();
+            assert_eq!(found, senses, "{bound}");
+        }
     }
 }

@@ -231,7 +231,7 @@ fn fill_joints(
             ends: [reaction.point, reaction.point + tangent],
             normal,
             tangent,
-            strength: JointStrength { rows, block: None },
+            strength: JointStrength { rows, block: None, envelopes: Vec::new() },
         });
     }
     fixed

@@ -36,16 +36,28 @@ pub enum Greatest {
     Failed(String),
 }
 
-/// The force of a joint at which a linear form of its N_0, N_1 and T is greatest over all admissible fields.
+/// The force of a joint at which a linear form of its N_0, N_1 and T is greatest over all admissible fields; or the whole
+/// field.
 #[derive(Debug, Clone, Copy)]
-pub enum Extreme {
+pub enum Extreme<Force = JointForce> {
     /// The form has a greatest value, and this force has it.
-    Finite(JointForce),
+    Finite(Force),
     /// The form grows without bound along this force, in any scale. Among such forces with the same normal force it has
     /// the greatest form, or the next form finds a greater one.
-    Ray(JointForce),
+    Ray(Force),
     /// Not decided.
     Failed,
+}
+
+impl Extreme<Vec<JointForce>> {
+    /// Returns the force of one joint.
+    pub fn at(self, joint: usize) -> Extreme {
+        match self {
+            Extreme::Finite(field) => Extreme::Finite(field[joint]),
+            Extreme::Ray(field) => Extreme::Ray(field[joint]),
+            Extreme::Failed => Extreme::Failed,
+        }
+    }
 }
 
 /// An engine that solves single optimisations over the joints of one problem.

@@ -34,7 +34,8 @@ impl Dry {
             }
             rows.push(row);
         }
-        JointStrength { rows, block: self.crushing.map(|total| StressBlock { tension: 0.0, total }) }
+        let block = self.crushing.map(|total| StressBlock { tension: 0.0, total });
+        JointStrength { rows, block, envelopes: Vec::new() }
     }
 
     /// Creates a joint whose tangent points from the first end to the second.

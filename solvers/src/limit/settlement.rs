@@ -12,6 +12,7 @@
 //! scene. If the fields have no bound, no motion exists; the answer is the ray that proves it. Source: Iannuzzo et al.
 //! 2018, Meccanica 53 (rigid blocks under settlements by least energy).
 
+use super::conic::has_envelopes;
 use super::systems::{LARGEST, PIVOTS, Pair, Systems};
 use crate::limit::settings::SETTINGS;
 use crate::optimise::dense_simplex::{Dictionary, Equations, Feasibility};
@@ -38,6 +39,9 @@ fn settled(
 ) -> Result<SettlementAnswer, String> {
     if problem.joints.iter().any(|joint| joint.strength.block.is_some()) {
         return Err("settlements of rigid blocks take no joints that crush".into());
+    }
+    if has_envelopes(problem) {
+        return Err("settlements of rigid blocks take one sliding facet in each sense".into());
     }
     if problem.magnitude(loads) == 0.0 {
         return Err("without loads nothing tells how rigid blocks follow their supports".into());

@@ -97,7 +97,7 @@ fn two_engines_agree() {
     for crushing in [None, Some(3.0), Some(50.0)] {
         let problem = block(0.7, 1.9, Dry { crushing, ..sliding(0.5) });
         let mut engines: [Box<dyn Engine>; 2] =
-            [Box::new(engine(&problem)), Box::new(ChainEngine::new(&problem).expect("a chain"))];
+            [engine(&problem), Box::new(ChainEngine::new(&problem).expect("a chain"))];
         let found =
             engines.each_mut().map(|engine| match engine.greatest(&problem.fixed, &problem.varying, f64::INFINITY) {
                 Greatest::Collapse { factor, motion, .. } => {

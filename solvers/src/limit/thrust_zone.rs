@@ -23,7 +23,7 @@ pub fn thrust_zone(problem: &LimitProblem, loads: &Wrenches) -> Vec<Option<[f64;
     if let Some(chain) = ChainEngine::new(problem) {
         engines.push(Box::new(chain));
     }
-    engines.push(Box::new(conic::engine(problem)));
+    engines.push(conic::engine(problem));
     zone_by(problem, loads, engines)
 }
 

@@ -88,7 +88,7 @@ fn three_ways_find_the_same_zone() {
     for dry in [STUCK, RUBBED] {
         let (problem, loads) = loaded(dry, 9, 0.6);
         let zone = thrust_zone(&problem, &loads);
-        let conic = zone_by(&problem, &loads, vec![Box::new(conic::engine(&problem))]);
+        let conic = zone_by(&problem, &loads, vec![conic::engine(&problem)]);
         for joint in 0..problem.joints.len() {
             let (own, other) = (zone[joint].expect("a zone"), conic[joint].expect("a zone"));
             assert!(own[1] - own[0] > 1e-3, "{own:?}");
@@ -107,7 +107,7 @@ fn crushing_narrows_the_zone() {
     let crushed = |strength: f64| {
         let problem = ring(7, 0.8, 1.2, Dry { crushing: Some(strength), ..RUBBED });
         let zone = thrust_zone(&problem, &loads);
-        let conic = zone_by(&problem, &loads, vec![Box::new(conic::engine(&problem))]);
+        let conic = zone_by(&problem, &loads, vec![conic::engine(&problem)]);
         for (own, other) in zone.iter().zip(&conic) {
             let (own, other) = (own.expect("by redundants"), other.expect("by cones"));
             (0..2).for_each(|end| assert_near(own[end], other[end], 1e-8, "by cones"));
@@ -154,7 +154,7 @@ fn a_thrust_without_bound_has_a_zone() {
         joint.strength = block(1.0, 1.0, STUCK).joints[0].strength.clone();
     }
     let loads = combined(&problem.fixed, &problem.varying, 1.0);
-    let mut engines: Vec<Vec<Box<dyn super::Engine + '_>>> = vec![vec![Box::new(conic::engine(&problem))]];
+    let mut engines: Vec<Vec<Box<dyn super::Engine + '_>>> = vec![vec![conic::engine(&problem)]];
     engines.push(vec![Box::new(ChainEngine::new(&problem).expect("a chain"))]);
     for engine in engines {
         for zone in zone_by(&problem, &loads, engine) {

@@ -13,6 +13,7 @@ mod crushing;
 mod damage;
 mod elements;
 mod energy;
+mod envelopes;
 mod event;
 mod extreme_strengths;
 mod finite;

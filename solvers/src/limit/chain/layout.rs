@@ -33,10 +33,11 @@ pub struct Trees {
     pub cuts: Vec<usize>,
 }
 
-/// Returns the problem's bodies as trees, if few joints close them.
+/// Returns the problem's bodies as trees, if few joints close them, no fill resists, and one facet bounds sliding in each
+/// sense.
 pub fn trees(problem: &LimitProblem) -> Option<Trees> {
     if problem.joints.len() > problem.groups + MAX_CLOSING_JOINTS
-        || problem.joints.iter().any(|joint| joint.fill.is_some())
+        || problem.joints.iter().any(|joint| joint.fill.is_some() || !joint.strength.envelopes.is_empty())
     {
         return None;
     }

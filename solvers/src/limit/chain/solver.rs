@@ -29,7 +29,9 @@ impl LimitSolver for LimitChain {
 
     fn refuses(&self, problem: &LimitProblem) -> Option<String> {
         trees(problem).is_none().then(|| {
-            "more than a few joints close its bodies to rings, or fill resists; limit_conic takes any scene".into()
+            "more than a few joints close its bodies to rings, fill resists, or several facets bound sliding in one sense; \
+             limit_conic takes any scene"
+                .into()
         })
     }
 }

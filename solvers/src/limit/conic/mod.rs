@@ -1,9 +1,11 @@
 //! `limit_conic`: limit analysis of any scene by sparse conic programming, polished to rounding.
 
+mod envelope;
 mod interior_point;
 mod polish;
 mod solver;
 mod system;
 mod tangents;
 
+pub use self::envelope::{NO_ENVELOPES, has_envelopes};
 pub use self::solver::{LimitConic, engine};

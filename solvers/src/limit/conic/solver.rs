@@ -1,5 +1,6 @@
 //! The solver `limit_conic` and its engine.
 
+use super::envelope::{EnvelopeEngine, has_envelopes};
 use super::interior_point::{Pair, Word, solve};
 use super::polish::{balanced, polish};
 use super::system::{Loads, System};
@@ -26,7 +27,7 @@ pub struct LimitConic {}
 #[typetag::serde(name = "limit_conic")]
 impl LimitSolver for LimitConic {
     fn solve(&self, problem: &LimitProblem, question: LimitQuestion) -> LimitAnswer {
-        answer_by(problem, question, &mut engine(problem))
+        answer_by(problem, question, engine(problem).as_mut())
     }
 
     fn settle(&self, problem: &LimitProblem, loads: &Wrenches, openings: &[[f64; 3]]) -> SettlementAnswer {
@@ -54,11 +55,11 @@ voussoir_core::inventory::submit! {
 }
 
 /// Creates the engine for a problem.
-pub fn engine(problem: &LimitProblem) -> impl Engine + '_ {
-    ConicEngine { problem, work: Counters::new(), carried: None, unsolved: None }
+pub fn engine(problem: &LimitProblem) -> Box<dyn Engine + '_> {
+    if has_envelopes(problem) { Box::new(EnvelopeEngine::new(problem)) } else { Box::new(ConicEngine::new(problem)) }
 }
 
-struct ConicEngine<'a> {
+pub(super) struct ConicEngine<'a> {
     problem: &'a LimitProblem,
     work: Counters,
     /// Loads that a previous program has shown to be carried, with a field.
@@ -100,7 +101,12 @@ fn weakest(problem: &LimitProblem) -> f64 {
     problem.joints.iter().filter(|joint| joint.fill.is_none()).map(of).fold(f64::INFINITY, f64::min)
 }
 
-impl ConicEngine<'_> {
+impl<'a> ConicEngine<'a> {
+    /// Creates the engine of a problem without envelopes.
+    pub fn new(problem: &'a LimitProblem) -> Self {
+        ConicEngine { problem, work: Counters::new(), carried: None, unsolved: None }
+    }
+
     fn count(&mut self, name: &str, by: u64) {
         *self.work.entry(name.into()).or_default() += by;
     }
@@ -286,6 +292,36 @@ impl ConicEngine<'_> {
             Optimum::Failed(why) => Equilibrium::Failed(why),
         }
     }
+
+    /// Returns the field at which a linear form of the forces of a joint is greatest.
+    pub fn extreme_field(&mut self, loads: &Wrenches, joint: usize, form: [f64; 3]) -> Extreme<Vec<JointForce>> {
+        let none: Wrenches = vec![[0.0; 3]; self.problem.groups];
+        let force = force_unit(self.problem, loads);
+        let held =
+            Loads { constant: Some(loads), varying: (&none, 1.0), free: None, cap: None, strengths: true, force };
+        let mut system = System::new(self.problem, &held);
+        system.aim_at(joint, form);
+        match self.optimum(&system) {
+            Optimum::Found { pair, .. } | Optimum::Unsettled(pair) => {
+                let field = system.forces(&pair.x);
+                if self.carries(loads, &field) { Extreme::Finite(field) } else { Extreme::Failed }
+            }
+            Optimum::Unbounded => {
+                let mut system = System::new(self.problem, &Loads { constant: None, strengths: false, ..held });
+                system.aim_at(joint, form);
+                system.press(joint);
+                let (Optimum::Found { pair, .. } | Optimum::Unsettled(pair)) = self.optimum(&system) else {
+                    return Extreme::Failed;
+                };
+                let ray = system.forces(&pair.x);
+                let size = |force: &JointForce| force.normal[0].abs().max(force.normal[1].abs());
+                let greatest = ray.iter().map(size).fold(0.0, f64::max);
+                let holds = field_violation(self.problem, &none, &ray) <= SETTINGS.carried * greatest;
+                if holds { Extreme::Ray(ray) } else { Extreme::Failed }
+            }
+            Optimum::Failed(_) => Extreme::Failed,
+        }
+    }
 }
 
 impl Engine for ConicEngine<'_> {
@@ -359,32 +395,7 @@ impl Engine for ConicEngine<'_> {
     }
 
     fn extreme(&mut self, loads: &Wrenches, joint: usize, form: [f64; 3]) -> Extreme {
-        let none: Wrenches = vec![[0.0; 3]; self.problem.groups];
-        let force = force_unit(self.problem, loads);
-        let held =
-            Loads { constant: Some(loads), varying: (&none, 1.0), free: None, cap: None, strengths: true, force };
-        let mut system = System::new(self.problem, &held);
-        system.aim_at(joint, form);
-        match self.optimum(&system) {
-            Optimum::Found { pair, .. } | Optimum::Unsettled(pair) => {
-                let field = system.forces(&pair.x);
-                if self.carries(loads, &field) { Extreme::Finite(field[joint]) } else { Extreme::Failed }
-            }
-            Optimum::Unbounded => {
-                let mut system = System::new(self.problem, &Loads { constant: None, strengths: false, ..held });
-                system.aim_at(joint, form);
-                system.press(joint);
-                let (Optimum::Found { pair, .. } | Optimum::Unsettled(pair)) = self.optimum(&system) else {
-                    return Extreme::Failed;
-                };
-                let ray = system.forces(&pair.x);
-                let size = |force: &JointForce| force.normal[0].abs().max(force.normal[1].abs());
-                let greatest = ray.iter().map(size).fold(0.0, f64::max);
-                let holds = field_violation(self.problem, &none, &ray) <= SETTINGS.carried * greatest;
-                if holds { Extreme::Ray(ray[joint]) } else { Extreme::Failed }
-            }
-            Optimum::Failed(_) => Extreme::Failed,
-        }
+        self.extreme_field(loads, joint, form).at(joint)
     }
 
     fn counters(&self) -> Counters {

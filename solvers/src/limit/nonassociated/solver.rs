@@ -6,6 +6,7 @@ use super::descent::{Descent, State};
 use super::products::{Bound, lower_bound};
 use super::splitting::split_bound;
 use crate::limit::associated::{associated, associated_bound, settled_by_association};
+use crate::limit::conic::{NO_ENVELOPES, has_envelopes};
 use crate::limit::scale::combined;
 use crate::limit::sequential::{FlowState, Sequence, sequence};
 use crate::limit::settings::SETTINGS;
@@ -251,8 +252,8 @@ impl LimitSolver for LimitNonassociated {
         settle(problem, loads, openings, FlowRule::NonAssociated)
     }
 
-    fn refuses(&self, _: &LimitProblem) -> Option<String> {
-        None
+    fn refuses(&self, problem: &LimitProblem) -> Option<String> {
+        has_envelopes(problem).then(|| NO_ENVELOPES.into())
     }
 }
 

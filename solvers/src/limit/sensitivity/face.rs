@@ -3,6 +3,7 @@
 use super::data::DataRate;
 use super::program::{Direction, Program};
 use super::row::{FaceRow, Source};
+use crate::limit::conic::has_envelopes;
 use crate::limit::settings::SETTINGS;
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::limit::{JointForce, LimitProblem, Velocity};
@@ -57,6 +58,9 @@ impl<'a> OptimalFace<'a> {
         forces: &[JointForce],
         motion: &[Velocity],
     ) -> Result<Self, String> {
+        if has_envelopes(problem) {
+            return Err("several facets bound sliding in one sense".into());
+        }
         let mut offsets = vec![0];
         for joint in &problem.joints {
             offsets.push(offsets[offsets.len() - 1] + joint.components());

@@ -2,7 +2,7 @@
 
 use super::vertices::Vertices;
 use crate::limit::conic;
-use crate::limit::engine::{Engine, Greatest};
+use crate::limit::engine::Greatest;
 use crate::limit::settings::SETTINGS;
 use crate::limit::systems::{LARGEST, Systems, greatest_shares};
 use crate::optimise::dense_simplex::Feasibility;

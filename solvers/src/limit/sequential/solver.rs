@@ -2,6 +2,7 @@
 
 use super::sequence::{Sequence, sequence};
 use crate::limit::associated::{associated, associated_bound, settled_by_association};
+use crate::limit::conic::{NO_ENVELOPES, has_envelopes};
 use crate::limit::scale::combined;
 use crate::limit::settlement::settle;
 use voussoir_core::law::FlowRule;
@@ -71,7 +72,7 @@ impl LimitSolver for LimitSequential {
         settle(problem, loads, openings, FlowRule::NonAssociated)
     }
 
-    fn refuses(&self, _: &LimitProblem) -> Option<String> {
-        None
+    fn refuses(&self, problem: &LimitProblem) -> Option<String> {
+        has_envelopes(problem).then(|| NO_ENVELOPES.into())
     }
 }
