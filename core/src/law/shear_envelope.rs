@@ -26,8 +26,10 @@ use super::facet::FacetMode;
 use super::strength::ForceRow;
 use super::yield_polygon::YieldPolygon;
 
-/// Number of halvings of the range of a price, down to rounding.
-const HALVINGS: usize = 50;
+/// Logarithm of the steepest fall of a price over the spread of the slopes.
+const STEEPEST: f64 = 40.0;
+/// Number of halvings of the range of this logarithm, down to rounding.
+const HALVINGS: usize = 60;
 /// Number of prices that are tried for the deepest bound, each four times as steep as the one before.
 const STEEPNESSES: i32 = 30;
 
@@ -86,7 +88,7 @@ impl ShearDistribution {
     }
 }
 
-/// Where the segments lie: one part of the joint each, and the pressure beyond the last corner at both ends \[N\].
+/// The place of each segment, a part of the joint, and the pressure beyond the last corner at both ends \[N\].
 struct Layout {
     parts: Vec<[f64; 2]>,
     beyond: [f64; 2],
@@ -94,7 +96,7 @@ struct Layout {
 }
 
 impl ShearEnvelope {
-    /// Returns the envelopes of one square metre in both senses of a polygon of tractions, where they have several pieces.
+    /// Returns the envelopes of one square metre in both senses of a polygon of tractions, if they have several pieces.
     pub fn both(polygon: &YieldPolygon) -> Vec<Self> {
         [1.0, -1.0].into_iter().filter_map(|sense| Self::of(polygon, sense)).collect()
     }
@@ -151,7 +153,7 @@ impl ShearEnvelope {
         ShearDistribution { pieces: self.pieces(&layout), price: layout.price }
     }
 
-    /// Returns the part of a normal force above the least pressure, within what the envelope admits.
+    /// Returns the part of a normal force above the least pressure, as far as the envelope admits it.
     fn above_least(&self, normal: f64) -> f64 {
         let widths: f64 = self.segments.iter().map(|s| s.normal).sum();
         let most = if self.beyond.is_some() { f64::INFINITY } else { widths };
@@ -179,7 +181,7 @@ impl ShearEnvelope {
     }
 
     /// Returns the row that cuts off a force (N_0, N_1, T) beyond the envelope at the greatest distance, if a row does.
-    /// Where one end is about to open the envelope is steep, and the row at the same N_0 and N_1 cuts off little.
+    /// If one end is about to open, the envelope is steep, and the row at the same N_0 and N_1 cuts off little.
     pub fn deepest_row(&self, force: [f64; 3]) -> Option<ForceRow> {
         let [n_0, n_1, _] = force;
         let exact = self.greatest([n_0, n_1]).price;
@@ -246,15 +248,16 @@ impl ShearEnvelope {
 
     /// Returns the layout with a price that falls towards the second end, with the moment `wanted`.
     fn tilted(&self, more: f64, wanted: f64) -> Layout {
-        let (mut low, mut high) = (0.0, 1.0);
+        let fall = |power: f64| self.spread() * power.exp();
+        let (mut low, mut high) = (-STEEPEST, STEEPEST);
         for _ in 0..HALVINGS {
             let middle = (low + high) / 2.0;
-            match self.moment(&self.tilt(more, self.spread() * middle / (1.0 - middle))) < wanted {
+            match self.moment(&self.tilt(more, fall(middle))) < wanted {
                 true => low = middle,
                 false => high = middle,
             }
         }
-        self.tilt(more, self.spread() * low / (1.0 - low))
+        self.tilt(more, fall(low))
     }
 
     /// Returns the moment of a layout over the height \[N\].

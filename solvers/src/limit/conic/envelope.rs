@@ -2,7 +2,7 @@
 //!
 //! The shear of such a joint is bounded by an envelope that is concave in N_0 and N_1
 //! ([`voussoir_core::law::ShearEnvelope`]). Each program has finitely many of its rows, beginning with the facets over the
-//! whole joint, so its answers hold as upper bounds. Where its field exceeds the envelope, the deepest row is added
+//! whole joint, so its answers hold as upper bounds. If its field exceeds the envelope, the deepest row is added
 //! (Kelley 1960, *J. SIAM* 8: cutting planes). Both have the same forces without bound, so a program that has no bound
 //! proves that the scene has none. The result is a field within all envelopes.
 
@@ -49,7 +49,7 @@ impl EnvelopeEngine {
     }
 
     /// Adds a row to each envelope that a field exceeds by more than the share `most` of its greatest force. Returns
-    /// false if there is none.
+    /// true if rows were added.
     fn cut(&mut self, field: &[JointForce], most: f64) -> bool {
         let size = |force: &JointForce| force.normal[0].abs().max(force.normal[1].abs()).max(force.shear.abs());
         let unit = field.iter().map(size).fold(0.0, f64::max);
@@ -131,7 +131,7 @@ impl Engine for EnvelopeEngine {
             Greatest::Unbounded(_) | Greatest::Failed(_) => None,
         });
         match found {
-            // The mechanism is one of those of the rows; the envelopes may have others.
+            // The envelopes may have more mechanisms than the rows.
             Some(Greatest::Collapse { factor, field, motion, .. }) => {
                 let touching = self.touching(&field);
                 let last = ConicEngine::new(&touching).greatest(fixed, varying, cap);
