@@ -23,7 +23,8 @@
 //! our own; for one segment and no friction it is the rectangular stress block of Livesley (1978).
 
 use super::facet::FacetMode;
-use super::strength::ForceRow;
+use super::force_row::ForceRow;
+
 use super::yield_polygon::YieldPolygon;
 
 /// Logarithm of the steepest fall of a price over the spread of the slopes.

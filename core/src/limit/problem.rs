@@ -152,6 +152,11 @@ impl LimitProblem {
         })
     }
 
+    /// Returns true if several facets bound sliding in one sense in some joint, so that its rows alone are too weak.
+    pub fn has_envelopes(&self) -> bool {
+        self.joints.iter().any(|joint| !joint.strength.envelopes.is_empty())
+    }
+
     /// Returns a better conditioned problem, in which crushing and cohesion that the loads cannot reach are unlimited.
     /// Its solution solves this problem if the certificate confirms it. `None` if nothing changes.
     pub fn within_reach(&self) -> Option<Self> {

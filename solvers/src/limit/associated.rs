@@ -4,6 +4,10 @@ use super::chain::LimitChain;
 use super::conic::LimitConic;
 use voussoir_core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, NonAssociated, Status};
 
+/// Reason of solvers that read one sliding facet in each sense.
+pub const NO_ENVELOPES: &str =
+    "several facets of a joint law bound sliding in one sense: limit_conic takes them with associated flow";
+
 /// Returns the answer with associated flow, from the cheapest engine.
 pub fn associated(problem: &LimitProblem, question: LimitQuestion) -> LimitAnswer {
     let chain = LimitChain {};

@@ -12,7 +12,6 @@
 //! scene. If the fields have no bound, no motion exists; the answer is the ray that proves it. Source: Iannuzzo et al.
 //! 2018, Meccanica 53 (rigid blocks under settlements by least energy).
 
-use super::conic::has_envelopes;
 use super::systems::{LARGEST, PIVOTS, Pair, Systems};
 use crate::limit::settings::SETTINGS;
 use crate::optimise::dense_simplex::{Dictionary, Equations, Feasibility};
@@ -40,7 +39,7 @@ fn settled(
     if problem.joints.iter().any(|joint| joint.strength.block.is_some()) {
         return Err("settlements of rigid blocks take no joints that crush".into());
     }
-    if has_envelopes(problem) {
+    if problem.has_envelopes() {
         return Err("settlements of rigid blocks take one sliding facet in each sense".into());
     }
     if problem.magnitude(loads) == 0.0 {

@@ -6,7 +6,7 @@
 //! (Kelley 1960, *J. SIAM* 8: cutting planes). Both have the same forces without bound, so a program that has no bound
 //! proves that the scene has none. The result is a field within all envelopes.
 
-use super::solver::ConicEngine;
+use super::engine::ConicEngine;
 use crate::limit::engine::{Engine, Equilibrium, Extreme, Greatest};
 use crate::limit::settings::SETTINGS;
 use voussoir_core::law::ShearEnvelope;
@@ -15,15 +15,6 @@ use voussoir_core::model::Wrenches;
 
 /// Greatest number of programs for one question.
 const MAX_PROGRAMS: usize = 60;
-
-/// Reason of solvers that read one sliding facet in each sense.
-pub const NO_ENVELOPES: &str =
-    "several facets of a joint law bound sliding in one sense: limit_conic takes them with associated flow";
-
-/// Returns true if some joint has an envelope.
-pub fn has_envelopes(problem: &LimitProblem) -> bool {
-    problem.joints.iter().any(|joint| !joint.strength.envelopes.is_empty())
-}
 
 /// The conic engine over a problem with rows instead of envelopes.
 pub struct EnvelopeEngine {

@@ -1,5 +1,6 @@
 //! `limit_conic`: limit analysis of any scene by sparse conic programming, polished to rounding.
 
+mod engine;
 mod envelope;
 mod interior_point;
 mod polish;
@@ -7,5 +8,4 @@ mod solver;
 mod system;
 mod tangents;
 
-pub use self::envelope::{NO_ENVELOPES, has_envelopes};
 pub use self::solver::{LimitConic, engine};

@@ -5,8 +5,7 @@ use super::curve::Curve;
 use super::descent::{Descent, State};
 use super::products::{Bound, lower_bound};
 use super::splitting::split_bound;
-use crate::limit::associated::{associated, associated_bound, settled_by_association};
-use crate::limit::conic::{NO_ENVELOPES, has_envelopes};
+use crate::limit::associated::{NO_ENVELOPES, associated, associated_bound, settled_by_association};
 use crate::limit::scale::combined;
 use crate::limit::sequential::{FlowState, Sequence, sequence};
 use crate::limit::settings::SETTINGS;
@@ -253,7 +252,7 @@ impl LimitSolver for LimitNonassociated {
     }
 
     fn refuses(&self, problem: &LimitProblem) -> Option<String> {
-        has_envelopes(problem).then(|| NO_ENVELOPES.into())
+        problem.has_envelopes().then(|| NO_ENVELOPES.into())
     }
 }
 

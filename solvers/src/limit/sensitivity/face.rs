@@ -3,7 +3,6 @@
 use super::data::DataRate;
 use super::program::{Direction, Program};
 use super::row::{FaceRow, Source};
-use crate::limit::conic::has_envelopes;
 use crate::limit::settings::SETTINGS;
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::limit::{JointForce, LimitProblem, Velocity};
@@ -58,7 +57,7 @@ impl<'a> OptimalFace<'a> {
         forces: &[JointForce],
         motion: &[Velocity],
     ) -> Result<Self, String> {
-        if has_envelopes(problem) {
+        if problem.has_envelopes() {
             return Err("several facets bound sliding in one sense".into());
         }
         let mut offsets = vec![0];

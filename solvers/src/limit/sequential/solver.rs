@@ -1,8 +1,7 @@
 //! `limit_sequential`: a non-associated load by sequential linear programming.
 
 use super::sequence::{Sequence, sequence};
-use crate::limit::associated::{associated, associated_bound, settled_by_association};
-use crate::limit::conic::{NO_ENVELOPES, has_envelopes};
+use crate::limit::associated::{NO_ENVELOPES, associated, associated_bound, settled_by_association};
 use crate::limit::scale::combined;
 use crate::limit::settlement::settle;
 use voussoir_core::law::FlowRule;
@@ -73,6 +72,6 @@ impl LimitSolver for LimitSequential {
     }
 
     fn refuses(&self, problem: &LimitProblem) -> Option<String> {
-        has_envelopes(problem).then(|| NO_ENVELOPES.into())
+        problem.has_envelopes().then(|| NO_ENVELOPES.into())
     }
 }
