@@ -1,6 +1,7 @@
 //! Laws with one fault each: the checks must find the fault by name. A law without a fault conforms.
 
 mod facets;
+mod keys;
 mod materials;
 mod responses;
 

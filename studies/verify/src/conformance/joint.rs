@@ -6,7 +6,7 @@ use super::point::Point;
 use super::samples::{Law, laws};
 use super::subject::Subject;
 use super::walk;
-use super::{energy, facets, sign, units};
+use super::{energy, facets, sign, softening, units};
 use voussoir_core::law::InterfaceLaw;
 use voussoir_core::plugin::{Capability, Card, PluginKind, Sample};
 
@@ -51,10 +51,12 @@ fn check_sample(
     };
     let point = Point::Joint(response.clone());
     let Some(stiffness) = walk::measure(recorder, &point, sample) else { return };
-    let subject = Subject { card, sample, point, again: Point::Joint(again.unwrap_or(response)), stiffness };
+    let again = Point::Joint(again.unwrap_or(response.clone()));
+    let subject = Subject { card, sample, point, again, stiffness };
     walk::check(recorder, &subject, options);
     sign::check_joint(recorder, &subject, law);
     energy::check(recorder, &subject);
+    softening::check(recorder, &subject, response.as_ref());
     if let (Some(own), Some(k)) = (&own, law.stiffness()) {
         facets::against_response(recorder, &subject, own, k);
     }

@@ -10,6 +10,7 @@ mod energy;
 mod facets;
 mod findings;
 mod joint;
+mod keys;
 mod known_path;
 pub mod lies;
 mod material;
@@ -19,6 +20,7 @@ mod random;
 mod reproduce;
 mod samples;
 mod sign;
+mod softening;
 mod subject;
 mod units;
 mod walk;
@@ -35,8 +37,8 @@ pub fn conform(card: &Card, options: &Options) -> Report {
     let mut recorder = Recorder::new(card);
     // A law that panics fails; the other laws are still checked.
     let solver = |recorder: &mut Recorder, card: &Card, _: &Options| lies::check(recorder, card);
-    let checks: [fn(&mut Recorder, &Card, &Options); 5] =
-        [samples::check, joint::check, material::check, known_path::check, solver];
+    let checks: [fn(&mut Recorder, &Card, &Options); 6] =
+        [samples::check, keys::check, joint::check, material::check, known_path::check, solver];
     for check in checks {
         let ended = catch_unwind(AssertUnwindSafe(|| check(&mut recorder, card, options)));
         if let Err(panic) = ended {

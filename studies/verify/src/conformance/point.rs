@@ -1,5 +1,6 @@
 //! A law at a point, in one form for joints and materials, so that each check is written once.
 
+use super::options::CountAllocations;
 use std::sync::Arc;
 use voussoir_core::law::{
     InterfaceResponse, StressPoint, StressUpdate, TractionPoint, UpdateBranch, UpdateContext, UpdateFailure,
@@ -96,6 +97,23 @@ impl Point {
                 Ok(points.iter().map(material).collect())
             }
         }
+    }
+
+    /// Returns the number of allocations of the law's own loop over points, for a single point; 0 if the update fails.
+    pub(super) fn allocations_in_batch(&self, at: &[f64; 6], old: &[f64], count: CountAllocations) -> u64 {
+        let (mut new, mut done) = (vec![0.0; old.len()], false);
+        let counted = match self {
+            Point::Joint(law) => {
+                let (gaps, mut points) = ([[at[0], at[1]]], [TractionPoint::ZERO]);
+                count(&mut || done = law.respond(&gaps, old, &mut new, &mut points).is_ok())
+            }
+            Point::Material(law, length) => {
+                let (contexts, mut points) = ([UpdateContext::of_length(*length)], [StressPoint::ZERO]);
+                let strains = [*at];
+                count(&mut || done = law.update(&strains, &contexts, old, &mut new, &mut points).is_ok())
+            }
+        };
+        if done { counted } else { 0 }
     }
 
     /// Returns the greatest entry of the tangent at the untouched point under a small compression: the scale of stiffnesses

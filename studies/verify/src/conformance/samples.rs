@@ -126,26 +126,32 @@ fn check_sample(recorder: &mut Recorder, card: &Card, sample: &Sample) {
         "accepts a key that it does not know: #[serde(deny_unknown_fields)] is missing".into()
     });
     for parameter in card.parameters {
-        check_need(recorder, card, &table, parameter, &law);
+        check_need(recorder, card, &table, parameter);
     }
 }
 
 /// A missing key is refused if it is required, and is replaced by its default otherwise.
-fn check_need(recorder: &mut Recorder, card: &Card, table: &Json, parameter: &Parameter, law: &Law) {
+fn check_need(recorder: &mut Recorder, card: &Card, table: &Json, parameter: &Parameter) {
     let mut without = table.clone();
-    let given = without.as_object_mut().and_then(|table| table.shift_remove(parameter.name));
+    without.as_object_mut().and_then(|table| table.shift_remove(parameter.name));
     match parameter.need {
         Need::Required => recorder.hold("defaults", Law::read(card.kind, &without).is_err(), || {
             format!("is read without {}, which the card calls required", parameter.name)
         }),
-        Need::Default(value) if given.is_none() => {
-            let mut with = table.clone();
-            with[parameter.name] = default_of(value).unwrap_or_default();
-            let same = Law::read(card.kind, &with).is_ok_and(|with| with.says() == law.says());
-            recorder.hold("defaults", same, || {
+        Need::Default(value) => {
+            let with = default_of(value).map(|default| {
+                let mut with = table.clone();
+                with[parameter.name] = default;
+                with
+            });
+            let says = |table: &Json| Law::read(card.kind, table).map(|law| law.says());
+            let [without, with] = [Some(&without), with.as_ref()].map(|table| table.map(says));
+            recorder.hold("defaults", without.as_ref().is_some_and(Result::is_ok) && without == with, || {
                 format!("without {} it is another law than with the card's default {value}", parameter.name)
             });
         }
-        _ => {}
+        Need::Optional(_) => recorder.hold("defaults", Law::read(card.kind, &without).is_ok(), || {
+            format!("is not read without {}, which the card calls optional", parameter.name)
+        }),
     }
 }

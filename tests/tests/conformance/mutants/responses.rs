@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use voussoir::conformance::{Options, conform};
 use voussoir::core::law::{
-    Effect, Facet, FacetResponse, InterfaceLaw, InterfaceResponse, TractionPoint, UpdateBranch, UpdateFailure,
+    BatchFailure, Effect, Facet, FacetResponse, InterfaceLaw, InterfaceResponse, TractionPoint, UpdateBranch,
+    UpdateFailure,
 };
 use voussoir::core::plugin::{
     Capability, Card, KnownPath, Need, Parameter, PluginKind, Property, Quantity, Range, Sample, Shape,
@@ -33,6 +34,9 @@ fn one() -> f64 {
 impl MutantResponse {
     fn inner(&self) -> Option<FacetResponse> {
         let mut strength = self.cohesion;
+        if self.fault != "unused_key" {
+            strength *= self.factor;
+        }
         if self.fault == "a_number_of_its_own" {
             strength += 2e5;
         }
@@ -66,6 +70,23 @@ struct Mutated {
 }
 
 impl InterfaceResponse for Mutated {
+    fn respond(
+        &self,
+        gaps: &[[f64; 2]],
+        old: &[f64],
+        new: &mut [f64],
+        points: &mut [TractionPoint],
+    ) -> Result<(), BatchFailure> {
+        let extra = if self.fault == "allocates_in_batches" { vec![0.0; gaps.len()] } else { Vec::new() };
+        for (index, gap) in gaps.iter().enumerate() {
+            let place = 2 * index..2 * index + 2;
+            let said = self.respond_point(*gap, &old[place.clone()], &mut new[place]);
+            points[index] = said.map_err(|failure| BatchFailure { point: index, failure })?;
+            points[index].stored += extra.get(index).copied().unwrap_or(0.0);
+        }
+        Ok(())
+    }
+
     fn state_size(&self) -> usize {
         2
     }
@@ -112,6 +133,8 @@ impl InterfaceResponse for Mutated {
             "nothing_stored" => said.stored = 0.0,
             "not_a_number_at_no_gap" if gap[0] == 0.0 => said.traction[1] *= 0.0 / gap[0],
             "allocates" => said.stored += vec![0.0; 1 + usize::from(gap[0] > 0.0)].iter().sum::<f64>(),
+            "allocates_and_refuses" if gap[1] > 1e-3 => return Err(UpdateFailure::NoConvergence),
+            "allocates_and_refuses" => said.stored += std::hint::black_box(vec![0.0; 2]).iter().sum::<f64>(),
             // Friction that pushes in the direction of slip.
             "creates_energy" if slides => said.traction[1] *= -self.friction,
             "refuses_to_open" if gap[0] > 1e-4 => return Err(UpdateFailure::NoConvergence),
@@ -132,7 +155,7 @@ const CARD: Card = Card {
         Parameter::number("cohesion", Quantity::Stress, Range::POSITIVE, "c"),
         Parameter::number("normal_stiffness", Quantity::Stiffness, Range::POSITIVE, "k_n"),
         Parameter::number("shear_stiffness", Quantity::Stiffness, Range::POSITIVE, "k_t"),
-        Parameter::number("factor", Quantity::Ratio, Range::POSITIVE, "of nothing").default("1.0"),
+        Parameter::number("factor", Quantity::Ratio, Range::POSITIVE, "of the cohesion").default("1.0"),
     ],
     provides: &[Capability::RESPONSE],
     claims: &[Property::ASSOCIATED, Property::DISSIPATIVE, Property::SYMMETRIC_TANGENT],
@@ -153,7 +176,7 @@ const SAMPLE: Sample = Sample::new("", 2e-4, &["elastic", "sliding"]);
 
 #[test]
 fn responses_with_a_fault_are_found() {
-    let faults: [(&str, &[&str]); 25] = [
+    let faults: [(&str, &[&str]); 28] = [
         ("tangent_off_the_diagonal", &["tangent", "symmetry"]),
         ("tangent_of_the_elastic_joint", &["tangent"]),
         ("symmetry_claimed_and_untrue", &["symmetry", "associated"]),
@@ -175,6 +198,9 @@ fn responses_with_a_fault_are_found() {
         ("not_a_number_at_no_gap", &["untouched", "finite"]),
         ("no_number_is_answered", &["finite"]),
         ("allocates", &["allocation"]),
+        ("allocates_in_batches", &["allocation"]),
+        ("allocates_and_refuses", &["allocation"]),
+        ("unused_key", &["keys"]),
         ("creates_energy", &["cycles", "energy"]),
         ("refuses_to_open", &["finite"]),
         ("presses_when_open", &["normal"]),
