@@ -23,6 +23,9 @@ pub mod number_text;
 pub mod path;
 pub mod plugin;
 pub mod random;
+mod registered;
 
 pub use inventory;
+pub use nalgebra;
+pub use serde;
 pub use typetag;

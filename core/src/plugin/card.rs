@@ -5,12 +5,14 @@
 //! conformance tests read only cards.
 
 use super::keys::Keys;
+use super::registered::names_with_cards;
 use super::schema::{Parameter, PluginKind};
 use std::sync::OnceLock;
 
 /// A feature that a plug-in offers and a solver may require; compared when a study is loaded. The list is open: a law or
 /// solver with a new feature declares a new constant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Capability {
     /// The kind of plug-in that offers it.
     pub of: PluginKind,
@@ -249,13 +251,15 @@ pub fn nearest<'a>(wrong: &str, names: impl IntoIterator<Item = &'a str>) -> Opt
         .map(|(_, name)| name)
 }
 
-/// Returns the mistakes in the registry: a kind without plug-ins (a crate that no source names registers nothing), or two
-/// plug-ins of one kind with the same tag. Empty if there are no mistakes.
+/// Returns the mistakes in the registry; empty if there are none:
+/// - a kind without plug-ins (a crate that no source names registers nothing)
+/// - two plug-ins of one kind with the same tag
+/// - a card without a type, a type without a card, or a type whose name is not the tag of its card.
 pub fn audit() -> Vec<String> {
-    audit_of(cards())
+    audit_of(cards(), &names_with_cards())
 }
 
-fn audit_of(all: &[&Card]) -> Vec<String> {
+fn audit_of(all: &[&Card], readers: &[(PluginKind, Vec<&str>)]) -> Vec<String> {
     let mut wrong = Vec::new();
     for kind in PluginKind::ALL {
         if !all.iter().any(|card| card.kind == kind) {
@@ -273,6 +277,44 @@ fn audit_of(all: &[&Card]) -> Vec<String> {
             ));
         }
     }
+    for (kind, names) in readers {
+        let cards: Vec<&Card> = all.iter().copied().filter(|card| card.kind == *kind).collect();
+        wrong.extend(unmatched(*kind, &cards, names));
+    }
+    wrong
+}
+
+/// Compares the tags of the cards of a kind with the names by which its types are read.
+fn unmatched(kind: PluginKind, cards: &[&Card], names: &[&str]) -> Vec<String> {
+    let of = kind.describe();
+    let mut without_card: Vec<&str> =
+        names.iter().copied().filter(|name| cards.iter().all(|card| card.tag != *name)).collect();
+    let mut wrong = Vec::new();
+    for card in cards.iter().filter(|card| !names.contains(&card.tag)) {
+        let (tag, file) = (card.tag, card.file);
+        let Some(name) = nearest(tag, without_card.iter().copied()) else {
+            wrong.push(format!(
+                "the {of} \"{tag}\" has a card in {file}, but no type: is #[typetag::serde(name = \"{tag}\")] missing?"
+            ));
+            continue;
+        };
+        wrong.push(format!(
+            "the {of} in {file} has the tag \"{tag}\" on its card, but its type is registered as \"{name}\""
+        ));
+        without_card.retain(|own| *own != name);
+    }
+    for name in without_card {
+        wrong.push(format!(
+            "a type is registered as {of} \"{name}\", but no card has this tag: submit a `Card` in the file of the type"
+        ));
+    }
+    let mut seen: Vec<&str> = Vec::new();
+    for name in names {
+        if seen.contains(name) {
+            wrong.push(format!("two types are registered as {of} \"{name}\""));
+        }
+        seen.push(name);
+    }
     wrong
 }
 
@@ -284,9 +326,34 @@ mod tests {
 
     #[test]
     fn the_audit_finds_an_empty_kind_and_a_duplicate_tag() {
-        let wrong = audit_of(&[&ONE, &ONE]);
+        let wrong = audit_of(&[&ONE, &ONE], &[]);
         assert!(wrong.iter().any(|w| w == "no interface law is registered: is its crate named in the facade?"));
         assert!(wrong.iter().any(|w| w == "two scenes are called \"arch\": here.rs and here.rs"));
+    }
+
+    /// Tags of cards and names of types must be the same.
+    #[test]
+    fn the_audit_compares_cards_with_types() {
+        let wrong = |names: &[&'static str]| {
+            let found = audit_of(&[&ONE], &[(PluginKind::Scene, names.to_vec())]);
+            found.into_iter().filter(|why| !why.starts_with("no ")).collect::<Vec<_>>()
+        };
+        assert_eq!(wrong(&["arch"]), Vec::<String>::new());
+        assert_eq!(
+            wrong(&[]),
+            ["the scene \"arch\" has a card in here.rs, but no type: is #[typetag::serde(name = \"arch\")] missing?"]
+        );
+        assert_eq!(
+            wrong(&["arhc"]),
+            ["the scene in here.rs has the tag \"arch\" on its card, but its type is registered as \"arhc\""]
+        );
+        assert_eq!(
+            wrong(&["arch", "tower"]),
+            [
+                "a type is registered as scene \"tower\", but no card has this tag: submit a `Card` in the file of the type"
+            ]
+        );
+        assert_eq!(wrong(&["arch", "arch"]), ["two types are registered as scene \"arch\""]);
     }
 
     #[test]

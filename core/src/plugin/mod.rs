@@ -3,6 +3,7 @@
 mod card;
 mod diagnostic;
 pub mod keys;
+mod registered;
 mod schema;
 mod units;
 
@@ -12,6 +13,7 @@ pub use self::card::{
 };
 pub use self::diagnostic::Diagnostic;
 pub use self::keys::{KeyValue, Keys};
+pub use self::registered::{Registered, WithoutCard};
 pub use self::schema::{Need, Parameter, PluginKind, Range, Shape, Variant};
 pub use self::units::{Quantity, STANDARD_GRAVITY};
 pub use voussoir_keys_derive::Keys;

@@ -3,7 +3,7 @@
 use crate::output::StudyOutput;
 use serde_json::Value as Json;
 use std::io::{self, Write};
-use voussoir_core::plugin::{PluginKind, card};
+use voussoir_core::plugin::{PluginKind, Registered, card};
 use voussoir_study::config::default_table::default_table;
 use voussoir_study::results::CaseResult;
 
@@ -60,6 +60,10 @@ pub struct WriterEntry {
 }
 
 voussoir_core::inventory::collect!(WriterEntry);
+
+voussoir_core::inventory::submit! {
+    Registered { kind: PluginKind::Writer, names: |_| writers().into_iter().map(|entry| entry.tag).collect() }
+}
 
 /// Returns all writers, sorted by tag.
 pub fn writers() -> Vec<&'static WriterEntry> {

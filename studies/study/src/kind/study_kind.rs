@@ -7,7 +7,7 @@ use crate::results::{CaseLabel, CaseResult, Comparison, KindEntries};
 use crate::study::{Case, Outline, ReadFile, Study, StudyError, StudySource};
 use std::borrow::Cow;
 use std::io::{Cursor, Read};
-use voussoir_core::plugin::{Diagnostic, Parameter};
+use voussoir_core::plugin::{Diagnostic, Parameter, PluginKind, Registered};
 
 /// A kind of study, chosen by `kind = …`. Instances register with `inventory::submit! { KindEntry { … } }` beside their card.
 /// The parameters of the card are the keys of the table with the name of the kind.
@@ -217,6 +217,10 @@ pub struct KindEntry {
 }
 
 voussoir_core::inventory::collect!(KindEntry);
+
+voussoir_core::inventory::submit! {
+    Registered { kind: PluginKind::StudyKind, names: |_| kinds().into_iter().map(|entry| entry.tag).collect() }
+}
 
 /// Returns all study kinds, sorted by tag.
 pub fn kinds() -> Vec<&'static KindEntry> {

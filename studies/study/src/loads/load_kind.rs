@@ -4,7 +4,7 @@ use super::site::LoadSite;
 use std::fmt::Debug;
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::model::{LoadSpread, PointForce};
-use voussoir_core::plugin::Diagnostic;
+use voussoir_core::plugin::{Diagnostic, PluginKind, Registered};
 
 /// The action of a load on the blocks.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -31,3 +31,5 @@ pub trait LoadKind: Debug + Send + Sync {
     /// Returns the forces and accelerations of the load. The error lists the mistakes in its keys for these blocks.
     fn place(&self, site: &LoadSite) -> Result<Placed, Vec<Diagnostic>>;
 }
+
+voussoir_core::inventory::submit! { Registered::of::<dyn LoadKind>(PluginKind::LoadKind) }

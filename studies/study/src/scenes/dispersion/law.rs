@@ -1,7 +1,7 @@
 //! The trait of a law of dispersion.
 
 use std::fmt::Debug;
-use voussoir_core::plugin::{KeyValue, PluginKind, Shape};
+use voussoir_core::plugin::{KeyValue, PluginKind, Registered, Shape};
 
 /// A part of a load on the level line between two x \[m\].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,3 +39,5 @@ pub trait Dispersion: Debug + Send + Sync {
 impl KeyValue for Box<dyn Dispersion> {
     const SHAPE: Shape = Shape::Plugin(PluginKind::Dispersion);
 }
+
+voussoir_core::inventory::submit! { Registered::of::<dyn Dispersion>(PluginKind::Dispersion) }

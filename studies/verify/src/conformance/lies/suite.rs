@@ -10,10 +10,15 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicUsize;
 use std::sync::mpsc::channel;
 use std::time::Duration;
-use voussoir_core::plugin::PluginKind;
+use voussoir_core::plugin::{PluginKind, WithoutCard};
 use voussoir_study::cases::solve_case;
 use voussoir_study::results::CaseResult;
 use voussoir_study::study::{Case, SelectedSolver};
+
+// No study names the dishonest plug-ins.
+voussoir_core::inventory::submit! { WithoutCard { kind: PluginKind::LimitSolver, name: "dishonest_limit" } }
+voussoir_core::inventory::submit! { WithoutCard { kind: PluginKind::PathSolver, name: "dishonest_path" } }
+voussoir_core::inventory::submit! { WithoutCard { kind: PluginKind::Continuation, name: "dishonest_strategy" } }
 
 /// Stack of the thread in which a case is solved \[bytes\]: the usual stack of a program's first thread.
 const STACK: usize = 8 << 20;
