@@ -59,3 +59,8 @@ dist:
 # Packages of all crates in order, each built from what its package contains.
 package:
     cargo package --workspace --locked --exclude voussoir-tests --exclude voussoir-benches
+
+# Public names of the crates for plug-ins, compared with a revision: `just semver v0.1.0`. It needs cargo-semver-checks and,
+# for the first run, a network.
+semver baseline="v0.1.0":
+    cargo semver-checks -p voussoir-core -p voussoir-plug --baseline-rev {{baseline}}

@@ -80,6 +80,7 @@ const PARTS: [(&str, &[(&str, &str)]); 6] = [
             ("architecture.md", "Architecture"),
             ("adding_a_law.md", "Adding a law"),
             ("adding_plug_ins.md", "Adding other plug-ins"),
+            ("stability.md", "Stability of plug-ins"),
             ("reference/conformance.md", "Conformance"),
             ("reference/verification.md", "Every test"),
         ],

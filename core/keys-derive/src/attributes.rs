@@ -211,7 +211,7 @@ pub fn documentation(attributes: &[Attribute]) -> String {
     }
 }
 
-/// The path of the items of the core that the derive uses.
+/// The path of the items that the derive uses. Each block of its code imports them under this name.
 pub fn core() -> TokenStream {
-    quote!(::voussoir_core::plugin)
+    quote!(__keys)
 }

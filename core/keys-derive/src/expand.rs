@@ -9,21 +9,31 @@ use syn::ext::IdentExt;
 use syn::spanned::Spanned;
 use syn::{Data, DeriveInput, Error, Field, Fields, FieldsNamed, Ident, LitStr, Result, Type, Variant};
 
-/// Returns the keys of a type as tokens, or the errors of its attributes.
-pub fn expand(input: &DeriveInput) -> Result<TokenStream> {
+/// Returns the keys of a type as tokens, or the errors of its attributes. `root` is the path of the module `plugin`.
+pub fn expand(input: &DeriveInput, root: &TokenStream) -> Result<TokenStream> {
     if !input.generics.params.is_empty() {
         return Err(Error::new_spanned(&input.generics, "a table of keys has no type parameters"));
     }
     let options = Options::of(&input.attrs)?;
+    let (core, written) = (core(), of_type(input, &options)?);
+    Ok(quote! {
+        const _: () = {
+            use #root as #core;
+            #written
+        };
+    })
+}
+
+fn of_type(input: &DeriveInput, options: &Options) -> Result<TokenStream> {
     match &input.data {
         Data::Struct(data) => match &data.fields {
-            Fields::Named(fields) => of_struct(&input.ident, &options, fields),
-            Fields::Unit => of_struct(&input.ident, &options, &no_fields()),
+            Fields::Named(fields) => of_struct(&input.ident, options, fields),
+            Fields::Unit => of_struct(&input.ident, options, &no_fields()),
             Fields::Unnamed(fields) => Err(Error::new_spanned(fields, "the keys of a table are fields with names")),
         },
         Data::Enum(data) => {
             let variants: Vec<&Variant> = data.variants.iter().collect();
-            of_enum(&input.ident, &options, &variants)
+            of_enum(&input.ident, options, &variants)
         }
         Data::Union(data) => Err(Error::new_spanned(data.union_token, "keys are those of a struct or an enum")),
     }
@@ -162,7 +172,7 @@ impl Declared<'_> {
 fn serde_of(ident: &Ident, container: &TokenStream, shadow: &TokenStream) -> TokenStream {
     let core = core();
     let (serde, name) = (quote!(#core::keys::serde), ident.to_string());
-    let root = "::voussoir_core::plugin::keys::serde";
+    let root = serde.to_string();
     quote! {
         #[derive(#serde::Serialize, #serde::Deserialize)]
         #[serde(crate = #root, remote = #name, #container)]
@@ -196,20 +206,18 @@ fn of_struct(ident: &Ident, options: &Options, fields: &FieldsNamed) -> Result<T
         }
     });
     Ok(quote! {
-        const _: () = {
-            #serde
-            #(#beside)*
-            #[automatically_derived]
-            impl #core::Keys for #ident {
-                const PARAMETERS: &'static [#core::Parameter] = &[#(#parameters),*];
-                #check
-            }
-            #[automatically_derived]
-            impl #core::KeyValue for #ident {
-                const SHAPE: #core::Shape = #core::Shape::Table(<#ident as #core::Keys>::PARAMETERS);
-            }
-            const _: &[#core::Parameter] = <#ident as #core::Keys>::PARAMETERS;
-        };
+        #serde
+        #(#beside)*
+        #[automatically_derived]
+        impl #core::Keys for #ident {
+            const PARAMETERS: &'static [#core::Parameter] = &[#(#parameters),*];
+            #check
+        }
+        #[automatically_derived]
+        impl #core::KeyValue for #ident {
+            const SHAPE: #core::Shape = #core::Shape::Table(<#ident as #core::Keys>::PARAMETERS);
+        }
+        const _: &[#core::Parameter] = <#ident as #core::Keys>::PARAMETERS;
     })
 }
 
@@ -239,15 +247,13 @@ fn of_enum(ident: &Ident, options: &Options, variants: &[&Variant]) -> Result<To
     let container = if container.is_empty() { quote!(rename_all = "snake_case") } else { container };
     let serde = serde_of(ident, &container, &quote!(enum Shadow { #(#shadow),* }));
     Ok(quote! {
-        const _: () = {
-            #serde
-            #(#beside)*
-            #[automatically_derived]
-            impl #core::KeyValue for #ident {
-                const SHAPE: #core::Shape = #shape;
-            }
-            const _: #core::Shape = <#ident as #core::KeyValue>::SHAPE;
-        };
+        #serde
+        #(#beside)*
+        #[automatically_derived]
+        impl #core::KeyValue for #ident {
+            const SHAPE: #core::Shape = #shape;
+        }
+        const _: #core::Shape = <#ident as #core::KeyValue>::SHAPE;
     })
 }
 
@@ -341,7 +347,7 @@ mod tests {
 
     fn message(input: TokenStream) -> String {
         let input = syn::parse2(input).expect("Rust");
-        expand(&input).expect_err("a mistake").to_string()
+        expand(&input, &quote!(::voussoir_core::plugin)).expect_err("a mistake").to_string()
     }
 
     #[test]
@@ -414,7 +420,7 @@ mod tests {
             }
         ))
         .expect("Rust");
-        assert_eq!(expand(&input).expect_err("mistakes").into_iter().count(), 2);
+        assert_eq!(expand(&input, &quote!(::voussoir_core::plugin)).expect_err("mistakes").into_iter().count(), 2);
     }
 
     #[test]

@@ -4,6 +4,7 @@ use std::fmt;
 
 /// One mistake in a study.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Diagnostic {
     /// Dotted path from the study's root, list entries by index: `stages.1.loads.0.force`.
     pub path: String,
@@ -17,6 +18,12 @@ impl Diagnostic {
     /// Creates a mistake at `path`.
     pub fn new(path: impl Into<String>, message: impl Into<String>) -> Self {
         Diagnostic { path: path.into(), message: message.into(), help: None }
+    }
+
+    /// Adds a table in front of the path.
+    pub fn below(mut self, table: &str) -> Self {
+        self.path = format!("{table}.{}", self.path);
+        self
     }
 
     /// Adds advice.

@@ -55,6 +55,7 @@ impl Range {
 
 /// The kinds of plug-in; each is chosen by the value of its tag key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[non_exhaustive]
 pub enum PluginKind {
     /// Law of a joint: `[joints.NAME] law = …`.
     InterfaceLaw,

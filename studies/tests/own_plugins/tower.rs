@@ -1,14 +1,14 @@
 //! A user-defined scene, kind of load, limit solver and continuation strategy.
 
 use serde_json::json;
-use voussoir::core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver};
-use voussoir::core::model::geometry::Vec2;
-use voussoir::core::model::{Assembly, Catalogue, Scene};
-use voussoir::core::path::{Constraint, Continuation, Increment};
-use voussoir::core::plugin::{Capability, Card, Diagnostic, Keys, PluginKind, STANDARD_GRAVITY};
-use voussoir::core::{inventory, typetag};
 use voussoir::loads::{LoadKind, LoadSite, Placed};
 use voussoir::solvers::limit::conic::LimitConic;
+use voussoir_plug::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver};
+use voussoir_plug::model::geometry::Vec2;
+use voussoir_plug::model::{Assembly, Catalogue, Scene};
+use voussoir_plug::path::{Constraint, Continuation, Increment};
+use voussoir_plug::plugin::{Capability, Card, Diagnostic, Keys, PluginKind, STANDARD_GRAVITY};
+use voussoir_plug::{inventory, typetag};
 
 /// `scene = "tower"`: equal blocks on each other, each `lean` further to the right than the one below.
 #[derive(Debug, Keys)]
@@ -51,7 +51,7 @@ inventory::submit! {
         tag: "tower",
         summary: "equal blocks on each other, each further to the right",
         file: file!(),
-        package: voussoir_core::package!(),
+        package: voussoir_plug::package!(),
         page: "# `tower`\n\nA stack that leans.\n",
         ..Card::of::<Tower>()
     }
@@ -78,7 +78,7 @@ inventory::submit! {
         tag: "quake",
         summary: "a share of all weights, to the right",
         file: file!(),
-        package: voussoir_core::package!(),
+        package: voussoir_plug::package!(),
         page: "# `quake`\n\nA share of all weights, to the right.\n",
         ..Card::of::<Quake>()
     }
@@ -110,7 +110,7 @@ inventory::submit! {
         requires: &[&[Capability::FACETS], &[Capability::RIGID_LIMIT]],
         cost: Some(0),
         file: file!(),
-        package: voussoir_core::package!(),
+        package: voussoir_plug::package!(),
         page: "# `counted_conic`\n\nAs `limit_conic`.\n",
         ..Card::of::<CountedConic>()
     }
@@ -147,7 +147,7 @@ inventory::submit! {
         tag: "taxicab",
         summary: "movement plus load factor",
         file: file!(),
-        package: voussoir_core::package!(),
+        package: voussoir_plug::package!(),
         page: "# `taxicab`\n\nMovement plus load factor.\n",
         ..Card::of::<Taxicab>()
     }

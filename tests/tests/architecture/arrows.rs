@@ -19,6 +19,8 @@ fn the_arrows_hold() {
     // The derive of keys belongs to the core: a proc macro must be a separate crate.
     assert_eq!(ours("core"), ["voussoir-keys-derive"]);
     assert_eq!(ours("core/keys-derive"), Vec::<String>::new());
+    // Plug-ins outside of this repository see only the core, under names that stay.
+    assert_eq!(ours("core/plug"), ["voussoir-core", "voussoir-keys-derive"]);
     assert_eq!(ours("laws"), ["voussoir-core"]);
     assert_eq!(ours("solvers"), ["voussoir-core"]);
     assert_eq!(ours("laws/external"), ["voussoir-core"]);
@@ -33,7 +35,7 @@ fn the_arrows_hold() {
     // Tests register their own plug-ins, as any other project would.
     assert_eq!(ours("tests"), ["voussoir", "voussoir-core"]);
     assert_eq!(ours("benches"), ["voussoir", "voussoir-tests"]);
-    for folder in ["core", "core/keys-derive", "laws", "solvers"] {
+    for folder in ["core", "core/keys-derive", "core/plug", "laws", "solvers"] {
         each_source(&workspace().join(folder).join("src"), &mut |path, text| {
             // Long forms of unit tests print counts; the rest of a library prints nothing.
             let unit_tests = path.file_name().is_some_and(|name| name == "tests.rs");

@@ -6,8 +6,9 @@ use super::graph::Graph;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Crates without circular imports between files.
-const CRATES: [&str; 9] = [
+const CRATES: [&str; 10] = [
     "core",
+    "core/plug",
     "laws",
     "laws/external",
     "solvers",

@@ -1,8 +1,9 @@
 //! `keyed`: a dry joint with shear keys.
 #![doc = include_str!("keyed.md")]
 
-use voussoir_core::law::{Facet, InterfaceLaw};
-use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, PluginKind, Property, Sample};
+use voussoir_plug::law::{Facet, InterfaceLaw};
+use voussoir_plug::plugin::{Capability, Card, Keys, KnownPath, PluginKind, Property, Sample};
+use voussoir_plug::{inventory, typetag};
 
 /// Friction and keys; no tension.
 #[derive(Debug, Clone, Keys)]
@@ -41,7 +42,7 @@ const KNOWN_PATHS: &[KnownPath] = &[KnownPath {
     tolerance: 1e-12,
 }];
 
-voussoir_core::inventory::submit! {
+inventory::submit! {
     Card {
         kind: PluginKind::InterfaceLaw,
         tag: "keyed",
@@ -52,7 +53,7 @@ voussoir_core::inventory::submit! {
         known_paths: KNOWN_PATHS,
         sources: &["where the equations come from: author, year, equation"],
         file: file!(),
-        package: voussoir_core::package!(),
+        package: voussoir_plug::package!(),
         page: include_str!("keyed.md"),
         ..Card::of::<Keyed>()
     }

@@ -68,7 +68,7 @@ struct Shapes {
 
 /// Adds a prefix to the paths of diagnostics.
 fn within(path: &str, diagnostics: Vec<Diagnostic>) -> impl Iterator<Item = Diagnostic> + '_ {
-    diagnostics.into_iter().map(move |wrong| Diagnostic { path: format!("{path}.{}", wrong.path), ..wrong })
+    diagnostics.into_iter().map(move |wrong| wrong.below(path))
 }
 
 impl BridgeScene {

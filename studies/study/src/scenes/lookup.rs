@@ -61,8 +61,5 @@ pub(super) fn pairs_of(diagnostics: Vec<Diagnostic>) -> Vec<(String, String)> {
 
 /// Converts paths from the scene's table into paths from the study's root.
 pub(super) fn from_root(diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
-    diagnostics
-        .into_iter()
-        .map(|diagnostic| Diagnostic { path: format!("scene.{}", diagnostic.path), ..diagnostic })
-        .collect()
+    diagnostics.into_iter().map(|wrong| wrong.below("scene")).collect()
 }
