@@ -96,6 +96,12 @@ enum Command {
         /// Greatest relative error of a solved problem in the performance profile
         #[arg(long, default_value_t = 1e-3)]
         within: f64,
+        /// Measure each case with five values of each setting: tolerance, first_step, mesh
+        #[arg(long, value_name = "NAME,…", value_delimiter = ',', conflicts_with_all = ["reference", "out"])]
+        sweep: Vec<String>,
+        /// CSV file for the ladders of --sweep
+        #[arg(long, value_name = "FILE", requires = "sweep")]
+        output: Option<PathBuf>,
         /// Print nothing but errors
         #[arg(long)]
         quiet: bool,
@@ -226,8 +232,9 @@ impl Command {
             Command::Merge { dirs, out, jobs, quiet } => {
                 commands::merge::merge(&dirs, &commands::merge::MergeOptions { out, jobs, quiet })
             }
-            Command::Bench { study, out, set, runs, reference, within, quiet } => {
-                let arguments = commands::bench::BenchArguments { out, set, runs, reference, within, quiet };
+            Command::Bench { study, out, set, runs, reference, within, sweep, output, quiet } => {
+                let arguments =
+                    commands::bench::BenchArguments { out, set, runs, reference, within, sweep, output, quiet };
                 commands::bench::measure(&study, &arguments)
             }
             Command::Serve { study, set, open, port } => commands::serve::serve(&study, &set, open, port),

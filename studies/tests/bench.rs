@@ -117,3 +117,46 @@ fn variants_are_measured_side_by_side_from_what_is_asked_for() {
     assert!(output.status.code() == Some(2) && said.contains("did you mean \"path\""), "{said}");
     drop(std::fs::remove_dir_all(folder));
 }
+
+/// `--sweep` measures ladders of five rungs, and prints the difference from the finest rung and the order of the mesh.
+#[test]
+fn ladders_of_settings_are_measured() {
+    let folder = folder("sweep");
+    std::fs::write(folder.join("small.toml"), STUDY).expect("a study");
+    let run = |arguments: &[&str]| {
+        let voussoir = env!("CARGO_BIN_EXE_voussoir");
+        Command::new(voussoir)
+            .current_dir(&folder)
+            .arg("bench")
+            .arg("small.toml")
+            .args(arguments)
+            .output()
+            .expect("the program")
+    };
+    let path = "solver.solver=newton_path";
+    let output =
+        run(&["--runs", "1", "--set", path, "--sweep", "mesh,first_step,tolerance", "--output", "ladders.csv"]);
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(output.status.success(), "{said}{}", String::from_utf8_lossy(&output.stderr));
+    let table = std::fs::read_to_string(folder.join("ladders.csv")).expect("a table");
+    for parameter in ["mesh", "first_step", "tolerance"] {
+        let rows: Vec<&str> = table.lines().filter(|line| line.contains(&format!(",{parameter},"))).collect();
+        assert_eq!(rows.len(), 5, "{table}");
+        assert!(said.contains(parameter) && said.contains("finest"), "{said}");
+    }
+    // The finest rung has no difference. Before it, a finer mesh is nearer to it than the study's own.
+    let differences: Vec<f64> = table
+        .lines()
+        .filter(|line| line.contains(",mesh,"))
+        .filter_map(|line| line.rsplit(',').nth(3)?.parse().ok())
+        .collect();
+    assert!(differences.len() == 4 && differences[3] < 0.2 * differences[0], "{table}");
+    // A mistyped name, and settings that the solver does not have.
+    let output = run(&["--sweep", "tolerence"]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.code() == Some(2) && said.contains("did you mean \"tolerance\""), "{said}");
+    let output = run(&["--set", "solver.solver=limit_chain", "--sweep", "first_step"]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.code() == Some(2) && said.contains("the solver limit_chain does not use it"), "{said}");
+    drop(std::fs::remove_dir_all(folder));
+}

@@ -4,43 +4,21 @@
 //! is |λ/λ* − 1| with one reference λ* for each problem. Time is the least of several runs on one thread.
 
 mod contestants;
+mod measure;
 mod measured;
 mod output;
+mod sweep;
 
+pub use measure::{BenchOptions, Reference};
 pub use measured::{Bench, Measurement, Problem};
 pub use output::{csv, error_chart, profile_chart, table};
+pub use sweep::{PARAMETERS, Rung, Sweep, sweep, sweep_csv, sweep_table};
 
 use contestants::{Contestant, contestants, of_variants};
+use measure::{measure, name_of};
 use voussoir_core::plugin::{PluginKind, card};
-use voussoir_study::cases::solve_case;
 use voussoir_study::solve::accuracy::ends_at_limit_load;
-use voussoir_study::study::{Case, Study};
-
-/// Least duration of a timed measurement \[s\].
-const TICKS: f64 = 0.05;
-/// Greatest number of repetitions in a timed measurement.
-const MOST_OFTEN: u32 = 1 << 12;
-
-/// Options of a bench.
-pub struct BenchOptions<'a> {
-    /// Runs of each contestant; the fastest run counts.
-    pub runs: usize,
-    /// Reference of the errors.
-    pub reference: Option<Reference>,
-    /// Returns the time \[s\]; the difference of two readings is a duration.
-    pub clock: &'a dyn Fn() -> f64,
-    /// Receives each measurement; returns false to stop the bench.
-    pub told: &'a dyn Fn(&Measurement) -> bool,
-}
-
-/// The reference of errors.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Reference {
-    /// The results of this variant or contestant.
-    Named(String),
-    /// A known load factor.
-    Known(f64),
-}
+use voussoir_study::study::Study;
 
 /// Measures the variants of a study. If a study has no variants, every compatible solver is measured.
 pub fn bench(study: &Study, options: &BenchOptions) -> Bench {
@@ -86,30 +64,6 @@ pub fn names(study: &Study) -> Vec<String> {
         }
         _ => study.outline.variants.clone(),
     }
-}
-
-fn name_of(case: &Case) -> String {
-    let value = |(key, value): (&String, &serde_json::Value)| format!("{key} = {value}");
-    case.scene.iter().cloned().chain(case.parameters.iter().map(value)).collect::<Vec<_>>().join(", ")
-}
-
-fn measure(problem: usize, contestant: String, case: &Case, options: &BenchOptions) -> Measurement {
-    let result = solve_case(case);
-    // The resolution of clocks is a few milliseconds: short work is repeated until the clock shows it.
-    let (mut seconds, mut often) = (f64::INFINITY, 1u32);
-    let mut left = options.runs.max(1);
-    while left > 0 {
-        let start = (options.clock)();
-        (0..often).for_each(|_| drop(std::hint::black_box(solve_case(case))));
-        let spent = (options.clock)() - start;
-        if spent < TICKS && often < MOST_OFTEN {
-            often *= 2;
-            continue;
-        }
-        seconds = seconds.min(spent / f64::from(often));
-        left -= 1;
-    }
-    Measurement { problem, contestant, error: None, seconds, result }
 }
 
 /// Sets the errors of a problem's measurements. The reference is, in this order: the requested one; the variant that the

@@ -1,11 +1,14 @@
 //! `voussoir bench`.
 
 use super::clock::processor_time;
-use super::error::{CliError, Outcome, Verdict};
+use super::error::{CliError, ErrorKind, Outcome, Verdict};
 use super::files;
 use super::folder::ResultFolder;
 use super::print::{complain, say};
-use crate::bench::{Bench, BenchOptions, Measurement, Reference, bench, csv, error_chart, names, profile_chart, table};
+use crate::bench::{
+    Bench, BenchOptions, Measurement, PARAMETERS, Reference, bench, csv, error_chart, names, profile_chart, sweep,
+    sweep_csv, sweep_table, table,
+};
 use std::path::{Path, PathBuf};
 use voussoir_plot::svg::as_file;
 use voussoir_study::config::diagnostic::suggest;
@@ -25,6 +28,10 @@ pub struct BenchArguments {
     pub reference: Option<String>,
     /// Greatest error of a solved problem in the performance profile.
     pub within: f64,
+    /// Names of settings: each case is measured on a ladder of values of each.
+    pub sweep: Vec<String>,
+    /// The CSV file of a sweep.
+    pub output: Option<PathBuf>,
     /// Print nothing but errors.
     pub quiet: bool,
 }
@@ -45,6 +52,9 @@ pub fn measure(path: &Path, arguments: &BenchArguments) -> Outcome {
         true
     };
     let options = BenchOptions { runs: arguments.runs, reference, clock: &processor_time, told: &told };
+    if !arguments.sweep.is_empty() {
+        return ladders(study, arguments, &options);
+    }
     let found = bench(study, &options);
     let dir = arguments.out.clone().unwrap_or_else(|| Path::new("results").join(&study.name).join("bench"));
     let folder = ResultFolder::open(&dir)?;
@@ -67,6 +77,28 @@ pub fn measure(path: &Path, arguments: &BenchArguments) -> Outcome {
     let answered =
         |problem: usize| found.measurements.iter().any(|own| own.problem == problem && own.factor().is_some());
     Ok(Verdict::of((0..found.problems.len()).all(answered)))
+}
+
+/// Measures the cases of a study on the ladders of some settings.
+fn ladders(study: &Study, arguments: &BenchArguments, options: &BenchOptions) -> Outcome {
+    let known = |name: &String| {
+        let found = PARAMETERS.into_iter().find(|known| known == name);
+        let help = || suggest(name, &PARAMETERS, "settings that can be swept");
+        found.ok_or_else(|| CliError::wrong_input(format_args!("--sweep {name}: is no setting; {}", help())))
+    };
+    let parameters = arguments.sweep.iter().map(known).collect::<Result<Vec<_>, _>>()?;
+    let found = sweep(study, &parameters, options);
+    if let Some(file) = &arguments.output {
+        std::fs::write(file, sweep_csv(&found)).map_err(|error| CliError::unwritten(file, error))?;
+    }
+    if !arguments.quiet {
+        say(sweep_table(&found).trim_end());
+    }
+    if found.rungs.is_empty() {
+        let reasons = found.refused.iter().map(|(_, name, why)| format!("--sweep {name}: {why}"));
+        return Err(CliError::of_lines(ErrorKind::WrongInput, reasons));
+    }
+    Ok(Verdict::of(found.rungs.iter().all(|rung| rung.measured.factor().is_some())))
 }
 
 /// Reads the reference: a load factor, or the name of a solver or variant.
