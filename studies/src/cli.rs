@@ -120,9 +120,9 @@ enum Command {
         #[arg(long, value_name = "PORT", default_value_t = 0)]
         port: u16,
     },
-    /// Write a commented study that runs without changes, or a law
+    /// Write a commented study that runs without changes, a law, or a crate with a law
     New {
-        /// Kind of the new study
+        /// Kind of the new study, or a law or crate
         #[command(subcommand)]
         what: New,
     },
@@ -281,6 +281,20 @@ enum New {
         #[arg(long, default_value = ".")]
         out: PathBuf,
     },
+    /// A crate with one law, its study and tests, and a program with the whole command line
+    Crate {
+        /// Name of the crate and of its folder
+        name: String,
+        /// Tag of its law (default: the name of the crate)
+        #[arg(long, value_name = "TAG")]
+        law: Option<String>,
+        /// Folder in which the folder of the crate is written
+        #[arg(long, default_value = ".")]
+        out: PathBuf,
+        /// Copy of the repository, on which the crate then depends by path (default: published versions)
+        #[arg(long, value_name = "DIR")]
+        repository: Option<PathBuf>,
+    },
 }
 
 #[derive(Args)]
@@ -300,6 +314,9 @@ impl New {
             New::Compare(study) => (Template::Compare, study),
             New::Paper(study) => (Template::Paper, study),
             New::Law { tag, out } => return commands::new_law::law(&tag, &out),
+            New::Crate { name, law, out, repository } => {
+                return commands::new_law::new_crate(&commands::new_law::NewCrate { name, law, out, repository });
+            }
         };
         commands::new::new(template, study.name.as_deref())
     }

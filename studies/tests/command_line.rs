@@ -294,6 +294,52 @@ fn a_law_is_checked_and_a_new_one_is_written() {
     std::fs::remove_dir_all(&krate).expect("removed");
 }
 
+/// `new crate` writes a crate once. It has a law, a program, a study and tests, and depends on published versions or on a copy of
+/// the repository.
+#[test]
+fn a_new_crate_is_written() {
+    let folder = empty_folder("new_crate");
+    let into = folder.to_str().expect("a path");
+    assert_eq!(code(&voussoir(&["new", "crate", "pin-laws", "--law", "shear_pins", "--out", into])), 0);
+    let read = |file: &str| std::fs::read_to_string(folder.join("pin-laws").join(file)).expect("a file");
+    assert!(read("Cargo.toml").contains("voussoir-plug = \"") && read("src/lib.rs").contains("pub mod shear_pins;"));
+    assert!(
+        read("src/main.rs").contains("use pin_laws as _;") && read("shear_pins.toml").contains("law = \"shear_pins\"")
+    );
+    assert!(
+        read("src/shear_pins.rs").contains("voussoir_plug::package!()") && read("pyproject.toml").contains("maturin")
+    );
+    assert_eq!(code(&voussoir(&["new", "crate", "pin-laws", "--law", "shear_pins", "--out", into])), 2, "it is there");
+    assert_eq!(code(&voussoir(&["new", "crate", "Pins", "--out", into])), 2, "no name of a crate");
+    assert_eq!(code(&voussoir(&["new", "crate", "coulomb", "--out", into])), 2, "there is such a law");
+    assert_eq!(code(&voussoir(&["new", "crate", "pins", "--out", into, "--repository", into])), 2, "no repository");
+}
+
+/// A new crate compiles with its tests against this repository, and needs no crate but `voussoir` and `voussoir-plug`. This
+/// takes about half a minute, so `.ci/extra` runs it.
+#[test]
+#[ignore = "compiles a crate: about half a minute"]
+fn a_new_crate_compiles() {
+    let folder = empty_folder("new_crate_compiles");
+    let into = folder.to_str().expect("a path");
+    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
+    assert_eq!(code(&voussoir(&["new", "crate", "pins", "--out", into, "--repository", root])), 0);
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| Path::new(root).join("target"), Into::into);
+    let krate = folder.join("pins");
+    // The versions of the example's lock file are those of the workspace.
+    let lock = text(&Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/my_law/Cargo.lock"));
+    std::fs::write(krate.join("Cargo.lock"), lock.replace("\"my_law\"", "\"pins\"")).expect("a lock file");
+    let cargo = Command::new(env!("CARGO"))
+        .args(["check", "--release", "--offline", "--all-targets", "--config"])
+        .arg(Path::new(root).join(".ci/light.toml"))
+        .arg("--target-dir")
+        .arg(target)
+        .current_dir(&krate)
+        .output()
+        .expect("cargo starts");
+    assert!(cargo.status.success(), "{}", String::from_utf8_lossy(&cargo.stderr));
+}
+
 /// `diff` ends with 0 if two folders have the same results and with 1 if they differ. The table begins with the largest
 /// change. A folder without results is wrong input, and the nearest name of a missing folder is suggested.
 #[test]

@@ -95,7 +95,7 @@ fn packages_hold_what_they_include() {
     assert!(missing.is_empty(), "not in the package:\n{}", missing.join("\n"));
 }
 
-/// Files outside a package that the program includes are copied into it: the law of the example, which `voussoir new law` writes,
+/// Files outside a package that the program includes are copied into it: the files of the example, which `voussoir new` writes,
 /// and the glossary.
 #[test]
 fn copies_are_up_to_date() {
@@ -104,6 +104,10 @@ fn copies_are_up_to_date() {
         ("templates/keyed.rs", "studies/examples/my_law/src/keyed.rs"),
         ("templates/keyed.md", "studies/examples/my_law/src/keyed.md"),
         ("templates/test.rs", "studies/examples/my_law/tests/keyed.rs"),
+        ("templates/study.rs", "studies/examples/my_law/tests/study.rs"),
+        ("templates/main.rs", "studies/examples/my_law/src/main.rs"),
+        ("templates/keyed.toml", "studies/examples/my_law/keyed.toml"),
+        ("templates/gitignore", "studies/examples/my_law/.gitignore"),
         ("templates/fnv.rs", "studies/study/src/fnv.rs"),
         ("study/templates/glossary.md", "docs/reference/glossary.md"),
     ] {
