@@ -22,6 +22,9 @@ const STEPS: [f64; 5] = [1.0, 0.5, 0.25, 0.125, 0.0625];
 /// Multiples of the study's own number of elements in each direction.
 const MESHES: [f64; 5] = [1.0, 2.0, 3.0, 4.0, 6.0];
 
+/// Differences up to this share of the answer are rounding errors.
+const ROUNDING: f64 = 1e-10;
+
 /// A setting to measure: its size, its text, and the keys that set it.
 struct Setting {
     size: f64,
@@ -168,7 +171,9 @@ fn compared(sizes: &[f64], answers: &[Option<f64>]) -> Vec<(Option<f64>, Option<
         found[index].0 = answers[index].zip(answers[finest]).map(|(own, finest)| (own - finest).abs());
     }
     for index in 1..finest {
-        let differences = found[index - 1].0.zip(found[index].0).filter(|(a, b)| *a > 0.0 && *b > 0.0);
+        // Differences of rounding errors have no order.
+        let least = ROUNDING * answers[finest].map_or(0.0, f64::abs);
+        let differences = found[index - 1].0.zip(found[index].0).filter(|(a, b)| *a > least && *b > least);
         found[index].1 = differences.map(|(a, b)| (a / b).ln() / (sizes[index - 1] / sizes[index]).ln());
     }
     found
@@ -257,5 +262,8 @@ mod tests {
         assert_eq!(found[3], (None, None));
         assert_eq!(compared(&[1.0, 0.5, 0.25], &[Some(2.0), None, Some(1.0)])[..2], [(Some(1.0), None), (None, None)]);
         assert_eq!(compared(&[1.0], &[None]), [(None, None)]);
+        // Rounding errors have no order.
+        let noise = [1.0 + 1e-14, 1.0 + 3e-15, 1.0].map(Some);
+        assert!(compared(&[1.0, 0.5, 0.25], &noise).iter().all(|(_, order)| order.is_none()));
     }
 }

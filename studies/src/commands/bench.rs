@@ -88,15 +88,15 @@ fn ladders(study: &Study, arguments: &BenchArguments, options: &BenchOptions) ->
     };
     let parameters = arguments.sweep.iter().map(known).collect::<Result<Vec<_>, _>>()?;
     let found = sweep(study, &parameters, options);
+    if found.rungs.is_empty() {
+        let reasons = found.refused.iter().map(|(_, name, why)| format!("--sweep {name}: {why}"));
+        return Err(CliError::of_lines(ErrorKind::WrongInput, reasons));
+    }
     if let Some(file) = &arguments.output {
         std::fs::write(file, sweep_csv(&found)).map_err(|error| CliError::unwritten(file, error))?;
     }
     if !arguments.quiet {
         say(sweep_table(&found).trim_end());
-    }
-    if found.rungs.is_empty() {
-        let reasons = found.refused.iter().map(|(_, name, why)| format!("--sweep {name}: {why}"));
-        return Err(CliError::of_lines(ErrorKind::WrongInput, reasons));
     }
     Ok(Verdict::of(found.rungs.iter().all(|rung| rung.measured.factor().is_some())))
 }
