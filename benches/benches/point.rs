@@ -4,7 +4,8 @@
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
 use voussoir::core::law::{
-    BulkMaterial, InterfaceLaw, PlanarPoint, PlanarUpdate, Plane, StressPoint, TractionPoint, UpdateContext,
+    BulkMaterial, InterfaceLaw, PlanarPoint, PlanarUpdate, Plane, PointContext, StressPoint, TractionPoint,
+    UpdateContext,
 };
 use voussoir_benches::boundary::{FRICTION, STIFFNESS, gaps, through_the_registry, written_out};
 use voussoir_benches::point::{cohesive, paper_stone, states, strains};
@@ -60,10 +61,12 @@ fn joints(c: &mut Criterion) {
     let mut group = c.benchmark_group("cohesive, batches of 256");
     group.throughput(Throughput::Elements(256));
     for (name, gap) in [("elastic", [-1e-6, 1e-6]), ("softening", [1e-5, 1e-4]), ("sliding", [-1e-5, 1e-3])] {
-        let gaps = vec![gap; 256];
+        let (gaps, contexts) = (vec![gap; 256], vec![PointContext::default(); 256]);
         let old = vec![0.0; 512];
         let (mut new, mut points) = (old.clone(), vec![TractionPoint::ZERO; 256]);
-        group.bench_function(name, |b| b.iter(|| response.respond(black_box(&gaps), &old, &mut new, &mut points)));
+        group.bench_function(name, |b| {
+            b.iter(|| response.respond(black_box(&gaps), &contexts, &old, &mut new, &mut points))
+        });
     }
     group.finish();
 }
@@ -72,6 +75,7 @@ fn joints(c: &mut Criterion) {
 /// own formula is measured too.
 fn boundary(c: &mut Criterion) {
     let gaps = gaps();
+    let contexts = vec![PointContext::default(); 64];
     let mut group = c.benchmark_group("plug-in boundary, batches of 64");
     group.throughput(Throughput::Elements(64));
     for (name, tag) in [("facets through the registry", "coulomb"), ("response through the registry", "bench_friction")]
@@ -79,7 +83,9 @@ fn boundary(c: &mut Criterion) {
         let response = through_the_registry(tag);
         let old = vec![0.0; 64 * response.state_size()];
         let (mut new, mut points) = (old.clone(), vec![TractionPoint::ZERO; 64]);
-        group.bench_function(name, |b| b.iter(|| response.respond(black_box(&gaps), &old, &mut new, &mut points)));
+        group.bench_function(name, |b| {
+            b.iter(|| response.respond(black_box(&gaps), &contexts, &old, &mut new, &mut points))
+        });
     }
     let (old, mut new, mut points) = (vec![0.0; 64], vec![0.0; 64], vec![TractionPoint::ZERO; 64]);
     group.bench_function("written out", |b| {

@@ -5,7 +5,7 @@
 //! checks that the three kinds agree.
 
 use std::hint::black_box;
-use voussoir::core::law::TractionPoint;
+use voussoir::core::law::{PointContext, TractionPoint};
 use voussoir_benches::boundary::{FRICTION, STIFFNESS, gaps, through_the_registry, written_out};
 
 fn main() {
@@ -13,6 +13,7 @@ fn main() {
     let kind = arguments.get(1).map_or("written", String::as_str);
     let batches: usize = arguments.get(2).and_then(|word| word.parse().ok()).unwrap_or(1000);
     let gaps = gaps();
+    let contexts = vec![PointContext::default(); gaps.len()];
     let old = vec![0.0; 64];
     let (mut new, mut points) = (old.clone(), vec![TractionPoint::ZERO; 64]);
     written_out(STIFFNESS, FRICTION, &gaps, &old, &mut new, &mut points).expect("answers");
@@ -20,7 +21,7 @@ fn main() {
     for tag in ["coulomb", "bench_friction"] {
         let response = through_the_registry(tag);
         let old = vec![0.0; 64 * response.state_size()];
-        response.respond(&gaps, &old, &mut old.clone(), &mut points).expect("answers");
+        response.respond(&gaps, &contexts, &old, &mut old.clone(), &mut points).expect("answers");
         let near =
             |(a, b): (&TractionPoint, &TractionPoint)| (0..2).all(|i| (a.traction[i] - b.traction[i]).abs() < 1e-4);
         assert!(points.iter().zip(&expected).all(near), "{tag} is another law");
@@ -33,7 +34,7 @@ fn main() {
             written_out(black_box(STIFFNESS), black_box(FRICTION), black_box(&gaps), &old, &mut new, &mut points)
                 .expect("answers");
         } else {
-            response.respond(black_box(&gaps), &own, &mut after, &mut points).expect("answers");
+            response.respond(black_box(&gaps), &contexts, &own, &mut after, &mut points).expect("answers");
         }
         black_box((&points, &new, &after));
     }

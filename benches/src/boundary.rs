@@ -3,7 +3,9 @@
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use std::sync::Arc;
-use voussoir::core::law::{Effect, InterfaceLaw, InterfaceResponse, TractionPoint, UpdateBranch, UpdateFailure};
+use voussoir::core::law::{
+    Effect, InterfaceLaw, InterfaceResponse, PointContext, TractionPoint, UpdateBranch, UpdateFailure,
+};
 
 /// Stiffness \[k_n, k_t\] \[Pa/m\].
 pub const STIFFNESS: [f64; 2] = [1e10, 5e9];
@@ -115,7 +117,13 @@ impl InterfaceResponse for BenchFriction {
     }
 
     #[inline]
-    fn respond_point(&self, gap: [f64; 2], old: &[f64], new: &mut [f64]) -> Result<TractionPoint, UpdateFailure> {
+    fn respond_point(
+        &self,
+        gap: [f64; 2],
+        _: &PointContext,
+        old: &[f64],
+        new: &mut [f64],
+    ) -> Result<TractionPoint, UpdateFailure> {
         let (point, slip) = inlined([self.normal_stiffness, self.shear_stiffness], self.friction, gap, old[0])?;
         new[0] = slip;
         Ok(point)

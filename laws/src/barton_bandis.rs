@@ -2,7 +2,9 @@
 #![doc = include_str!("barton_bandis.md")]
 
 use std::sync::Arc;
-use voussoir_core::law::{Effect, InterfaceLaw, InterfaceResponse, TractionPoint, UpdateBranch, UpdateFailure};
+use voussoir_core::law::{
+    Effect, InterfaceLaw, InterfaceResponse, PointContext, TractionPoint, UpdateBranch, UpdateFailure,
+};
 use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, PluginKind, Property, Sample};
 
 /// A rock joint described by its index numbers.
@@ -92,7 +94,13 @@ impl InterfaceResponse for BartonBandisResponse {
     }
 
     #[inline]
-    fn respond_point(&self, gap: [f64; 2], old: &[f64], new: &mut [f64]) -> Result<TractionPoint, UpdateFailure> {
+    fn respond_point(
+        &self,
+        gap: [f64; 2],
+        _: &PointContext,
+        old: &[f64],
+        new: &mut [f64],
+    ) -> Result<TractionPoint, UpdateFailure> {
         if !gap.iter().chain(old).all(|x| x.is_finite()) {
             return Err(UpdateFailure::NotFinite);
         }

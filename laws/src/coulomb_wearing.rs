@@ -3,7 +3,9 @@
 
 use crate::shared::*;
 use std::sync::Arc;
-use voussoir_core::law::{Effect, InterfaceLaw, InterfaceResponse, TractionPoint, UpdateBranch, UpdateFailure};
+use voussoir_core::law::{
+    Effect, InterfaceLaw, InterfaceResponse, PointContext, TractionPoint, UpdateBranch, UpdateFailure,
+};
 use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, PluginKind, Property, Sample};
 
 /// A rough joint that becomes smooth.
@@ -134,7 +136,13 @@ impl InterfaceResponse for WearingResponse {
     }
 
     #[inline]
-    fn respond_point(&self, gap: [f64; 2], old: &[f64], new: &mut [f64]) -> Result<TractionPoint, UpdateFailure> {
+    fn respond_point(
+        &self,
+        gap: [f64; 2],
+        _: &PointContext,
+        old: &[f64],
+        new: &mut [f64],
+    ) -> Result<TractionPoint, UpdateFailure> {
         if !gap.iter().chain(old).all(|x| x.is_finite()) {
             return Err(UpdateFailure::NotFinite);
         }

@@ -8,7 +8,9 @@ use crate::shared::*;
 use return_map::{Return, Returned};
 use std::sync::Arc;
 use surface::{Cap, Surface};
-use voussoir_core::law::{Effect, InterfaceLaw, InterfaceResponse, TractionPoint, UpdateBranch, UpdateFailure};
+use voussoir_core::law::{
+    Effect, InterfaceLaw, InterfaceResponse, PointContext, TractionPoint, UpdateBranch, UpdateFailure,
+};
 use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, PluginKind, Property, Sample};
 
 /// The composite joint: tension cut-off, Coulomb friction and elliptical cap.
@@ -204,7 +206,13 @@ impl InterfaceResponse for CompositeResponse {
     }
 
     #[inline]
-    fn respond_point(&self, gap: [f64; 2], old: &[f64], new: &mut [f64]) -> Result<TractionPoint, UpdateFailure> {
+    fn respond_point(
+        &self,
+        gap: [f64; 2],
+        _: &PointContext,
+        old: &[f64],
+        new: &mut [f64],
+    ) -> Result<TractionPoint, UpdateFailure> {
         if !gap.iter().chain(old).all(|x| x.is_finite()) {
             return Err(UpdateFailure::NotFinite);
         }

@@ -8,7 +8,7 @@
 use crate::settings::SETTINGS;
 use std::fmt;
 use std::sync::Arc;
-use voussoir_core::law::{InterfaceResponse, PlanarUpdate, StressUpdate, UpdateContext, UpdateFailure};
+use voussoir_core::law::{InterfaceResponse, PlanarUpdate, PointContext, StressUpdate, UpdateContext, UpdateFailure};
 
 /// Greatest number of components.
 pub const COMPONENTS: usize = 6;
@@ -162,7 +162,7 @@ impl PointLaw {
                 (out.region, out.dissipated) = (point.branch.name, point.dissipated);
             }
             PointLaw::Joint(law) => {
-                let point = law.respond_point([strain[0], strain[1]], old, new)?;
+                let point = law.respond_point([strain[0], strain[1]], &PointContext::default(), old, new)?;
                 out.stress[..2].copy_from_slice(&point.traction);
                 for (row, given) in out.tangent.iter_mut().zip(&point.tangent) {
                     row[..2].copy_from_slice(given);

@@ -6,7 +6,7 @@ use voussoir::core::law::Facet;
 use voussoir::core::limit::Counters;
 use voussoir::core::model::geometry::Vec2;
 use voussoir::core::path::{
-    Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem, PointLaw, Sliding,
+    Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem, Period, PointLaw, Sliding,
 };
 
 /// Returns a free rigid body without mass. `index` is its place in the list of bodies.
@@ -51,7 +51,7 @@ pub fn dry_friction(friction: f64) -> PointLaw {
 
 /// Returns the loads of a stage that grow from zero.
 pub fn load_step(stage: usize, loading: Loading, end: LoadStepEnd) -> LoadStep {
-    LoadStep { stage, gravity: false, loading, start: 0.0, end }
+    LoadStep { stage, gravity: false, loading, start: 0.0, end, period: Period::default() }
 }
 
 /// Returns forces on bodies: (body, index of the point in an elastic body, point, force).
@@ -63,5 +63,5 @@ pub fn forces(forces: Vec<(usize, Option<usize>, Vec2, Vec2)>) -> Loading {
 pub fn problem(bodies: Vec<PathBody>, contacts: Vec<Contact>, load_steps: Vec<LoadStep>, length: f64) -> PathProblem {
     let body_of = (0..bodies.len()).collect();
     let counters = Counters::new();
-    PathProblem { bodies, body_of, contacts, load_steps, length, span: length, counters }
+    PathProblem { bodies, body_of, contacts, load_steps, length, span: length, counters, width: 1.0 }
 }

@@ -7,6 +7,7 @@
 //! stored. Plastic parts from tearing, crushing and dilation are stored.
 
 use super::branch::{Effect, UpdateBranch};
+use super::context::PointContext;
 use super::facet::{Facet, FacetMode};
 use super::response::{InterfaceResponse, TractionPoint};
 use super::update::UpdateFailure;
@@ -116,7 +117,13 @@ impl InterfaceResponse for FacetResponse {
         &["plastic_gap_n [m]", "plastic_gap_t [m]"]
     }
 
-    fn respond_point(&self, gap: [f64; 2], old: &[f64], new: &mut [f64]) -> Result<TractionPoint, UpdateFailure> {
+    fn respond_point(
+        &self,
+        gap: [f64; 2],
+        _: &PointContext,
+        old: &[f64],
+        new: &mut [f64],
+    ) -> Result<TractionPoint, UpdateFailure> {
         if !gap.iter().chain(old).all(|x| x.is_finite()) {
             return Err(UpdateFailure::NotFinite);
         }

@@ -2,6 +2,7 @@
 //! them.
 
 mod branch;
+mod context;
 mod elasticity;
 mod facet;
 mod facet_response;
@@ -19,6 +20,7 @@ mod update;
 mod yield_polygon;
 
 pub use self::branch::{Effect, UpdateBranch};
+pub use self::context::{Fields, PointContext};
 pub use self::elasticity::{Elasticity, LinearUpdate};
 pub use self::facet::{Facet, FacetMode, FlowRule, is_associated};
 pub use self::facet_response::FacetResponse;

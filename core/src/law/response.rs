@@ -1,6 +1,7 @@
 //! Tractions from gaps at a point of a joint, for laws with state.
 
 use super::branch::UpdateBranch;
+use super::context::PointContext;
 use super::update::{BatchFailure, UpdateFailure};
 use std::fmt::Debug;
 
@@ -31,7 +32,8 @@ impl TractionPoint {
 }
 
 /// A law that computes the traction from the gap: a pure function of the gap g = (g_n, g_t) \[m\] (g_n > 0 is open) and
-/// of the state at the start of the step. −t·ġ is the power per area that the joint absorbs. An update allocates no
+/// of the state at the start of the step, and of the [`PointContext`]. Two calls with equal arguments give equal results:
+/// a law stores nothing and reads no clock. −t·ġ is the power per area that the joint absorbs. An update allocates no
 /// memory. Call [`respond`](InterfaceResponse::respond) once per group of points.
 pub trait InterfaceResponse: Debug + Send + Sync {
     /// Returns the number of state variables of a point.
@@ -51,23 +53,31 @@ pub trait InterfaceResponse: Debug + Send + Sync {
 
     /// Updates one point. `old` and `new` have the length of the state. Mark an implementation `#[inline]`:
     /// [`respond`](Self::respond) then inlines it into its loop, and there is one dynamic call per group of points.
-    fn respond_point(&self, gap: [f64; 2], old: &[f64], new: &mut [f64]) -> Result<TractionPoint, UpdateFailure>;
+    fn respond_point(
+        &self,
+        gap: [f64; 2],
+        context: &PointContext,
+        old: &[f64],
+        new: &mut [f64],
+    ) -> Result<TractionPoint, UpdateFailure>;
 
-    /// Updates a group of points: one gap and one result per point; the states of the points follow one another.
+    /// Updates a group of points: one gap, one context and one result per point; the states of the points follow one
+    /// another.
     fn respond(
         &self,
         gaps: &[[f64; 2]],
+        contexts: &[PointContext],
         old: &[f64],
         new: &mut [f64],
         points: &mut [TractionPoint],
     ) -> Result<(), BatchFailure> {
         let (size, count) = (self.state_size(), gaps.len());
-        if points.len() != count || old.len() != count * size || new.len() != count * size {
+        if points.len() != count || contexts.len() != count || old.len() != count * size || new.len() != count * size {
             return Err(BatchFailure { point: 0, failure: UpdateFailure::WrongSize });
         }
-        for (index, (gap, point)) in gaps.iter().zip(points).enumerate() {
+        for (index, ((gap, context), point)) in gaps.iter().zip(contexts).zip(points).enumerate() {
             let place = index * size..(index + 1) * size;
-            match self.respond_point(*gap, &old[place.clone()], &mut new[place]) {
+            match self.respond_point(*gap, context, &old[place.clone()], &mut new[place]) {
                 Ok(found) => *point = found,
                 Err(failure) => return Err(BatchFailure { point: index, failure }),
             }

@@ -59,6 +59,10 @@ pub struct Stage {
     pub factor_min: f64,
     /// Greatest factor of the search.
     pub factor_max: f64,
+    /// Duration \[s\]; 0 if no time passes.
+    pub duration: f64,
+    /// Values of named fields at the end of the stage, in SI units.
+    pub fields: Vec<(String, f64)>,
 }
 
 /// The end of a stage.

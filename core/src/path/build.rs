@@ -1,6 +1,7 @@
 //! Builds the path problem: groups of bodies, contact points, flexibilities, load steps.
 
 use super::fill::{add_fill, least_forces};
+use super::period::Period;
 use super::point_law::PointLaw;
 use super::problem::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem};
 use super::response_check::check_response;
@@ -26,6 +27,7 @@ impl PathProblem {
             load_steps: Vec::new(),
             length: assembly.size(),
             span: assembly.span(),
+            width: assembly.width,
             counters: Counters::new(),
             bodies,
             body_of,
@@ -218,25 +220,31 @@ fn add_forces(problem: &mut PathProblem, assembly: &Assembly, forces: &[PointFor
 /// Returns the load steps in order: for each stage the change of gravity, then the loads.
 fn load_steps(problem: &mut PathProblem, assembly: &Assembly, stages: &[Stage]) -> Result<Vec<LoadStep>, String> {
     let mut steps = Vec::new();
+    // Without laws of tractions from gaps nothing depends on time or fields.
+    let responds = problem.contacts.iter().any(|contact| contact.law.response().is_some());
     let mut gravity = Vec2::zeros();
     for (index, stage) in stages.iter().enumerate() {
+        let period = Period::of_stage(stages, index);
         let change = stage.gravity.map_or(Vec2::zeros(), |new| new - gravity);
         if change != Vec2::zeros() {
             gravity += change;
             let mut loading = Loading { acceleration: change, ..Loading::default() };
             add_forces(problem, assembly, &fill_weights(assembly, change), &mut loading);
             add_forces(problem, assembly, &least_forces(assembly, change), &mut loading);
-            let end = LoadStepEnd::Factor(1.0);
-            steps.push(LoadStep { stage: index, gravity: true, loading, start: 0.0, end });
+            let (end, period) = (LoadStepEnd::Factor(1.0), period.start());
+            steps.push(LoadStep { stage: index, gravity: true, loading, start: 0.0, end, period });
         }
         let loading = loading(problem, assembly, stage);
         let idle = loading.forces.iter().all(|f| f.3 == Vec2::zeros())
             && loading.acceleration == Vec2::zeros()
             && loading.settlements.iter().all(|s| s.1 == [0.0; 3]);
-        if idle {
+        if idle && !(responds && period.passes()) {
             continue;
         }
-        let step = |start, end, loading| LoadStep { stage: index, gravity: false, loading, start, end };
+        let step = |start, end, loading| {
+            let period = period.clone();
+            LoadStep { stage: index, gravity: false, loading, start, end, period }
+        };
         match stage.target {
             Target::Factor(factor) => steps.push(step(0.0, LoadStepEnd::Factor(factor), loading)),
             Target::Collapse => {

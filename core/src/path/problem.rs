@@ -1,6 +1,7 @@
 //! The path problem as data: bodies with their flexibility, contact points, load steps, and quantities derived from
 //! them.
 
+use super::period::Period;
 use super::point_law::PointLaw;
 use super::sliding::Sliding;
 use super::state::PathState;
@@ -101,6 +102,8 @@ pub struct LoadStep {
     pub start: f64,
     /// The end of the load step.
     pub end: LoadStepEnd,
+    /// Duration and fields of the load step.
+    pub period: Period,
 }
 
 /// The input of a path solver.
@@ -118,6 +121,8 @@ pub struct PathProblem {
     pub length: f64,
     /// Length for the displacement of the load after a peak \[m\]: [`Assembly::span`](crate::model::Assembly::span).
     pub span: f64,
+    /// Width of all joints, perpendicular to the plane \[m\].
+    pub width: f64,
     /// Counts of the work to build the problem.
     pub counters: Counters,
 }

@@ -1,7 +1,7 @@
 //! Checks the initial response of a law when its problem is built: at zero gap tractions and their tangent must be
 //! finite, and the tangent must be stiff.
 
-use crate::law::{InterfaceLaw, InterfaceResponse, TractionPoint};
+use crate::law::{InterfaceLaw, InterfaceResponse, PointContext, TractionPoint};
 use crate::model::geometry::Vec2;
 
 /// Determinant of a tangent, relative to the product of its row sums, below which it counts as singular.
@@ -17,7 +17,9 @@ pub(super) fn check_response(
     let mut state = vec![0.0; response.state_size()];
     response.initial_state(&mut state);
     let mut after = state.clone();
-    let said = response.respond_point([0.0; 2], &state, &mut after).map_err(|failed| failed.to_string());
+    let said = response
+        .respond_point([0.0; 2], &PointContext::default(), &state, &mut after)
+        .map_err(|failed| failed.to_string());
     let Err(why) = said.and_then(|said| untouched(&said, &after)) else { return Ok(()) };
     let [x, y]: [f64; 2] = point.into();
     Err(format!(

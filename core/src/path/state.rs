@@ -36,6 +36,10 @@ pub struct PathState {
     /// State of the responses at the start of the step that ends in this state, contact point by contact point. The
     /// update from it at the gap gives the force.
     pub memory: Vec<f64>,
+    /// Gap of every contact point at the start of that step \[m\]. It may be empty if the step has no duration.
+    pub step_gap: Vec<[f64; 2]>,
+    /// Duration of that step \[s\].
+    pub time_step: f64,
     /// For each body its state, if its material has yielded. Bodies beyond the end of the list have not yielded.
     pub yielded: Vec<Option<Yielded>>,
     /// True if second-order work is positive with all loads and settlements fixed, false if it is not. `None` if the solver

@@ -22,6 +22,8 @@ impl PathState {
         check_finite("gaps", self.gap.iter().flatten())?;
         check_finite("motions", self.motion.iter().flatten())?;
         check_finite("memory", &self.memory)?;
+        check_finite("gaps at the start of the step", self.step_gap.iter().flatten())?;
+        check_finite("duration of the step", [&self.time_step])?;
         check_finite("factor", [&self.factor])?;
         check_finite("energies", [&self.stored, &self.dissipated, &self.work])?;
         check_finite("displacement", [&self.displacement])

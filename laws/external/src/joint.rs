@@ -4,7 +4,7 @@ use crate::behaviour::{Family, Request, Wrong};
 use crate::runner::Runner;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use voussoir_core::law::{InterfaceLaw, InterfaceResponse, TractionPoint, UpdateFailure};
+use voussoir_core::law::{InterfaceLaw, InterfaceResponse, PointContext, TractionPoint, UpdateFailure};
 use voussoir_core::plugin::{Capability, Card, Keys, PluginKind};
 
 /// A cohesive zone model from a shared library.
@@ -71,8 +71,14 @@ impl InterfaceResponse for ExternalResponse {
         self.0.names()
     }
 
-    fn respond_point(&self, gap: [f64; 2], old: &[f64], new: &mut [f64]) -> Result<TractionPoint, UpdateFailure> {
-        let step = self.0.step(gap, 0.0, old, new)?;
+    fn respond_point(
+        &self,
+        gap: [f64; 2],
+        context: &PointContext,
+        old: &[f64],
+        new: &mut [f64],
+    ) -> Result<TractionPoint, UpdateFailure> {
+        let step = self.0.step(gap, context.time_step, old, new)?;
         Ok(TractionPoint {
             traction: step.forces.map(|force| -force),
             tangent: step.tangent.map(|row| row.map(|entry| -entry)),

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 use std::path::PathBuf;
 use std::process::Command;
 use std::sync::LazyLock;
-use voussoir_core::law::{BulkMaterial, InterfaceLaw, UpdateContext, UpdateFailure};
+use voussoir_core::law::{BulkMaterial, InterfaceLaw, PointContext, UpdateContext, UpdateFailure};
 use voussoir_core::plugin::{PluginKind, card};
 
 /// The library, compiled once and allowed; `None` where there is no C compiler.
@@ -76,7 +76,7 @@ fn a_bond_of_a_library_is_its_closed_form() {
         ([1.2e-4, 0.0], -falling(1.2e-4)),
     ];
     for (gap, expected) in steps {
-        let point = response.respond_point(gap, &old, &mut new).expect("a step");
+        let point = response.respond_point(gap, &PointContext::default(), &old, &mut new).expect("a step");
         assert!(
             (point.traction[0] - expected).abs() <= 1e-9 * STRENGTH,
             "{} for {expected} at {gap:?}",
@@ -90,7 +90,10 @@ fn a_bond_of_a_library_is_its_closed_form() {
             for (end, sign) in ends.iter_mut().zip([1.0, -1.0]) {
                 let mut moved = gap;
                 moved[j] += sign * h;
-                *end = response.respond_point(moved, &old, &mut vec![0.0; old.len()]).expect("a step").traction;
+                *end = response
+                    .respond_point(moved, &PointContext::default(), &old, &mut vec![0.0; old.len()])
+                    .expect("a step")
+                    .traction;
             }
             for (i, (ahead, back)) in ends[0].iter().zip(ends[1]).enumerate() {
                 let slope = (ahead - back) / (2.0 * h);
@@ -103,7 +106,10 @@ fn a_bond_of_a_library_is_its_closed_form() {
         }
         std::mem::swap(&mut old, &mut new);
     }
-    assert_eq!(response.respond_point([f64::NAN, 0.0], &old, &mut new), Err(UpdateFailure::NotFinite));
+    assert_eq!(
+        response.respond_point([f64::NAN, 0.0], &PointContext::default(), &old, &mut new),
+        Err(UpdateFailure::NotFinite)
+    );
 }
 
 /// A behaviour that keeps its elastic strain, as MFront's implicit ones do: `elastic` while that follows the strain, and
@@ -178,7 +184,7 @@ fn an_isolated_behaviour_crashes_alone() {
     for gap in [[1e-5, 0.0], [8e-5, 1e-6], [2e-4, 0.0], [3e-5, -1e-6], [-1e-6, 0.0], [1e-2, 0.0]] {
         let [one, other] = &mut states;
         let [a, b] = [(&here, one), (&apart, other)].map(|(response, [old, new])| {
-            let answered = response.respond_point(gap, old, new);
+            let answered = response.respond_point(gap, &PointContext::default(), old, new);
             if answered.is_ok() {
                 std::mem::swap(old, new);
             }
@@ -188,7 +194,9 @@ fn an_isolated_behaviour_crashes_alone() {
         assert_eq!(states[0][0], states[1][0]);
     }
     let crashing = law("CrashingBond", true).response().expect("a response");
-    let step = |gap: f64| crashing.respond_point([gap, 0.0], &states[0][0], &mut states[1][0].clone());
+    let step = |gap: f64| {
+        crashing.respond_point([gap, 0.0], &PointContext::default(), &states[0][0], &mut states[1][0].clone())
+    };
     assert!(step(1e-6).is_ok());
     let Err(UpdateFailure::Law(why)) = step(9e-5) else { panic!("it crashes") };
     assert!(why.contains("has ended: signal"), "{why}");
@@ -231,7 +239,7 @@ fn whatever_does_not_fit_is_refused_by_name() {
     let law: Box<dyn InterfaceLaw> = serde_json::from_value(fragile).expect("a law");
     let response = law.response().expect("it answers");
     let old = vec![0.0; response.state_size()];
-    let at = |gap| match response.respond_point(gap, &old, &mut vec![0.0; old.len()]) {
+    let at = |gap| match response.respond_point(gap, &PointContext::default(), &old, &mut vec![0.0; old.len()]) {
         Err(UpdateFailure::Law(why)) => why,
         other => panic!("{other:?}"),
     };
@@ -272,7 +280,8 @@ fn a_hostile_library_is_found_out() {
         let law: Box<dyn InterfaceLaw> = serde_json::from_value(own).expect("a law");
         let response = law.response().expect("it answers");
         let old = vec![0.0; response.state_size()];
-        let step = |gap: f64| response.respond_point([gap, 0.0], &old, &mut vec![0.0; old.len()]);
+        let step =
+            |gap: f64| response.respond_point([gap, 0.0], &PointContext::default(), &old, &mut vec![0.0; old.len()]);
         let before = step(1e-6);
         assert!(before.is_ok(), "{behaviour}: {before:?}");
         match step(9e-5) {
@@ -289,7 +298,12 @@ fn a_hostile_library_is_found_out() {
     let response = law.response().expect("it answers");
     assert!(
         response
-            .respond_point([9e-5, 0.0], &vec![0.0; response.state_size()], &mut vec![0.0; response.state_size()])
+            .respond_point(
+                [9e-5, 0.0],
+                &PointContext::default(),
+                &vec![0.0; response.state_size()],
+                &mut vec![0.0; response.state_size()]
+            )
             .is_ok()
     );
 }
@@ -331,7 +345,9 @@ fn an_isolated_behaviour_has_limited_time() {
         let law: Box<dyn InterfaceLaw> = serde_json::from_value(own).expect("a law");
         let response = law.response().expect("it answers");
         let old = vec![0.0; response.state_size()];
-        let Err(UpdateFailure::Law(why)) = response.respond_point([9e-5, 0.0], &old, &mut old.clone()) else {
+        let Err(UpdateFailure::Law(why)) =
+            response.respond_point([9e-5, 0.0], &PointContext::default(), &old, &mut old.clone())
+        else {
             panic!("{behaviour}")
         };
         assert!(why.contains(words), "{behaviour}: {why}");

@@ -105,8 +105,8 @@ mod tests {
     use voussoir_core::limit::Counters;
     use voussoir_core::model::geometry::Vec2;
     use voussoir_core::path::{
-        Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathSettings, PathSolver, PointLaw, Sliding,
-        Unobserved,
+        Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathSettings, PathSolver, Period, PointLaw,
+        Sliding, Unobserved,
     };
 
     /// A rigid block of 1 kg on two compliant points of the ground, μ = 0.5, under its weight of 10 N and then a force
@@ -136,7 +136,14 @@ mod tests {
             compliance: [1e-6, 2e-6],
             sliding: Sliding::middle(0.0),
         };
-        let load_step = |stage, gravity, loading, end| LoadStep { stage, gravity, loading, start: 0.0, end };
+        let load_step = |stage, gravity, loading, end| LoadStep {
+            stage,
+            gravity,
+            loading,
+            start: 0.0,
+            end,
+            period: Period::default(),
+        };
         let pole = Vec2::new(0.0, 0.5);
         let live = Loading { forces: vec![(1, None, pole, force)], ..Loading::default() };
         let dead = Loading { acceleration: Vec2::new(0.0, -10.0), ..Loading::default() };
@@ -151,6 +158,7 @@ mod tests {
             length: 2.0,
             span: 2.0,
             counters: Counters::new(),
+            width: 1.0,
         }
     }
 

@@ -12,7 +12,7 @@ use voussoir_core::limit::Counters;
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::path::{
     Attachment, Contact, Continuation, LoadStep, LoadStepEnd, Loading, PathAnswer, PathBody, PathObserver, PathProblem,
-    PathSettings, PathSolver, PathState, PointLaw, Sliding, Unobserved,
+    PathSettings, PathSolver, PathState, Period, PointLaw, Sliding, Unobserved,
 };
 
 /// Stiffness of a point \[N/m\]; blocks have a width of 1 m and a weight of 1 N.
@@ -98,7 +98,7 @@ pub(super) fn between(minus: usize, plus: usize, mut contact: Contact) -> Contac
 }
 
 pub(super) fn stage(stage: usize, loading: Loading, end: LoadStepEnd) -> LoadStep {
-    LoadStep { stage, gravity: false, loading, start: 0.0, end }
+    LoadStep { stage, gravity: false, loading, start: 0.0, end, period: Period::default() }
 }
 
 /// The dead load: the first stage, with a factor from 0 to 1.
@@ -136,6 +136,7 @@ pub(super) fn scene(bodies: Vec<PathBody>, contacts: Vec<Contact>, load_steps: V
         load_steps,
         length: 1.0,
         span: 1.0,
+        width: 1.0,
         counters: Counters::new(),
     }
 }

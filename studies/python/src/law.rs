@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
 use std::sync::{Arc, LazyLock, Mutex};
 use voussoir::core::law::{
-    BatchFailure, Effect, Facet, FacetMode, FacetResponse, InterfaceLaw, InterfaceResponse, TractionPoint,
+    BatchFailure, Effect, Facet, FacetMode, FacetResponse, InterfaceLaw, InterfaceResponse, PointContext, TractionPoint,
     UpdateBranch, UpdateFailure,
 };
 use voussoir::core::plugin::{Capability, Card, Need, Parameter, PluginKind, Shape};
@@ -50,7 +50,7 @@ voussoir::core::inventory::submit! {
         provides: &[Capability::RESPONSE],
         file: file!(),
         package: voussoir::core::package!(),
-        page: "# `python_response`\n\nThe class has `stiffness`, two numbers in Pa/m, `state_names`, and `respond(gap, state)`.\n",
+        page: "# `python_response`\n\nThe class has `stiffness`, two numbers in Pa/m, `state_names`, and `respond(gap, state)`. The class does not get the context of a point, such as its position or the duration of the step.\n",
         check: |table| checked(table, "response"),
         ..Card::BLANK
     }
@@ -216,15 +216,16 @@ impl InterfaceResponse for Response {
         self.names
     }
 
-    fn respond_point(&self, gap: [f64; 2], old: &[f64], new: &mut [f64]) -> Result<TractionPoint, UpdateFailure> {
+    fn respond_point(&self, gap: [f64; 2], context: &PointContext, old: &[f64], new: &mut [f64]) -> Result<TractionPoint, UpdateFailure> {
         let mut point = [TractionPoint::ZERO];
-        self.respond(&[gap], old, new, &mut point).map_err(|failed| failed.failure)?;
+        self.respond(&[gap], &[*context], old, new, &mut point).map_err(|failed| failed.failure)?;
         Ok(point[0])
     }
 
     fn respond(
         &self,
         gaps: &[[f64; 2]],
+        _: &[PointContext],
         old: &[f64],
         new: &mut [f64],
         points: &mut [TractionPoint],

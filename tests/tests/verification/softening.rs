@@ -1,7 +1,7 @@
 //! Softening laws: a published test of a finite-element program, fracture energies, dry friction.
 
 use std::sync::Arc;
-use voussoir::core::law::{BulkMaterial, InterfaceLaw, InterfaceResponse, UpdateContext, UpdateFailure};
+use voussoir::core::law::{BulkMaterial, InterfaceLaw, InterfaceResponse, PointContext, UpdateContext, UpdateFailure};
 use voussoir::laws::cohesive::Cohesive;
 use voussoir::laws::drucker_prager_cap::DruckerPragerCap;
 use voussoir::laws::drucker_prager_softening::DruckerPragerSoftening;
@@ -227,7 +227,9 @@ fn each_mode_takes_its_fracture_energy() {
             let end = 2.0 * energy / strength * 1.01;
             for step in 1..=steps {
                 let size = end * f64::from(step) / f64::from(steps);
-                let point = update.respond_point(direction.map(|d| size * d), &old, &mut new).unwrap();
+                let point = update
+                    .respond_point(direction.map(|d| size * d), &PointContext::default(), &old, &mut new)
+                    .unwrap();
                 old = new;
                 dissipated += point.dissipated;
                 let against = -(point.traction[0] * direction[0] + point.traction[1] * direction[1]);
@@ -244,7 +246,9 @@ fn each_mode_takes_its_fracture_energy() {
         }
         // The peak itself.
         let onset = strength / stiffness;
-        let point = update.respond_point(direction.map(|d| onset * d), &[0.0; 2], &mut [0.0; 2]).unwrap();
+        let point = update
+            .respond_point(direction.map(|d| onset * d), &PointContext::default(), &[0.0; 2], &mut [0.0; 2])
+            .unwrap();
         let against = -(point.traction[0] * direction[0] + point.traction[1] * direction[1]);
         near(against, strength, 1e-12);
     }
@@ -264,14 +268,14 @@ fn dry_friction_is_left() {
             let mut peak = 0.0_f64;
             for step in 1..=20_000 {
                 let slip = 1.2e-3 * (f64::from(step) / 20_000.0).powi(3);
-                let point = update.respond_point([closing, slip], &old, &mut new).unwrap();
+                let point = update.respond_point([closing, slip], &PointContext::default(), &old, &mut new).unwrap();
                 old = new;
                 peak = peak.max(-point.traction[1]);
             }
-            let end = update.respond_point([closing, 2e-3], &old, &mut new).unwrap();
+            let end = update.respond_point([closing, 2e-3], &PointContext::default(), &old, &mut new).unwrap();
             near(-end.traction[1], 0.75 * pressure, 1e-12);
             old = new;
-            let back = update.respond_point([closing, -2e-3], &old, &mut new).unwrap();
+            let back = update.respond_point([closing, -2e-3], &PointContext::default(), &old, &mut new).unwrap();
             near(back.traction[1], 0.75 * pressure, 1e-12);
             let (low, high) = ((0.35 * MPA).max(0.75 * pressure), 0.35 * MPA + 0.75 * pressure);
             assert!(peak >= low * (1.0 - 1e-12) && peak <= high * (1.0 + 1e-12), "{peak} not in {low} .. {high}");
@@ -289,13 +293,13 @@ fn dry_friction_is_left() {
 fn an_opened_joint_closes_where_it_was() {
     let update = response(&mortar());
     let mut state = [0.0; 2];
-    let opened = update.respond_point([5e-5, 0.0], &[0.0; 2], &mut state).unwrap();
+    let opened = update.respond_point([5e-5, 0.0], &PointContext::default(), &[0.0; 2], &mut state).unwrap();
     let damage = state[0];
     assert!(damage > 0.0 && damage < 1.0);
     let mut new = [0.0; 2];
-    let half = update.respond_point([2.5e-5, 0.0], &state, &mut new).unwrap();
+    let half = update.respond_point([2.5e-5, 0.0], &PointContext::default(), &state, &mut new).unwrap();
     near(half.traction[0], 0.5 * opened.traction[0], 1e-12);
-    let closed = update.respond_point([-1e-6, 0.0], &state, &mut new).unwrap();
+    let closed = update.respond_point([-1e-6, 0.0], &PointContext::default(), &state, &mut new).unwrap();
     near(closed.traction[0], 82e9 * 1e-6, 1e-12);
     assert_eq!(new[0], damage);
 }

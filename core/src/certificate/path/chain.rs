@@ -68,9 +68,11 @@ pub(super) fn is_same(a: &PathState, b: &PathState) -> bool {
     a.load_step == b.load_step && a.factor == b.factor && a.force == b.force && a.motion == b.motion
 }
 
-/// Returns true if a load step has no load and no settlement, so that its factor has no effect.
+/// Returns true if a load step has no load, no settlement, no duration and no field that changes, so that its factor has no effect.
 fn is_idle(problem: &PathProblem, step: &LoadStep) -> bool {
-    step.loading.settlements.is_empty() && problem.wrenches(&step.loading).iter().all(|w| *w == [0.0; 3])
+    !step.period.passes()
+        && step.loading.settlements.is_empty()
+        && problem.wrenches(&step.loading).iter().all(|w| *w == [0.0; 3])
 }
 
 /// Returns the mean of two neighbouring states.

@@ -31,7 +31,8 @@ pub struct PathChecker {
     pub finite: bool,
     structure: Option<Arc<PathProblem>>,
     last: Option<(usize, f64)>,
-    memory: Option<Vec<f64>>,
+    /// States of all responses after the last state, and the place and gaps of the last state.
+    memory: Option<(Vec<f64>, PathState)>,
     greatest: f64,
     energy: EnergyBalance,
 }
@@ -134,11 +135,18 @@ impl PathChecker {
         self.check_blocks(problem, state);
         self.check_points(problem, state, &scale);
         // Use the history of the states received so far, if all states were received.
-        let before = self.memory.as_deref().unwrap_or(&state.memory);
+        let (before, step) = match &self.memory {
+            Some((memory, last)) => (&memory[..], problem.law_step_between(last, state)),
+            None => (&state.memory[..], problem.law_step_to(state)),
+        };
         let least = NOTHING * self.greatest;
-        if let Some((worst, after)) = law_residual(problem, state, before, scale.deformation, self.finite, least) {
+        if let Some((worst, after)) =
+            law_residual(problem, state, (before, &step), scale.deformation, self.finite, least)
+        {
             self.note("path_law", worst);
-            self.memory = Some(after);
+            let PathState { load_step, factor, .. } = *state;
+            let last = PathState { load_step, factor, gap: state.gap.clone(), ..PathState::default() };
+            self.memory = Some((after, last));
         }
         let stored = displaced.stored().unwrap_or(state.stored);
         let energy = state.work.abs().max(state.stored).max(state.dissipated.abs());

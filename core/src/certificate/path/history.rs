@@ -52,11 +52,14 @@ impl History {
     ) -> Result<History, String> {
         let mut next = History { gross: self.gross + problem.gross_work(last, state, finite), ..History::default() };
         let mut taken = 0.0;
-        if let Some((worst, after)) = law_residual(problem, state, &self.memory, deformation, finite, 0.0) {
+        let step = problem.law_step_between(last, state);
+        let before = (&self.memory[..], &step);
+        if let Some((worst, after)) = law_residual(problem, state, before, deformation, finite, 0.0) {
             if worst.is_nan() || worst > tolerance("path_law").result {
                 return Err("forces do not follow from the law of tractions and the state before".into());
             }
-            let (points, _) = updated(problem, &state.gap, &self.memory).ok_or("a law of tractions has no update")?;
+            let (points, _) =
+                updated(problem, &state.gap, &self.memory, &step).ok_or("a law of tractions has no update")?;
             for (contact, point) in points {
                 let area = problem.contacts[contact].area;
                 let (from, to) = (last.force[contact], state.force[contact]);

@@ -167,13 +167,16 @@ impl PathChain {
     /// \[J\].
     fn tangents(&self, link: &Link, rate: &PathRate, share: f64) -> Result<(Vec<Option<Matrix>>, f64), String> {
         let (mut at, mut dissipated) = (0, 0.0);
+        let step = self.structure.law_step_at(&link.state);
         let of = |(index, contact): (usize, &crate::path::Contact)| {
             let Some(law) = contact.law.response() else { return Ok(None) };
             let before = &link.history.memory[at..at + law.state_size()];
             at += law.state_size();
             let mut after = before.to_vec();
             let gap = [0, 1].map(|k| link.state.gap[index][k] + share * rate.gap[index][k]);
-            let point = law.respond_point(gap, before, &mut after).map_err(|why| why.to_string())?;
+            let point = law
+                .respond_point(gap, &self.structure.point_context(index, &step), before, &mut after)
+                .map_err(|why| why.to_string())?;
             dissipated += contact.area * point.dissipated;
             Ok(Some(point.tangent.map(|row| row.map(|t| contact.area * t))))
         };

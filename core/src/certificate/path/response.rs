@@ -2,16 +2,16 @@
 
 use crate::certificate::MechanismPlace;
 use crate::law::TractionPoint;
-use crate::path::{PathProblem, PathState};
+use crate::path::{LawStep, PathProblem, PathState};
 
 /// Results of contact points, and the states of all responses after them.
 type Updated = (Vec<(usize, TractionPoint)>, Vec<f64>);
 
-/// Updates every contact point with a response once, from the state `before`. Returns contact points with results, and
+/// Updates every contact point with a response once in a step of laws, from the state `before`. Returns contact points with results, and
 /// the states after them. `None` if `before` has the wrong length or an update fails.
-pub(super) fn updated(problem: &PathProblem, gaps: &[[f64; 2]], before: &[f64]) -> Option<Updated> {
+pub(super) fn updated(problem: &PathProblem, gaps: &[[f64; 2]], before: &[f64], step: &LawStep) -> Option<Updated> {
     let (mut after, mut points) = (before.to_vec(), Vec::new());
-    if before.len() != problem.memory_size() {
+    if before.len() != problem.memory_size() || step.previous_gap.len() != gaps.len() {
         return None;
     }
     let mut at = 0;
@@ -19,7 +19,9 @@ pub(super) fn updated(problem: &PathProblem, gaps: &[[f64; 2]], before: &[f64]) 
         let Some(law) = problem.response(contact) else { continue };
         let place = at..at + law.state_size();
         at = place.end;
-        let point = law.respond_point(*gap, &before[place.clone()], &mut after[place]).ok()?;
+        let point = law
+            .respond_point(*gap, &problem.point_context(contact, step), &before[place.clone()], &mut after[place])
+            .ok()?;
         points.push((contact, point));
     }
     Some((points, after))
@@ -32,7 +34,7 @@ pub(super) fn updated(problem: &PathProblem, gaps: &[[f64; 2]], before: &[f64]) 
 pub fn law_residual(
     problem: &PathProblem,
     state: &PathState,
-    before: &[f64],
+    (before, step): (&[f64], &LawStep),
     deformation: f64,
     finite: bool,
     least: f64,
@@ -43,7 +45,9 @@ pub fn law_residual(
     }
     let untouched = problem.untouched();
     let before = if before.len() == size { before } else { &untouched };
-    let Some((points, after)) = updated(problem, &state.gap, before) else { return Some((f64::INFINITY, untouched)) };
+    let Some((points, after)) = updated(problem, &state.gap, before, step) else {
+        return Some((f64::INFINITY, untouched));
+    };
     let largest = state.force.iter().flatten().fold(0.0, |a: f64, f| a.max(f.abs()));
     let rounding = f64::EPSILON * if finite { 512.0 * problem.length } else { 64.0 * deformation };
     let mut scale = largest.max(least);
@@ -86,13 +90,16 @@ pub fn leaves_forces(problem: &PathProblem, state: &PathState, motion: &[[f64; 3
     // Motions within rounding count as zero.
     jumps.iter_mut().flatten().filter(|j| j.abs() <= 1e-7 * size).for_each(|j| *j = 0.0);
     let largest = state.force.iter().flatten().fold(0.0, |a: f64, f| a.max(f.abs()));
-    let Some((_, after)) = updated(problem, &state.gap, &state.memory) else { return 0.0 };
+    let Some((_, after)) = updated(problem, &state.gap, &state.memory, &problem.law_step_to(state)) else {
+        return 0.0;
+    };
+    let step = problem.law_step_at(state);
     let mut worst: f64 = 0.0;
     for distance in [1e-9, 1e-6, 1e-3, 1.0] {
         let share = distance * problem.length / size.max(1e-300);
         let far = |(g, j): (&[f64; 2], &[f64; 2])| [g[0] + share * j[0], g[1] + share * j[1]];
         let gaps: Vec<[f64; 2]> = state.gap.iter().zip(&jumps).map(far).collect();
-        let Some((points, _)) = updated(problem, &gaps, &after) else { return f64::INFINITY };
+        let Some((points, _)) = updated(problem, &gaps, &after, &step) else { return f64::INFINITY };
         for (contact, point) in points {
             for k in 0..2 {
                 let off = state.force[contact][k] - problem.contacts[contact].area * point.traction[k];

@@ -11,7 +11,9 @@ use crate::law::{Facet, PlanarUpdate};
 use crate::limit::Counters;
 use crate::model::geometry::{Vec2, turned};
 use crate::model::{Assembly, Bond, Joint, Stage, Target};
-use crate::path::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem, PointLaw, Sliding};
+use crate::path::{
+    Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem, Period, PointLaw, Sliding,
+};
 use std::sync::Arc;
 
 /// Returns the Gauss–Lobatto rule on \[0, 1\] for elements of an order: points and weights, exact for degree 2 × order
@@ -34,7 +36,8 @@ pub fn path_structure(assembly: &Assembly, stages: &[Stage]) -> Result<PathProbl
     let (bodies, body_of) = bodies(assembly, stages);
     let (contacts, load_steps, counters) = (Vec::new(), Vec::new(), Counters::new());
     let (length, span) = (assembly.size(), assembly.span());
-    let mut read = PathProblem { bodies, body_of, contacts, load_steps, length, span, counters };
+    let width = assembly.width;
+    let mut read = PathProblem { bodies, body_of, contacts, load_steps, length, span, width, counters };
     for (index, joint) in assembly.joints.iter().enumerate() {
         if read.body_of[joint.minus] != read.body_of[joint.plus] {
             let points = contact_points(&mut read, assembly, index, joint)?;
@@ -194,10 +197,12 @@ fn load_steps_of(read: &mut PathProblem, assembly: &Assembly, stages: &[Stage]) 
     let mut before = Vec2::zeros();
     for (stage, own) in stages.iter().enumerate() {
         let now = own.gravity.unwrap_or(before);
+        let period = Period::of_stage(stages, stage);
         if now != before {
             let mut loading = Loading { acceleration: now - before, ..Loading::default() };
             fill_at_gravity(read, assembly, now - before, &mut loading);
-            steps.push(LoadStep { stage, gravity: true, loading, start: 0.0, end: LoadStepEnd::Factor(1.0) });
+            let (end, period) = (LoadStepEnd::Factor(1.0), period.start());
+            steps.push(LoadStep { stage, gravity: true, loading, start: 0.0, end, period });
         }
         before = now;
         let mut loading = Loading { acceleration: own.accelerations.iter().sum(), ..Loading::default() };
@@ -217,7 +222,8 @@ fn load_steps_of(read: &mut PathProblem, assembly: &Assembly, stages: &[Stage]) 
         }
         let zero = Vec2::zeros();
         let moves = loading.settlements.iter().any(|(_, motion)| *motion != [0.0; 3]);
-        if !moves && loading.acceleration == zero && loading.forces.iter().all(|load| load.3 == zero) {
+        let passes = period.passes() && read.contacts.iter().any(|contact| contact.law.response().is_some());
+        if !passes && !moves && loading.acceleration == zero && loading.forces.iter().all(|load| load.3 == zero) {
             continue;
         }
         let ends: Vec<(f64, LoadStepEnd)> = match own.target {
@@ -228,7 +234,10 @@ fn load_steps_of(read: &mut PathProblem, assembly: &Assembly, stages: &[Stage]) 
                 to_start.into_iter().chain([(start, LoadStepEnd::Collapse(own.factor_max))]).collect()
             }
         };
-        let step = |(start, end)| LoadStep { stage, gravity: false, loading: loading.clone(), start, end };
+        let step = |(start, end)| {
+            let (loading, period) = (loading.clone(), period.clone());
+            LoadStep { stage, gravity: false, loading, start, end, period }
+        };
         steps.extend(ends.into_iter().map(step));
     }
     steps

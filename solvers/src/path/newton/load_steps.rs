@@ -62,7 +62,7 @@ fn run<'a>(tracer: &mut Tracer<'a, '_>, problem: &'a PathProblem) {
             tracer.settings.strategy(load_step.stage).cloned().unwrap_or_else(|| Arc::new(ArcLength::default()));
         // Missing monitors were refused before the start of the path.
         tracer.system.monitors = resolve(problem, &tracer.in_force.strategy.monitors()).unwrap_or_default();
-        tracer.system.load(StagedLoads::new(earlier.clone(), &load_step.loading, load_step.start));
+        tracer.system.load(index, StagedLoads::new(earlier.clone(), &load_step.loading, load_step.start));
         let gradient = tracer.system.gradient(&tracer.state);
         tracer.record.work = work_state(&tracer.system, &tracer.state, &gradient);
         let mut outcome = match load_step.end {

@@ -102,6 +102,7 @@ mod tests {
             load_steps: Vec::new(),
             length: 1.0,
             span: 1.0,
+            width: 1.0,
             counters: Counters::new(),
         }
     }

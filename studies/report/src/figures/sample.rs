@@ -37,6 +37,8 @@ fn stage(name: &str, gravity: Option<Vec2>, forces: Vec<PointForce>, target: Tar
         target,
         factor_min: 0.0,
         factor_max: 1e9,
+        duration: 0.0,
+        fields: Vec::new(),
     }
 }
 

@@ -151,7 +151,7 @@ mod tests {
     use super::*;
     use voussoir_core::limit::Counters;
     use voussoir_core::model::geometry::Vec2;
-    use voussoir_core::path::Loading;
+    use voussoir_core::path::{Loading, Period};
 
     /// One load step of 10 N towards a factor.
     fn problem(end: LoadStepEnd, settlements: Vec<(usize, [f64; 3])>) -> PathProblem {
@@ -161,10 +161,18 @@ mod tests {
             bodies: Vec::new(),
             body_of: Vec::new(),
             contacts: Vec::new(),
-            load_steps: vec![LoadStep { stage: 0, gravity: false, loading, start: 0.0, end }],
+            load_steps: vec![LoadStep {
+                stage: 0,
+                gravity: false,
+                loading,
+                start: 0.0,
+                end,
+                period: Period::default(),
+            }],
             length: 1.0,
             span: 1.0,
             counters: Counters::new(),
+            width: 1.0,
         }
     }
 

@@ -46,6 +46,8 @@ pub(super) fn build_stages(
             target,
             factor_min: factors[0],
             factor_max: factors[1],
+            duration: 0.0,
+            fields: Vec::new(),
         };
         // A vehicle that is off the bridge is not a mistake: a note reports it.
         let stands_off = !own.is_empty();

@@ -3,7 +3,8 @@
 use super::options::CountAllocations;
 use std::sync::Arc;
 use voussoir_core::law::{
-    InterfaceResponse, StressPoint, StressUpdate, TractionPoint, UpdateBranch, UpdateContext, UpdateFailure,
+    InterfaceResponse, PointContext, StressPoint, StressUpdate, TractionPoint, UpdateBranch, UpdateContext,
+    UpdateFailure,
 };
 
 /// The result of an update, with as many components as the law has.
@@ -74,7 +75,7 @@ impl Point {
 
     pub(super) fn update(&self, at: &[f64; 6], old: &[f64], new: &mut [f64]) -> Result<Said, UpdateFailure> {
         match self {
-            Point::Joint(law) => Ok(joint(&law.respond_point([at[0], at[1]], old, new)?)),
+            Point::Joint(law) => Ok(joint(&law.respond_point([at[0], at[1]], &PointContext::default(), old, new)?)),
             Point::Material(law, length) => {
                 Ok(material(&law.update_point(at, &UpdateContext::of_length(*length), old, new)?))
             }
@@ -87,7 +88,8 @@ impl Point {
             Point::Joint(law) => {
                 let gaps: Vec<[f64; 2]> = at.iter().map(|at| [at[0], at[1]]).collect();
                 let mut points = vec![TractionPoint::ZERO; at.len()];
-                law.respond(&gaps, old, new, &mut points).map_err(|failed| failed.failure)?;
+                law.respond(&gaps, &vec![PointContext::default(); at.len()], old, new, &mut points)
+                    .map_err(|failed| failed.failure)?;
                 Ok(points.iter().map(joint).collect())
             }
             Point::Material(law, length) => {

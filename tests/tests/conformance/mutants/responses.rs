@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use voussoir::conformance::{Options, conform};
 use voussoir::core::law::{
-    BatchFailure, Effect, Facet, FacetResponse, InterfaceLaw, InterfaceResponse, TractionPoint, UpdateBranch,
+    BatchFailure, Effect, Facet, FacetResponse, InterfaceLaw, InterfaceResponse, PointContext, TractionPoint, UpdateBranch,
     UpdateFailure,
 };
 use voussoir::core::plugin::{
@@ -106,7 +106,13 @@ impl InterfaceResponse for Mutated {
         }
     }
 
-    fn respond_point(&self, gap: [f64; 2], old: &[f64], new: &mut [f64]) -> Result<TractionPoint, UpdateFailure> {
+    fn respond_point(
+        &self,
+        gap: [f64; 2],
+        context: &PointContext,
+        old: &[f64],
+        new: &mut [f64],
+    ) -> Result<TractionPoint, UpdateFailure> {
         let fault = self.fault.as_str();
         let asked = match fault {
             "normal_of_the_wrong_sign" => [-gap[0], gap[1]],
@@ -116,12 +122,12 @@ impl InterfaceResponse for Mutated {
         if fault == "no_number_is_answered" && gap.iter().any(|x| x.is_nan()) {
             return Ok(TractionPoint::ZERO);
         }
-        let mut said = self.inner.respond_point(asked, old, new)?;
+        let mut said = self.inner.respond_point(asked, context, old, new)?;
         let slides = !said.branch.is_elastic();
         match fault {
             "tangent_off_the_diagonal" if slides => said.tangent[0][1] *= -1.0,
             "tangent_of_the_elastic_joint" if slides => {
-                said.tangent = self.inner.respond_point([-1e-12, 0.0], &[0.0; 2], &mut [0.0; 2])?.tangent;
+                said.tangent = self.inner.respond_point([-1e-12, 0.0], context, &[0.0; 2], &mut [0.0; 2])?.tangent;
             }
             "state_forgotten_on_unloading" if !slides => new.fill(0.0),
             "state_never_kept" => new.copy_from_slice(old),

@@ -4,7 +4,7 @@ use crate::law::Facet;
 use crate::limit::Counters;
 use crate::model::geometry::{Vec2, turned};
 use crate::path::{
-    Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem, PathState, PointLaw, Sliding,
+    Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem, PathState, Period, PointLaw, Sliding,
 };
 
 /// Coefficient of friction of all structures here.
@@ -36,7 +36,14 @@ pub fn dry(dilatancy: f64) -> PointLaw {
 /// The ground and one free body with a dead load of 10 N downwards and a force λ `live` at its pole.
 pub fn structure(pole: Vec2, contacts: Vec<Contact>, live: Vec2) -> PathProblem {
     let ground = PathBody { held: true, ..PathBody::default() };
-    let load_step = |stage, loading, end| LoadStep { stage, gravity: stage == 0, loading, start: 0.0, end };
+    let load_step = |stage, loading, end| LoadStep {
+        stage,
+        gravity: stage == 0,
+        loading,
+        start: 0.0,
+        end,
+        period: Period::default(),
+    };
     let dead = Loading { acceleration: Vec2::new(0.0, -10.0), ..Loading::default() };
     let forces = vec![(1, None, pole, live)];
     PathProblem {
@@ -50,6 +57,7 @@ pub fn structure(pole: Vec2, contacts: Vec<Contact>, live: Vec2) -> PathProblem 
         length: 2.0,
         span: 2.0,
         counters: Counters::new(),
+        width: 1.0,
     }
 }
 

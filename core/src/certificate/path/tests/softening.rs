@@ -2,7 +2,7 @@
 
 use super::scenes::{point, structure};
 use crate::certificate::path::chain::PathChain;
-use crate::law::{InterfaceResponse, TractionPoint, UpdateBranch, UpdateFailure};
+use crate::law::{InterfaceResponse, PointContext, TractionPoint, UpdateBranch, UpdateFailure};
 use crate::model::geometry::Vec2;
 use crate::path::{PathProblem, PathRate, PathState, PointLaw, RateClaim, Witness};
 use std::sync::Arc;
@@ -44,7 +44,13 @@ impl InterfaceResponse for Bond {
         &["greatest opening [m]"]
     }
 
-    fn respond_point(&self, gap: [f64; 2], old: &[f64], new: &mut [f64]) -> Result<TractionPoint, UpdateFailure> {
+    fn respond_point(
+        &self,
+        gap: [f64; 2],
+        _: &PointContext,
+        old: &[f64],
+        new: &mut [f64],
+    ) -> Result<TractionPoint, UpdateFailure> {
         new[0] = old[0].max(gap[0]);
         let secant = self.envelope(new[0]) / new[0];
         let normal = if gap[0] > old[0] { self.slope } else { -secant };

@@ -270,6 +270,7 @@ mod tests {
             length: 1.0,
             span: 1.0,
             counters: Counters::new(),
+            width: 1.0,
         };
         let geometry = Geometry::new(&problem, true);
         let arm = Vec2::new(0.7, -0.3);

@@ -21,7 +21,7 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 use voussoir_core::law::TractionPoint;
 use voussoir_core::limit::Counters;
-use voussoir_core::path::PathProblem;
+use voussoir_core::path::{LawStep, PathProblem};
 
 /// Laws of the contact points.
 pub struct Laws {
@@ -71,6 +71,8 @@ pub struct StepSystem<'a> {
     /// The problem in scaled units, with the unit of the growing factor.
     pub scaled: System,
     pub loads: StagedLoads<'a>,
+    /// Index of the present load step.
+    pub load_step: usize,
     pub cache: Cache,
     /// Monitors of the strategy.
     pub monitors: Vec<MonitorWeights>,
@@ -79,9 +81,16 @@ pub struct StepSystem<'a> {
     pub tolerance: f64,
 }
 
+/// Returns the fields before the first load.
+fn first_fields(problem: &PathProblem) -> Vec<(&str, f64)> {
+    problem.load_steps.first().map_or_else(Vec::new, |step| problem.fields_at(0, step.start))
+}
+
 /// Returns the additional compliance of contact points with laws of tractions from gaps, before any motion.
 fn softening(problem: &PathProblem, responses: &Responses) -> Result<Vec<[f64; 2]>, String> {
-    let untouched = responses.update(&vec![[0.0; 2]; problem.contacts.len()], &problem.untouched())?;
+    let closed = vec![[0.0; 2]; problem.contacts.len()];
+    let step = LawStep { previous_gap: &closed, time_step: 0.0, fields: first_fields(problem) };
+    let untouched = responses.update(&closed, &problem.untouched(), &step)?;
     let of_point = |(point, c): (&TractionPoint, &voussoir_core::path::Contact)| {
         [0, 1].map(|k| {
             let stiffness = -point.tangent[k][k] * c.area;
@@ -113,6 +122,7 @@ impl<'a> StepSystem<'a> {
             laws: Laws { polygons, polygon_of, responses, undeformed: undeformed(problem)? },
             scaled,
             loads: StagedLoads::new(Vec::new(), &problem.load_steps[0].loading, 0.0),
+            load_step: 0,
             report: Report::default(),
             tolerance: SETTINGS.admissible,
             cache,
@@ -138,7 +148,8 @@ impl<'a> StepSystem<'a> {
     }
 
     /// Starts a load step.
-    pub fn load(&mut self, loads: StagedLoads<'a>) {
+    pub fn load(&mut self, load_step: usize, loads: StagedLoads<'a>) {
+        self.load_step = load_step;
         self.scaled.units.factor = self.scaled.units.of_factor(self.problem, loads.growing);
         self.loads = loads;
         self.cache.equations = None;
@@ -192,10 +203,25 @@ impl<'a> StepSystem<'a> {
             blocks: self.laws.undeformed.clone(),
         };
         // The update of undeformed joints has succeeded in `new`.
-        if let Ok(updates) = self.laws.responses.update(&state.gap, &state.updates.memory) {
+        let step = LawStep { previous_gap: &state.gap, time_step: 0.0, fields: first_fields(self.problem) };
+        if let Ok(updates) = self.laws.responses.update(&state.gap, &state.updates.memory, &step) {
             state.updates = updates;
         }
         state
+    }
+
+    /// Returns the step of laws from a state to a factor of the present load step.
+    pub fn law_step<'s>(&'s self, start: &'s State, factor: f64) -> LawStep<'s> {
+        LawStep {
+            previous_gap: &start.gap,
+            time_step: self.problem.time_between((self.load_step, start.factor), (self.load_step, factor)),
+            fields: self.problem.fields_at(self.load_step, factor),
+        }
+    }
+
+    /// Returns the step of laws from a state without duration.
+    pub fn instant<'s>(&'s self, state: &'s State) -> LawStep<'s> {
+        self.law_step(state, state.factor)
     }
 
     /// Returns the facets of a contact point, if its law has facets.

@@ -10,8 +10,8 @@
 //! are conditioned like the other rows. The history is that of the last converged state until the step is accepted.
 
 use std::sync::Arc;
-use voussoir_core::law::{InterfaceResponse, TractionPoint, UpdateBranch};
-use voussoir_core::path::PathProblem;
+use voussoir_core::law::{Fields, InterfaceResponse, PointContext, TractionPoint, UpdateBranch};
+use voussoir_core::path::{Contact, LawStep, PathProblem};
 
 /// Contact points of one law, with the places of their states.
 #[derive(Debug, Clone)]
@@ -29,8 +29,10 @@ pub struct Responses {
     groups: Vec<Group>,
     /// For each contact point its group and the place of its state, if it has such a law.
     of: Vec<Option<(usize, usize)>>,
-    /// Joint of each contact point, and position.
-    places: Vec<(usize, [f64; 2])>,
+    /// Joint of each contact point.
+    joints: Vec<usize>,
+    /// Context of each contact point without its step.
+    contexts: Vec<PointContext<'static>>,
 }
 
 /// Returns a point with the name of its branch: if its law names no branches, a point without normal traction is open.
@@ -51,6 +53,10 @@ pub struct TractionUpdates {
     pub memory: Vec<f64>,
     /// States of the laws before the step.
     pub before: Vec<f64>,
+    /// Gaps before the step, if it has a duration.
+    pub previous_gap: Vec<[f64; 2]>,
+    /// Duration of the step \[s\].
+    pub time_step: f64,
 }
 
 impl Responses {
@@ -69,8 +75,10 @@ impl Responses {
             of[contact] = Some((at, place));
             place += law.state_size();
         }
-        let places = problem.contacts.iter().map(|c| (c.joint, c.position.into())).collect();
-        Responses { groups, of, places }
+        let joints = problem.contacts.iter().map(|c| c.joint).collect();
+        let context = |c: &Contact| PointContext::at(c.position.into(), c.area / problem.width, problem.width);
+        let contexts = problem.contacts.iter().map(context).collect();
+        Responses { groups, of, joints, contexts }
     }
 
     pub fn is_empty(&self) -> bool {
@@ -91,27 +99,30 @@ impl Responses {
         self.groups.iter().flat_map(|group| group.points.iter().copied())
     }
 
-    /// Returns the response of the law of a contact point at a gap, from the states of all points before. `None` if it
-    /// has no such law or the law fails.
-    pub fn at(&self, contact: usize, gap: [f64; 2], before: &[f64]) -> Option<TractionPoint> {
+    /// Returns the context of a contact point in a step.
+    fn context<'s>(&self, contact: usize, step: &'s LawStep<'_>) -> PointContext<'s> {
+        self.contexts[contact].during(step.previous_gap[contact], step.time_step, Fields::new(&step.fields))
+    }
+
+    /// Returns the response of the law of a contact point at a gap in a step, from the states of all points before.
+    /// `None` if it has no such law or the law fails.
+    pub fn at(&self, contact: usize, gap: [f64; 2], before: &[f64], step: &LawStep) -> Option<TractionPoint> {
         let (group, at) = self.of[contact]?;
         let law = &self.groups[group].law;
         let old = &before[at..at + law.state_size()];
-        law.respond_point(gap, old, &mut old.to_vec()).ok().map(|point| named(point, gap))
+        law.respond_point(gap, &self.context(contact, step), old, &mut old.to_vec()).ok().map(|point| named(point, gap))
     }
 
     /// Returns a message with the law, the joint, the point and the gap of a failure.
     fn failure(&self, group: &Group, index: usize, gap: Option<&[f64; 2]>, why: &str) -> String {
         let contact = group.points.get(index).copied().unwrap_or_default();
-        let place = self.places.get(contact).copied().unwrap_or_default();
-        format!(
-            "the law {:?} gives no traction at joint {}, point ({}, {}), gap {gap:?}: {why}",
-            group.law, place.0, place.1[0], place.1[1]
-        )
+        let joint = self.joints.get(contact).copied().unwrap_or_default();
+        let [x, y] = self.contexts.get(contact).map_or([0.0; 2], |context| context.position);
+        format!("the law {:?} gives no traction at joint {joint}, point ({x}, {y}), gap {gap:?}: {why}", group.law)
     }
 
-    /// Updates all points, group by group. An error gives the reason of the failure.
-    pub fn update(&self, gaps: &[[f64; 2]], before: &[f64]) -> Result<TractionUpdates, String> {
+    /// Updates all points in a step, group by group. An error gives the reason of the failure.
+    pub fn update(&self, gaps: &[[f64; 2]], before: &[f64], step: &LawStep) -> Result<TractionUpdates, String> {
         if self.is_empty() {
             return Ok(TractionUpdates::default());
         }
@@ -120,10 +131,11 @@ impl Responses {
         for group in &self.groups {
             let size = group.law.state_size();
             let gap: Vec<[f64; 2]> = group.points.iter().map(|c| gaps[*c]).collect();
+            let contexts: Vec<PointContext> = group.points.iter().map(|c| self.context(*c, step)).collect();
             let old: Vec<f64> = group.places.iter().flat_map(|at| before[*at..at + size].iter().copied()).collect();
             let mut new = old.clone();
             let mut points = vec![TractionPoint::ZERO; gap.len()];
-            group.law.respond(&gap, &old, &mut new, &mut points).map_err(|failed| {
+            group.law.respond(&gap, &contexts, &old, &mut new, &mut points).map_err(|failed| {
                 self.failure(group, failed.point, gap.get(failed.point), &failed.failure.to_string())
             })?;
             let finite = |p: &TractionPoint| {
@@ -142,6 +154,7 @@ impl Responses {
                 memory[*at..at + size].copy_from_slice(&new[index * size..(index + 1) * size]);
             }
         }
-        Ok(TractionUpdates { points: all, memory, before: before.to_vec() })
+        let previous_gap = if step.time_step > 0.0 { step.previous_gap.to_vec() } else { Vec::new() };
+        Ok(TractionUpdates { points: all, memory, before: before.to_vec(), previous_gap, time_step: step.time_step })
     }
 }

@@ -182,7 +182,7 @@ fn dissipation(system: &StepSystem, state: &State, ahead: &State, rate: &Tangent
     let mut sum = length * plastic_power(system, ahead, rate);
     for c in system.laws.responses.points() {
         let gap = [0, 1].map(|k| state.gap[c][k] + length * rate.gap[c][k]);
-        if let Some(point) = system.laws.responses.at(c, gap, &state.updates.memory) {
+        if let Some(point) = system.laws.responses.at(c, gap, &state.updates.memory, &system.instant(state)) {
             sum += system.problem.contacts[c].area * point.dissipated;
         }
     }

@@ -185,7 +185,7 @@ impl Monitor {
             (sizes.gap.max(SETTINGS.inequality() * gap[0].hypot(gap[1])) / speed).max(SETTINGS.small * ahead);
         let is_in = |length: f64| {
             let there = [0, 1].map(|k| gap[k] + length * rate[k]);
-            let said = system.laws.responses.at(self.contact, there, &start.updates.memory);
+            let said = system.laws.responses.at(self.contact, there, &start.updates.memory, &system.instant(start));
             said.is_none_or(|point| point.branch == branch)
         };
         // Nearer than the place of the tangents the branch may be rounding, or a point may not have entered it yet.

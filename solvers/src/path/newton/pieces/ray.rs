@@ -47,7 +47,9 @@ fn tractions_persist(system: &StepSystem, state: &State, rate: &Tangent) -> bool
         let share = distance * u.length / motion;
         let far = |(g, dg): (&[f64; 2], &[f64; 2])| [0, 1].map(|k| g[k] + share * small(dg[k]));
         let gaps: Vec<[f64; 2]> = state.gap.iter().zip(&rate.gap).map(far).collect();
-        let Ok(updates) = system.laws.responses.update(&gaps, &state.updates.memory) else { return false };
+        let Ok(updates) = system.laws.responses.update(&gaps, &state.updates.memory, &system.instant(state)) else {
+            return false;
+        };
         system.laws.responses.points().all(|c| {
             (0..2).all(|k| {
                 let traction = system.problem.contacts[c].area * updates.points[c].traction[k];

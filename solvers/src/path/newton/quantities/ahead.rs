@@ -22,7 +22,7 @@ pub fn facing_ahead(system: &mut StepSystem, state: &State, rate: &Tangent) -> O
         (0..2).for_each(|k| own[k] += length * rate[k]);
     }
     system.count("law_evaluations", system.laws.responses.count());
-    let updates = system.laws.responses.update(&ahead.gap, &state.updates.memory).ok()?;
+    let updates = system.laws.responses.update(&ahead.gap, &state.updates.memory, &system.instant(state)).ok()?;
     let speed = |rate: &[f64; 2]| rate[0].hypot(rate[1]);
     let fastest = rate.gap.iter().map(speed).fold(0.0, f64::max);
     for ((own, ahead), rate) in facing.updates.points.iter_mut().zip(&updates.points).zip(&rate.gap) {

@@ -74,7 +74,8 @@ pub fn increment_along(system: &StepSystem, state: &State, rate: &Tangent) -> In
     let small = 1e-6 / tangent_size(system, rate).max(1e-300);
     let ahead = |(g, dg): (&[f64; 2], &[f64; 2])| [0, 1].map(|k| g[k] + small * dg[k]);
     let gaps: Vec<[f64; 2]> = state.gap.iter().zip(&rate.gap).map(ahead).collect();
-    let updates = system.laws.responses.update(&gaps, &state.updates.memory).unwrap_or_default();
+    let updates =
+        system.laws.responses.update(&gaps, &state.updates.memory, &system.instant(state)).unwrap_or_default();
     let dissipation = dissipated_by(system, &updates) / small
         + dissipated_by_facets(system, state, |c| rate.gap[c])
         + plastic_power(system, state, rate);

@@ -85,6 +85,8 @@ pub fn recorded(
         work: energy.work,
         displacement: load_displacement(system, &state.motion, state.factor),
         memory: state.updates.before.clone(),
+        step_gap: state.updates.previous_gap.clone(),
+        time_step: state.updates.time_step,
         yielded: yielded(&state.blocks),
         stable_under_load: None,
     }

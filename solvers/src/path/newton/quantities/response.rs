@@ -9,7 +9,8 @@ pub fn update_tractions(system: &mut StepSystem, start: &State, state: &mut Stat
     let count = system.laws.responses.count();
     if count > 0 {
         system.count("law_evaluations", count);
-        state.updates = system.laws.responses.update(&state.gap, &start.updates.memory)?;
+        let step = system.law_step(start, state.factor);
+        state.updates = system.laws.responses.update(&state.gap, &start.updates.memory, &step)?;
     }
     Ok(())
 }

@@ -116,7 +116,9 @@ mod tests {
     use voussoir_core::law::Facet;
     use voussoir_core::limit::Counters;
     use voussoir_core::model::geometry::Vec2;
-    use voussoir_core::path::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem, PointLaw};
+    use voussoir_core::path::{
+        Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem, Period, PointLaw,
+    };
     use voussoir_core::random::Random;
 
     /// A rigid block on three compliant points of the ground with dilatant friction, pushed down and sideways.
@@ -151,10 +153,18 @@ mod tests {
             bodies: vec![body(true, Vec2::zeros()), body(false, pole)],
             body_of: vec![0, 1],
             contacts: vec![contact(-1.0), contact(0.2), contact(1.0)],
-            load_steps: vec![LoadStep { stage: 0, gravity: false, loading, start: 0.0, end: LoadStepEnd::Factor(1.0) }],
+            load_steps: vec![LoadStep {
+                stage: 0,
+                gravity: false,
+                loading,
+                start: 0.0,
+                end: LoadStepEnd::Factor(1.0),
+                period: Period::default(),
+            }],
             length: 2.0,
             span: 2.0,
             counters: Counters::new(),
+            width: 1.0,
         }
     }
 
@@ -165,7 +175,7 @@ mod tests {
         let control = Control::Factor(1.0);
         for finite in [false, true] {
             let mut system = StepSystem::new(&problem, finite).expect("a system");
-            system.load(StagedLoads::new(Vec::new(), &problem.load_steps[0].loading, 0.0));
+            system.load(0, StagedLoads::new(Vec::new(), &problem.load_steps[0].loading, 0.0));
             let (start, u) = (system.undeformed(), system.units());
             let (mut random, mut compared) = (Random::from_state(5), [0; 3]);
             for _ in 0..600 {

@@ -189,7 +189,7 @@ mod tests {
     use voussoir_core::limit::Counters;
     use voussoir_core::model::geometry::Vec2;
     use voussoir_core::path::{
-        Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem, PointLaw, Sliding,
+        Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem, Period, PointLaw, Sliding,
     };
     use voussoir_core::random::Random;
 
@@ -227,9 +227,17 @@ mod tests {
             bodies: vec![body(-0.5, false), body(0.5, true), body(1.5, true), body(2.5, false)],
             body_of: vec![0, 1, 2, 3],
             contacts: (0..6).map(|c| contact(c / 2, c % 2)).collect(),
-            load_steps: vec![LoadStep { stage: 0, gravity: false, loading, start: 0.0, end: LoadStepEnd::Factor(1.0) }],
+            load_steps: vec![LoadStep {
+                stage: 0,
+                gravity: false,
+                loading,
+                start: 0.0,
+                end: LoadStepEnd::Factor(1.0),
+                period: Period::default(),
+            }],
             length: 2.0,
             span: 2.0,
+            width: 1.0,
             counters: Counters::new(),
         }
     }
@@ -247,7 +255,7 @@ mod tests {
                 let system = || {
                     let mut system = StepSystem::new(&problem, true).expect("a system");
                     let growing = &problem.load_steps[0].loading;
-                    system.load(StagedLoads::new(Vec::new(), growing, 0.0));
+                    system.load(0, StagedLoads::new(Vec::new(), growing, 0.0));
                     system
                 };
                 let mut own = system();

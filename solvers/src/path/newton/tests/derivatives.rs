@@ -9,7 +9,9 @@ use crate::path::two_blocks::body;
 use nalgebra::{DMatrix, Rotation2};
 use voussoir_core::limit::Counters;
 use voussoir_core::model::geometry::Vec2;
-use voussoir_core::path::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathProblem, PointLaw, Sliding};
+use voussoir_core::path::{
+    Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathProblem, Period, PointLaw, Sliding,
+};
 
 /// A symmetric positive definite matrix of plausible entries.
 fn flexibility(rows: usize) -> DMatrix<f64> {
@@ -55,10 +57,18 @@ fn chain() -> PathProblem {
         bodies,
         body_of: vec![0, 1, 2, 3],
         contacts,
-        load_steps: vec![LoadStep { stage: 0, gravity: false, loading, start: 0.0, end: LoadStepEnd::Factor(1.0) }],
+        load_steps: vec![LoadStep {
+            stage: 0,
+            gravity: false,
+            loading,
+            start: 0.0,
+            end: LoadStepEnd::Factor(1.0),
+            period: Period::default(),
+        }],
         length: 3.0,
         span: 3.0,
         counters: Counters::new(),
+        width: 1.0,
     }
 }
 

@@ -5,7 +5,9 @@ use crate::path::two_blocks::{
     STIFFNESS, assert_close, block, block_on, live, pushed_at, settings, stage, strategies, traced,
 };
 use std::sync::Arc;
-use voussoir_core::law::{Facet, FacetResponse, InterfaceResponse, TractionPoint, UpdateBranch, UpdateFailure};
+use voussoir_core::law::{
+    Facet, FacetResponse, InterfaceResponse, PointContext, TractionPoint, UpdateBranch, UpdateFailure,
+};
 use voussoir_core::limit::Status;
 use voussoir_core::path::{LoadStepEnd, Loading, PathAnswer, PathProblem, PathSolver, PointLaw, Unobserved};
 
@@ -111,7 +113,13 @@ impl InterfaceResponse for NoTension {
         &[]
     }
 
-    fn respond_point(&self, gap: [f64; 2], _: &[f64], _: &mut [f64]) -> Result<TractionPoint, UpdateFailure> {
+    fn respond_point(
+        &self,
+        gap: [f64; 2],
+        _: &PointContext,
+        _: &[f64],
+        _: &mut [f64],
+    ) -> Result<TractionPoint, UpdateFailure> {
         let pressed = |normal: f64| STIFFNESS * (-normal).max(0.0);
         let traction = [pressed(gap[0]), -STIFFNESS * gap[1]];
         let slope = (pressed(gap[0] + 1e-8) - pressed(gap[0] - 1e-8)) / 2e-8;

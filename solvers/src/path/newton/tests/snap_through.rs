@@ -10,7 +10,7 @@ use voussoir_core::limit::{Counters, Status};
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::path::{
     Attachment, Constraint, Contact, Continuation, Increment, LoadStep, LoadStepEnd, Loading, MOST_MONITORS, Monitor,
-    PathProblem, PathSolver, PointLaw, Sliding, Unobserved,
+    PathProblem, PathSolver, Period, PointLaw, Sliding, Unobserved,
 };
 
 /// Two rigid bars, hinged to each other at the crown and to the ground by a hinge of compliance c in
@@ -53,10 +53,12 @@ fn two_bars(half_span: f64, rise: f64, compliance: f64) -> PathProblem {
             loading,
             start: 0.0,
             end: LoadStepEnd::Collapse(f64::INFINITY),
+            period: Period::default(),
         }],
         length: 2.0 * half_span,
         span: 2.0 * half_span,
         counters: Counters::new(),
+        width: 1.0,
     }
 }
 

@@ -13,7 +13,9 @@ use voussoir_core::law::{
 };
 use voussoir_core::limit::Counters;
 use voussoir_core::model::geometry::Vec2;
-use voussoir_core::path::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathProblem, PointLaw, Sliding};
+use voussoir_core::path::{
+    Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathProblem, Period, PointLaw, Sliding,
+};
 
 /// Von Mises with linear hardening H = E / 10, radial return (Simo & Hughes 1998, box 3.2).
 #[derive(Debug)]
@@ -102,8 +104,14 @@ fn steps_with_yielding_blocks_converge_quadratically() {
     });
     let loading =
         Loading { forces: vec![(1, Some(3), Vec2::new(1.0, 1.0), Vec2::new(3e5, -4e5))], ..Loading::default() };
-    let load_step =
-        LoadStep { stage: 0, gravity: false, loading: loading.clone(), start: 0.0, end: LoadStepEnd::Factor(1.0) };
+    let load_step = LoadStep {
+        stage: 0,
+        gravity: false,
+        loading: loading.clone(),
+        start: 0.0,
+        end: LoadStepEnd::Factor(1.0),
+        period: Period::default(),
+    };
     let problem = PathProblem {
         bodies: vec![ground, block],
         body_of: vec![0, 1],
@@ -112,10 +120,11 @@ fn steps_with_yielding_blocks_converge_quadratically() {
         length: 1.0,
         span: 1.0,
         counters: Counters::new(),
+        width: 1.0,
     };
     for finite in [false, true] {
         let mut system = StepSystem::new(&problem, finite).unwrap();
-        system.load(StagedLoads::new(Vec::new(), &loading, 0.0));
+        system.load(0, StagedLoads::new(Vec::new(), &loading, 0.0));
         let start = system.undeformed();
         let (state, _) = solve_step(&mut system, &start, start.clone(), &Control::Factor(1.0)).unwrap();
         let yielding = state.blocks.iter().flatten().map(|inner| inner.linear.yielding).sum::<usize>();
