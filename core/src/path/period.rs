@@ -167,7 +167,7 @@ mod tests {
         }
     }
 
-    /// Fields go linearly from the value of the stage before to that of the stage, and stay if a stage does not set them.
+    /// Fields go linearly from their values in the stage before to their new values, and stay if a stage does not set them.
     #[test]
     fn fields_are_linear_within_a_stage_and_constant_if_it_does_not_set_them() {
         let stages = [

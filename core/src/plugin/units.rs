@@ -26,6 +26,8 @@ pub enum Quantity {
     EnergyPerArea,
     /// Temperature \[K\].
     Temperature,
+    /// Time \[s\].
+    Time,
 }
 
 /// Compares texts while the program is compiled.
@@ -68,6 +70,10 @@ const ENERGIES_PER_AREA: &[(&str, f64)] = &[("J/m2", 1.0), ("N/m", 1.0), ("kJ/m2
 const DENSITIES: &[(&str, f64)] = &[("kg/m3", 1.0), ("t/m3", 1e3), ("lb/ft3", 0.453_592_37 / (FOOT * FOOT * FOOT))];
 const SPECIFIC_WEIGHTS: &[(&str, f64)] =
     &[("N/m3", 1.0), ("kN/m3", 1e3), ("lbf/ft3", POUND_FORCE / (FOOT * FOOT * FOOT))];
+/// A year has 365.25 days.
+const TIMES: &[(&str, f64)] = &[("s", 1.0), ("min", 60.0), ("h", 3600.0), ("d", 86_400.0), ("a", 31_557_600.0)];
+/// Temperature of 0 °C \[K\].
+const ZERO_CELSIUS: f64 = 273.15;
 const ACCELERATIONS: &[(&str, f64)] = &[("m/s2", 1.0), ("g", STANDARD_GRAVITY), ("ft/s2", FOOT)];
 
 impl Quantity {
@@ -86,11 +92,11 @@ impl Quantity {
             }
             i += 1;
         }
-        panic!("no quantity has this unit; units of keys: - m deg rad N Pa Pa/m kg/m3 m/s2 J/m2 K")
+        panic!("no quantity has this unit; units of keys: - m deg rad N Pa Pa/m kg/m3 m/s2 J/m2 K s")
     }
 
     /// All quantities.
-    pub const ALL: [Quantity; 11] = [
+    pub const ALL: [Quantity; 12] = [
         Quantity::Ratio,
         Quantity::Length,
         Quantity::Degrees,
@@ -102,6 +108,7 @@ impl Quantity {
         Quantity::Acceleration,
         Quantity::EnergyPerArea,
         Quantity::Temperature,
+        Quantity::Time,
     ];
 
     /// Returns the unit of a plain number; empty for a ratio.
@@ -118,6 +125,7 @@ impl Quantity {
             Quantity::Acceleration => "m/s2",
             Quantity::EnergyPerArea => "J/m2",
             Quantity::Temperature => "K",
+            Quantity::Time => "s",
         }
     }
 
@@ -142,6 +150,7 @@ impl Quantity {
             Quantity::Acceleration => ACCELERATIONS.to_vec(),
             Quantity::EnergyPerArea => ENERGIES_PER_AREA.to_vec(),
             Quantity::Temperature => vec![("K", 1.0)],
+            Quantity::Time => TIMES.to_vec(),
         }
     }
 
@@ -162,6 +171,9 @@ impl Quantity {
             return Ok(number);
         }
         let unit = unit.replace('²', "2").replace('³', "3").replace('^', "");
+        if self == Quantity::Temperature && unit == "°C" {
+            return Ok(number + ZERO_CELSIUS);
+        }
         let table = self.table(gravity);
         match table.iter().find(|(name, _)| *name == unit) {
             // Division by an inverse power of ten is correctly rounded; multiplication by 1e-3 is not.
@@ -180,7 +192,8 @@ impl Quantity {
                 ))
             }
             None => {
-                let names: Vec<_> = table.iter().map(|(name, _)| *name).collect();
+                let celsius = (self == Quantity::Temperature).then_some("°C");
+                let names: Vec<_> = table.iter().map(|(name, _)| *name).chain(celsius).collect();
                 Err(format!("unit \"{unit}\" does not fit; units here: {}", names.join(", ")))
             }
         }
@@ -202,6 +215,9 @@ mod tests {
         assert!((read(Quantity::Density, "21.582 kN/m3") - 2200.0).abs() < 1e-9);
         assert!((read(Quantity::Stress, "1 psi") - 6_894.757_293_168).abs() < 1e-6);
         assert_eq!(read(Quantity::Degrees, "25°"), 25.0);
+        assert_eq!(read(Quantity::Temperature, "20 °C"), 293.15);
+        assert_eq!(read(Quantity::Temperature, "-10 °C"), 263.15);
+        assert_eq!(read(Quantity::Time, "30 d"), 2_592_000.0);
         assert!((read(Quantity::Radians, "180 deg") - std::f64::consts::PI).abs() < 1e-15);
     }
 
@@ -245,6 +261,7 @@ mod tests {
         (Quantity::Acceleration, &[("m/s2", 1.0), ("g", 9.80665), ("ft/s2", 0.3048)]),
         (Quantity::EnergyPerArea, &[("J/m2", 1.0), ("N/m", 1.0), ("kJ/m2", 1e3), ("N/mm", 1e3)]),
         (Quantity::Temperature, &[("K", 1.0)]),
+        (Quantity::Time, &[("s", 1.0), ("min", 60.0), ("h", 3600.0), ("d", 86_400.0), ("a", 31_557_600.0)]),
     ];
 
     #[test]

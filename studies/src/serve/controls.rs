@@ -47,6 +47,7 @@ fn usual(quantity: Quantity) -> f64 {
         Quantity::Acceleration => 10.0,
         Quantity::EnergyPerArea => 100.0,
         Quantity::Temperature => 300.0,
+        Quantity::Time => 86_400.0,
     }
 }
 

@@ -195,6 +195,8 @@ impl Fit<'_> {
         path.states.iter().for_each(|state| self.state(state, points));
         self.numbers("curve", path.curve.iter().flatten().flatten().copied());
         self.numbers("joint_states", path.joint_states.iter().flatten().copied());
+        self.numbers("joint_time_step", path.joint_time_step);
+        self.numbers("joint_gaps", path.joint_gaps.iter().flatten().flatten().copied());
         for peak in &path.limit_points {
             self.stage("limit_points", &peak.stage);
             let next = peak.next_state.map(|next| next.displacement);

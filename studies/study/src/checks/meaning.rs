@@ -134,8 +134,8 @@ impl<'a> Comparison<'a> {
             "loads" => within(&GEOMETRY),
             "motion" | "mechanism" | "branches" => within(&RATE),
             "stages" if leaf != "factor" => within(&RATE),
-            "field" | "fill" | "displacements" | "thrust_line" | "states" | "yielded" | "joint_states" | "ray"
-            | "rows" => within(&STATE),
+            "field" | "fill" | "displacements" | "thrust_line" | "states" | "yielded" | "joint_states"
+            | "joint_time_step" | "joint_gaps" | "ray" | "rows" => within(&STATE),
             _ => within(&FACTOR),
         }
     }

@@ -205,6 +205,8 @@ fn stored_state(
     let mut state = PathState { load_step, factor, force, motion, ..PathState::default() };
     state.gap = vec![[0.0; 2]; problem.contacts.len()];
     state.memory = result.path.joint_states.clone().unwrap_or_default();
+    state.time_step = result.path.joint_time_step.unwrap_or(0.0);
+    state.step_gap = result.path.joint_gaps.clone().unwrap_or_default();
     state.yielded = inelastic_state::read(assembly, problem, &result.path.yielded)?;
     state.gap = Displaced::new(problem, &state, finite).gaps().to_vec();
     Ok(state)

@@ -94,6 +94,12 @@ pub struct PathRecord {
     /// one contact point after another. The laws compute the contact forces from these states.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub joint_states: Option<Vec<f64>>,
+    /// If that step has a duration \[s\]: its duration.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub joint_time_step: Option<f64>,
+    /// If that step has a duration: the gaps (g_n, g_t) at its start \[m\], one contact point after another.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub joint_gaps: Option<Vec<[f64; 2]>>,
     /// Blocks whose material has yielded at the state of the field.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub yielded: Vec<YieldedEntry>,
@@ -263,6 +269,7 @@ impl CaseResult {
         self.non_associated.associated_motion = None;
         self.non_associated.lower_proof.iter_mut().for_each(|proof| proof.steps.clear());
         (self.path.displacements, self.path.joint_states) = (None, None);
+        (self.path.joint_time_step, self.path.joint_gaps) = (None, None);
         self.path.yielded.clear();
     }
 
@@ -273,7 +280,13 @@ impl CaseResult {
 
     /// Returns the result without the data that only its own drawings and its proof use.
     pub fn without_drawings(&self) -> Self {
-        let path = PathRecord { states: Vec::new(), joint_states: None, yielded: Vec::new(), ..self.path.clone() };
+        let path = PathRecord {
+            states: Vec::new(),
+            joint_states: None,
+            joint_gaps: None,
+            yielded: Vec::new(),
+            ..self.path.clone()
+        };
         CaseResult {
             label: self.label.clone(),
             load_factor_error: self.load_factor_error,

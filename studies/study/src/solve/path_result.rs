@@ -243,6 +243,8 @@ fn path_record(
         displacements: Some(displaced.into_iter().enumerate().map(entry).collect()),
         yielded: inelastic_state::entries(assembly, problem, &solved.state),
         joint_states: (!solved.state.memory.is_empty()).then_some(solved.state.memory),
+        joint_time_step: Some(solved.state.time_step).filter(|time_step| *time_step > 0.0),
+        joint_gaps: (solved.state.time_step > 0.0).then_some(solved.state.step_gap),
         events: events(input, problem, &solved.events),
         curve: Some(checker.curve),
         first_limit_point: first,

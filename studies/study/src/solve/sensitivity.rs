@@ -31,6 +31,7 @@ fn usual(quantity: Quantity) -> f64 {
         Quantity::Stiffness => 1e10,
         Quantity::Acceleration => 10.0,
         Quantity::EnergyPerArea | Quantity::Temperature => 100.0,
+        Quantity::Time => 86_400.0,
     }
 }
 

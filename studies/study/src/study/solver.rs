@@ -285,5 +285,10 @@ pub(super) fn unused_by_limit_analysis(resolved: &Resolved, stages: &[StageTable
     let note = |at: &String, key: &str| format!("{at}.{key} is not used by limit analysis");
     notes.extend(tables.iter().filter(|(_, continuation, _)| *continuation).map(|(at, ..)| note(at, "continuation")));
     notes.extend(tables.iter().filter(|(.., stop)| *stop).map(|(at, ..)| note(at, "stop")));
+    for (index, stage) in stages.iter().enumerate() {
+        let at = format!("stages.{index}");
+        notes.extend(stage.duration.map(|_| note(&at, "duration")));
+        notes.extend(stage.fields.as_ref().map(|_| note(&at, "fields")));
+    }
     notes
 }

@@ -2,7 +2,7 @@
 
 use super::diagnostics::DiagnosticList;
 use super::resolved::Resolved;
-use super::tables::{Gravity, SettlementTable, StageTable, Until};
+use super::tables::{FieldTable, Gravity, SettlementTable, StageTable, Until};
 use crate::config::diagnostic::suggest;
 use crate::config::dotted_key::join;
 use crate::loads::{LoadKind, LoadSite, LoadTables, Placed};
@@ -46,8 +46,8 @@ pub(super) fn build_stages(
             target,
             factor_min: factors[0],
             factor_max: factors[1],
-            duration: 0.0,
-            fields: Vec::new(),
+            duration: raw.duration.unwrap_or(0.0),
+            fields: build_fields(diagnostics, written, index, &at),
         };
         // A vehicle that is off the bridge is not a mistake: a note reports it.
         let stands_off = !own.is_empty();
@@ -69,6 +69,56 @@ fn raises_nothing(stage: &Stage) -> bool {
         && stage.forces.iter().all(|force| force.force.norm() == 0.0)
         && stage.accelerations.iter().all(|acceleration| acceleration.norm() == 0.0)
         && stage.settlements.is_empty()
+}
+
+/// Returns the fields at the end of a stage; also checks its duration. Time and fields go with the factor, so a stage in
+/// which they change needs a factor.
+fn build_fields(
+    diagnostics: &mut DiagnosticList<'_>,
+    stages: &[StageTable],
+    index: usize,
+    at: &str,
+) -> Vec<(String, f64)> {
+    let stage = &stages[index];
+    let lasts = stage.duration.is_some_and(|duration| duration > 0.0);
+    let values = stage.fields.as_ref().map_or_else(Vec::new, FieldTable::values);
+    let before = |name: &str| {
+        let earlier = stages[..index].iter().rev().filter_map(|stage| stage.fields.as_ref());
+        earlier.flat_map(FieldTable::values).find(|(_, own, _)| own == name).map(|(.., value)| value)
+    };
+    for (position, (key, name, value)) in values.iter().enumerate() {
+        let key = format!("{at}.fields.{key}");
+        if values[..position].iter().any(|(_, own, _)| own == name) {
+            let message = format!("the field \"{name}\" is set twice");
+            diagnostics.wrong(&key, message, "remove this entry: the field has a key of its own");
+        }
+        let last = before(name);
+        if index > 0 && last.is_none() {
+            let message =
+                format!("the first stage does not set the field \"{name}\", so it has no value to change from");
+            diagnostics.wrong(&key, message, "set the field in the first stage too, to its value at the start");
+        }
+        if stage.until.is_some() && last.is_some_and(|last| last != *value) {
+            let message = "fields grow to the factor of a stage, and this stage has none";
+            diagnostics.wrong(&key, message, "change the field in a stage before, or give this stage a factor");
+        }
+        if stage.factor == Some(0.0) && last.is_some_and(|last| last != *value) {
+            diagnostics.wrong(&key, "fields grow with the factor, which stays 0", "give this stage another factor");
+        }
+    }
+    if lasts && stage.until.is_some() {
+        let message = "time grows to the factor of a stage, and this stage has none";
+        diagnostics.wrong(
+            &join(at, "duration"),
+            message,
+            "let time pass in a stage before, or give this stage a factor",
+        );
+    }
+    if lasts && stage.factor == Some(0.0) {
+        let message = "time grows with the factor, which stays 0";
+        diagnostics.wrong(&join(at, "duration"), message, "give this stage another factor, such as 1");
+    }
+    values.into_iter().map(|(_, name, value)| (name, value)).collect()
 }
 
 /// Returns the tables to which loads refer: vehicles, and the law of dispersion in the fill. They are already checked.

@@ -70,6 +70,29 @@ pub struct RecordTable {
     pub version: Option<String>,
 }
 
+/// Values of fields that joint laws read.
+#[derive(Debug, Clone, Keys)]
+pub struct FieldTable {
+    /// temperature
+    #[key(unit = "K", range = "> 0", optional = "no temperature, or as it was")]
+    pub temperature: Option<f64>,
+    /// height of the water table, in the coordinates of the scene
+    #[key(unit = "m", optional = "no water, or as it was")]
+    pub water_level: Option<f64>,
+    /// fields of your own laws by name, in SI units
+    #[key(unit = "-", default = {})]
+    pub other: BTreeMap<String, f64>,
+}
+
+impl FieldTable {
+    /// Returns the fields that are set: the key below `fields`, the name for laws, and the value.
+    pub fn values(&self) -> Vec<(String, String, f64)> {
+        let named = [("temperature", self.temperature), ("water_level", self.water_level)];
+        let named = named.into_iter().filter_map(|(name, value)| Some((name.to_string(), name.to_string(), value?)));
+        named.chain(self.other.iter().map(|(name, value)| (format!("other.{name}"), name.clone(), *value))).collect()
+    }
+}
+
 /// `[[stages]]`: plug-ins in it are read one by one, so that a mistake is reported at its key.
 #[derive(Debug, Clone, Keys)]
 pub struct StageTable {
@@ -96,6 +119,13 @@ pub struct StageTable {
     /// movements of supports
     #[key(default = [])]
     pub settlement: Vec<SettlementTable>,
+    /// time in which the loads of this stage grow to its factor
+    #[key(unit = "s", range = ">= 0", optional = "no time passes")]
+    pub duration: Option<f64>,
+    /// fields at the end of this stage, for joint laws that depend on them; they grow with the factor from their values in
+    /// the stage before
+    #[key(optional = "fields stay as they were")]
+    pub fields: Option<FieldTable>,
     /// strategy of path solvers in this stage
     #[key(shape = Shape::Plugin(PluginKind::Continuation), optional = "that of [solver]")]
     pub continuation: Option<Json>,

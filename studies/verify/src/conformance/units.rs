@@ -25,7 +25,8 @@ fn factor(quantity: Quantity) -> f64 {
         | Quantity::Radians
         | Quantity::Density
         | Quantity::Acceleration
-        | Quantity::Temperature => 1.0,
+        | Quantity::Temperature
+        | Quantity::Time => 1.0,
     }
 }
 
