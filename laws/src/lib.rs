@@ -13,6 +13,7 @@ pub mod coulomb;
 pub mod coulomb_associated;
 pub mod coulomb_directional;
 pub mod coulomb_wearing;
+pub mod creeping_mortar;
 pub mod damage_plasticity;
 pub mod drucker_prager_cap;
 pub mod drucker_prager_softening;

@@ -9,6 +9,7 @@ mod carried;
 mod cohesive;
 mod compare;
 mod contact;
+mod creep;
 mod crushing;
 mod damage;
 mod elements;

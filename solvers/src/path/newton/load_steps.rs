@@ -1,7 +1,7 @@
 //! The load steps in order, and the answer.
 
 use super::load_to_factor::load_to_factor;
-use super::pieces;
+use super::{pieces, time_steps};
 use crate::path::continuation::arc_length::ArcLength;
 use crate::path::energy::{EnergyBalance, StageBalance};
 use crate::path::newton::model::loads::StagedLoads;
@@ -63,10 +63,14 @@ fn run<'a>(tracer: &mut Tracer<'a, '_>, problem: &'a PathProblem) {
         // Missing monitors were refused before the start of the path.
         tracer.system.monitors = resolve(problem, &tracer.in_force.strategy.monitors()).unwrap_or_default();
         tracer.system.load(index, StagedLoads::new(earlier.clone(), &load_step.loading, load_step.start));
+        if index > 0 && problem.load_steps[index - 1].period.passes() {
+            at_once(tracer);
+        }
         let gradient = tracer.system.gradient(&tracer.state);
         tracer.record.work = work_state(&tracer.system, &tracer.state, &gradient);
         let mut outcome = match load_step.end {
             LoadStepEnd::Collapse(most) => pieces::driver::follow(tracer, load_step, most),
+            LoadStepEnd::Factor(factor) if load_step.period.passes() => time_steps::follow(tracer, load_step, factor),
             LoadStepEnd::Factor(factor) => load_to_factor(tracer, load_step, factor),
         };
         // Beyond a peak a structure reaches the load in another equilibrium: it has snapped through.
@@ -93,6 +97,17 @@ fn run<'a>(tracer: &mut Tracer<'a, '_>, problem: &'a PathProblem) {
         }
     }
     tracer.ending.status = if tracer.limit.peak.is_some() { Status::LimitPoint } else { Status::Stands };
+}
+
+/// Gives the laws of the present state the tangents of a load that acts at once, after a load step in time.
+fn at_once(tracer: &mut Tracer) {
+    let updates = {
+        let (system, state) = (&tracer.system, &tracer.state);
+        system.laws.responses.update(&state.gap, &state.updates.memory, &system.instant(state))
+    };
+    if let Ok(updates) = updates {
+        tracer.state.updates = updates;
+    }
 }
 
 /// Examines the stability of the state at the end of a stage. From an unstable state damped descent leads to a stable

@@ -7,6 +7,7 @@ mod model;
 mod pieces;
 mod quantities;
 mod solve;
+mod time_steps;
 mod tracing;
 
 use super::event::{self, is_piecewise_linear};
