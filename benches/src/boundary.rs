@@ -53,7 +53,10 @@ pub fn inlined(
     if trial[1].abs() <= limit {
         let tangent = [[-k_n, 0.0], [0.0, -k_t]];
         let branch = UpdateBranch::ELASTIC;
-        return Ok((TractionPoint { traction: trial, tangent, branch, stored: stored(trial), dissipated: 0.0 }, old));
+        return Ok((
+            TractionPoint { traction: trial, tangent, branch, stored: stored(trial), dissipated: 0.0, supplied: 0.0 },
+            old,
+        ));
     }
     let sense = trial[1].signum();
     let traction = [trial[0], sense * limit];
@@ -61,7 +64,7 @@ pub fn inlined(
     let tangent = [[-k_n, 0.0], [-sense * friction * k_n, 0.0]];
     let branch = UpdateBranch::new("sliding", Effect::Sliding);
     let dissipated = limit * slip.abs();
-    Ok((TractionPoint { traction, tangent, branch, stored: stored(traction), dissipated }, old - slip))
+    Ok((TractionPoint { traction, tangent, branch, stored: stored(traction), dissipated, supplied: 0.0 }, old - slip))
 }
 
 /// Computes a batch without a plug-in.

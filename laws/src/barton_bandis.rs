@@ -117,7 +117,14 @@ impl InterfaceResponse for BartonBandisResponse {
         if trial.abs() <= strength {
             let (traction, tangent) = ([pressure, trial], [[-slope, 0.0], [0.0, -k_t]]);
             let stored = closed + 0.5 * trial * trial / k_t;
-            return Ok(TractionPoint { traction, tangent, branch: UpdateBranch::ELASTIC, stored, dissipated: 0.0 });
+            return Ok(TractionPoint {
+                traction,
+                tangent,
+                branch: UpdateBranch::ELASTIC,
+                stored,
+                dissipated: 0.0,
+                supplied: 0.0,
+            });
         }
         let sense = trial.signum();
         let slip = (trial.abs() - strength) / k_t;
@@ -128,6 +135,7 @@ impl InterfaceResponse for BartonBandisResponse {
             branch: SLIDING,
             stored: closed + 0.5 * strength * strength / k_t,
             dissipated: strength * slip,
+            supplied: 0.0,
         })
     }
 }

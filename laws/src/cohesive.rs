@@ -229,7 +229,7 @@ impl InterfaceResponse for CohesiveResponse {
             (false, true) => SLIDING,
             (true, true) => SOFTENING_SLIDING,
         };
-        Ok(TractionPoint { traction, tangent, branch, stored, dissipated })
+        Ok(TractionPoint { traction, tangent, branch, stored, dissipated, supplied: 0.0 })
     }
 }
 

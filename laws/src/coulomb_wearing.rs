@@ -160,7 +160,14 @@ impl InterfaceResponse for WearingResponse {
         if trial[1].abs() <= strength {
             let tangent = [[-k_n, 0.0], [0.0, -k_t]];
             let branch = UpdateBranch::ELASTIC;
-            return Ok(TractionPoint { traction: trial, tangent, branch, stored: stored(trial), dissipated: 0.0 });
+            return Ok(TractionPoint {
+                traction: trial,
+                tangent,
+                branch,
+                stored: stored(trial),
+                dissipated: 0.0,
+                supplied: 0.0,
+            });
         }
         let (slip, fall) = self.slip(trial, total)?;
         let sense = trial[1].signum();
@@ -174,7 +181,7 @@ impl InterfaceResponse for WearingResponse {
             [-sense * k_t * by_gap[0], -k_t - sense * k_t * by_gap[1]],
         ];
         let dissipated = self.friction * traction[0] * slip;
-        Ok(TractionPoint { traction, tangent, branch: SLIDING, stored: stored(traction), dissipated })
+        Ok(TractionPoint { traction, tangent, branch: SLIDING, stored: stored(traction), dissipated, supplied: 0.0 })
     }
 }
 

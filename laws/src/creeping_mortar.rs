@@ -191,7 +191,7 @@ impl InterfaceResponse for CreepingResponse {
             + self.shear.dissipated([before[1] - slip, gap[1] - new[2]], creep_t, time_step)
             + limit * slipped.abs();
         let branch = if slides { SLIDING } else { UpdateBranch::ELASTIC };
-        Ok(TractionPoint { traction, tangent, branch, stored, dissipated })
+        Ok(TractionPoint { traction, tangent, branch, stored, dissipated, supplied: 0.0 })
     }
 }
 

@@ -236,6 +236,7 @@ impl InterfaceResponse for CompositeResponse {
                 branch: UpdateBranch::ELASTIC,
                 stored: stored(trial),
                 dissipated: 0.0,
+                supplied: 0.0,
             });
         };
         let [sigma, tau] = [back.stress[0], sense * back.stress[1]];
@@ -248,6 +249,7 @@ impl InterfaceResponse for CompositeResponse {
             branch: self.branch(old, &back),
             stored: stored([sigma, tau]),
             dissipated: self.dissipated(old, &back),
+            supplied: 0.0,
         })
     }
 }

@@ -61,6 +61,12 @@ pub struct Settings {
     pub spring: f64,
     /// Share of the forces of closed points on a moving support below which forces are not compared with each other.
     pub cancelled: f64,
+    /// Greatest error of a step in time, relative to the greatest gap and the greatest force.
+    pub time_error: f64,
+    /// Length of the first step in time, as a share of its load step.
+    pub first_time_step: f64,
+    /// Least length of a step in time, as a share of its load step.
+    pub least_time_step: f64,
 }
 
 /// The numbers in use.
@@ -91,6 +97,9 @@ pub const SETTINGS: Settings = Settings {
     cancels: 16.0,
     spring: 0.1,
     cancelled: 0.1,
+    time_error: 1e-6,
+    first_time_step: 1.0 / 64.0,
+    least_time_step: 1e-9,
 }
 .validated();
 
@@ -117,6 +126,8 @@ impl Settings {
         assert!(0.0 < self.first_load && self.first_load < 1.0 && 0.0 < self.half && self.half < 1.0);
         assert!(self.contraction < self.stays && self.stays < 1.0 && self.telling <= 1.0, "shares of a residual");
         assert!(self.largest_rotation < 1.0 && self.spring < 1.0 && self.cancelled < 1.0 && self.cancelled > 0.0);
+        assert!(self.admissible < self.time_error && self.time_error < self.fine, "equilibrium is finer than time");
+        assert!(0.0 < self.least_time_step && self.least_time_step < self.first_time_step);
         assert!(self.together >= 1.0 && self.calm > 1.0 && self.cancels > 1.0, "factors above 1");
         self
     }

@@ -37,18 +37,23 @@ pub struct PointContext<'a> {
     pub time_step: f64,
     /// Values of named fields at the end of the step.
     pub fields: Fields<'a>,
+    /// Values of named fields at the start of the step.
+    pub previous_fields: Fields<'a>,
 }
 
 impl<'a> PointContext<'a> {
     /// Creates the context of a point at a position \[m\] with a tributary length \[m\] and a width \[m\]: without
     /// duration, without fields, and with a closed previous gap.
     pub const fn at(position: [f64; 2], length: f64, width: f64) -> Self {
-        PointContext { previous_gap: [0.0; 2], position, length, width, time_step: 0.0, fields: Fields::new(&[]) }
+        let none = Fields::new(&[]);
+        let previous_gap = [0.0; 2];
+        PointContext { previous_gap, position, length, width, time_step: 0.0, fields: none, previous_fields: none }
     }
 
-    /// Returns this context for a step from a previous gap \[m\] with a duration \[s\] and fields at its end.
-    pub const fn during(self, previous_gap: [f64; 2], time_step: f64, fields: Fields<'a>) -> Self {
-        PointContext { previous_gap, time_step, fields, ..self }
+    /// Returns this context for a step from a previous gap \[m\] with a duration \[s\] and fields at its start and end.
+    pub const fn during(self, previous_gap: [f64; 2], time_step: f64, fields: [Fields<'a>; 2]) -> Self {
+        let [previous_fields, fields] = fields;
+        PointContext { previous_gap, time_step, fields, previous_fields, ..self }
     }
 }
 
@@ -74,7 +79,7 @@ mod tests {
 
     #[test]
     fn a_step_keeps_the_place_of_its_point() {
-        let context = PointContext::at([1.0, 2.0], 0.25, 3.0).during([1e-3, 0.0], 60.0, Fields::default());
+        let context = PointContext::at([1.0, 2.0], 0.25, 3.0).during([1e-3, 0.0], 60.0, [Fields::default(); 2]);
         assert_eq!((context.position, context.length, context.width), ([1.0, 2.0], 0.25, 3.0));
         assert_eq!((context.previous_gap, context.time_step), ([1e-3, 0.0], 60.0));
     }

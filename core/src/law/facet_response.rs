@@ -171,6 +171,7 @@ impl InterfaceResponse for FacetResponse {
             branch,
             stored,
             dissipated: dissipated.max(0.0),
+            supplied: 0.0,
         })
     }
 }

@@ -18,6 +18,9 @@ pub struct TractionPoint {
     pub stored: f64,
     /// Energy dissipated per area in the step \[J/m²\].
     pub dissipated: f64,
+    /// Energy supplied per area by changing fields in the step, besides the work −t·ġ of the gap \[J/m²\]: a rising
+    /// pressure of water in an open joint raises the energy that is stored there.
+    pub supplied: f64,
 }
 
 impl TractionPoint {
@@ -28,6 +31,7 @@ impl TractionPoint {
         branch: UpdateBranch::ELASTIC,
         stored: 0.0,
         dissipated: 0.0,
+        supplied: 0.0,
     };
 }
 

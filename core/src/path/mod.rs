@@ -13,6 +13,7 @@
 mod build;
 mod continuation;
 mod fill;
+mod law_step;
 mod peak;
 mod period;
 mod point_law;
@@ -27,8 +28,9 @@ mod work;
 
 pub use self::continuation::{Constraint, Continuation, Increment, MOST_MONITORS, Monitor};
 pub use self::fill::fill_gravity;
+pub use self::law_step::LawStep;
 pub use self::peak::{Branching, LimitPointEnd, ProvenPeak, StageStability};
-pub use self::period::{FieldChange, LawStep, Period};
+pub use self::period::{FieldChange, Period};
 pub use self::point_law::PointLaw;
 pub use self::problem::{Attachment, Contact, LoadStep, LoadStepEnd, Loading, PathBody, PathProblem};
 pub use self::sliding::Sliding;

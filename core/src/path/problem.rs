@@ -169,6 +169,35 @@ impl PathProblem {
         self.load_steps.iter().enumerate().map(reached).collect()
     }
 
+    /// Returns the share of a load step at a factor: 0 at its start, 1 at its end. A load step without a finite end has
+    /// no duration and constant fields; its share is 0.
+    fn share(&self, load_step: usize, factor: f64) -> f64 {
+        let step = &self.load_steps[load_step];
+        let (LoadStepEnd::Factor(end) | LoadStepEnd::Collapse(end)) = step.end;
+        let range = end - step.start;
+        if range == 0.0 || !range.is_finite() { 0.0 } else { (factor - step.start) / range }
+    }
+
+    /// Returns the time that passes between two places of a path \[s\]: load steps with factors in them.
+    pub fn time_between(&self, from: (usize, f64), to: (usize, f64)) -> f64 {
+        let passed = |load_step: usize, share: f64| match self.load_steps[load_step].period.duration {
+            duration if duration > 0.0 => duration * share,
+            _ => 0.0,
+        };
+        if from.0 == to.0 {
+            return passed(to.0, self.share(to.0, to.1) - self.share(from.0, from.1));
+        }
+        let between: f64 = (from.0 + 1..to.0).map(|load_step| passed(load_step, 1.0)).sum();
+        passed(from.0, 1.0 - self.share(from.0, from.1)) + between + passed(to.0, self.share(to.0, to.1))
+    }
+
+    /// Returns the fields at a factor of a load step, by name.
+    pub fn fields_at(&self, load_step: usize, factor: f64) -> Vec<(&str, f64)> {
+        let share = self.share(load_step, factor);
+        let fields = self.load_steps[load_step].period.fields.iter();
+        fields.map(|field| (field.name.as_str(), field.from + share * (field.to - field.from))).collect()
+    }
+
     /// Returns the wrench of a loading on each body about its pole, at undeformed positions \[N, N m\].
     pub fn wrenches(&self, loading: &Loading) -> Vec<[f64; 3]> {
         let mut wrenches: Vec<[f64; 3]> = self

@@ -85,6 +85,7 @@ impl InterfaceResponse for ExternalResponse {
             branch: step.branch,
             stored: step.stored,
             dissipated: step.dissipated,
+            supplied: 0.0,
         })
     }
 }

@@ -255,7 +255,7 @@ impl InterfaceResponse for Response {
                 tangent: [[k[0], k[1]], [k[2], k[3]]],
                 branch: if dissipated[index] > 0.0 { DISSIPATING } else { UpdateBranch::ELASTIC },
                 stored: stored[index],
-                dissipated: dissipated[index],
+                dissipated: dissipated[index], supplied: 0.0,
             };
         }
         Ok(())

@@ -6,7 +6,7 @@ use super::response::law_residual;
 use super::structure::path_structure;
 use crate::law::{Facet, FacetMode};
 use crate::model::{Assembly, Stage};
-use crate::path::{PathObserver, PathProblem, PathState, PointLaw};
+use crate::path::{LawStep, PathObserver, PathProblem, PathState, PointLaw};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -136,8 +136,8 @@ impl PathChecker {
         self.check_points(problem, state, &scale);
         // Use the history of the states received so far, if all states were received.
         let (before, step) = match &self.memory {
-            Some((memory, last)) => (&memory[..], problem.law_step_between(last, state)),
-            None => (&state.memory[..], problem.law_step_to(state)),
+            Some((memory, last)) => (&memory[..], LawStep::between(problem, last, state)),
+            None => (&state.memory[..], LawStep::to(problem, state)),
         };
         let least = NOTHING * self.greatest;
         if let Some((worst, after)) =

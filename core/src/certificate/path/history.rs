@@ -8,7 +8,7 @@
 use super::response::{law_residual, updated};
 use super::tolerance::tolerance;
 use crate::elastic::InelasticState;
-use crate::path::{PathProblem, PathState, Yielded};
+use crate::path::{LawStep, PathProblem, PathState, Yielded};
 use std::sync::Arc;
 
 /// Greatest work of an increment that the laws neither store nor dissipate, as a share of all work so far.
@@ -52,7 +52,7 @@ impl History {
     ) -> Result<History, String> {
         let mut next = History { gross: self.gross + problem.gross_work(last, state, finite), ..History::default() };
         let mut taken = 0.0;
-        let step = problem.law_step_between(last, state);
+        let step = LawStep::between(problem, last, state);
         let before = (&self.memory[..], &step);
         if let Some((worst, after)) = law_residual(problem, state, before, deformation, finite, 0.0) {
             if worst.is_nan() || worst > tolerance("path_law").result {
@@ -65,7 +65,7 @@ impl History {
                 let (from, to) = (last.force[contact], state.force[contact]);
                 let (start, end) = (last.gap[contact], state.gap[contact]);
                 taken -= (0..2).map(|k| 0.5 * (from[k] + to[k]) * (end[k] - start[k])).sum::<f64>();
-                taken -= area * point.dissipated;
+                taken += area * (point.supplied - point.dissipated);
                 next.stored += area * point.stored;
             }
             next.memory = after;

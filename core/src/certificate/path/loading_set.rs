@@ -16,7 +16,7 @@ use super::point_modes::{ModeCone, dot};
 use super::rate_equations::{Column, RateEquations};
 use crate::law::Facet;
 use crate::linear::{Entries, SparseLu};
-use crate::path::{FarkasVector, PathProblem, PathRate, PathState, PointMode, RateClaim, Witness};
+use crate::path::{FarkasVector, LawStep, PathProblem, PathRate, PathState, PointMode, RateClaim, Witness};
 use nalgebra::DMatrix;
 use std::sync::Arc;
 
@@ -167,7 +167,7 @@ impl PathChain {
     /// \[J\].
     fn tangents(&self, link: &Link, rate: &PathRate, share: f64) -> Result<(Vec<Option<Matrix>>, f64), String> {
         let (mut at, mut dissipated) = (0, 0.0);
-        let step = self.structure.law_step_at(&link.state);
+        let step = LawStep::from(&self.structure, &link.state);
         let of = |(index, contact): (usize, &crate::path::Contact)| {
             let Some(law) = contact.law.response() else { return Ok(None) };
             let before = &link.history.memory[at..at + law.state_size()];
@@ -175,7 +175,7 @@ impl PathChain {
             let mut after = before.to_vec();
             let gap = [0, 1].map(|k| link.state.gap[index][k] + share * rate.gap[index][k]);
             let point = law
-                .respond_point(gap, &self.structure.point_context(index, &step), before, &mut after)
+                .respond_point(gap, &step.context(&self.structure, index), before, &mut after)
                 .map_err(|why| why.to_string())?;
             dissipated += contact.area * point.dissipated;
             Ok(Some(point.tangent.map(|row| row.map(|t| contact.area * t))))

@@ -19,9 +19,8 @@ pub(super) fn updated(problem: &PathProblem, gaps: &[[f64; 2]], before: &[f64], 
         let Some(law) = problem.response(contact) else { continue };
         let place = at..at + law.state_size();
         at = place.end;
-        let point = law
-            .respond_point(*gap, &problem.point_context(contact, step), &before[place.clone()], &mut after[place])
-            .ok()?;
+        let point =
+            law.respond_point(*gap, &step.context(problem, contact), &before[place.clone()], &mut after[place]).ok()?;
         points.push((contact, point));
     }
     Some((points, after))
@@ -90,10 +89,10 @@ pub fn leaves_forces(problem: &PathProblem, state: &PathState, motion: &[[f64; 3
     // Motions within rounding count as zero.
     jumps.iter_mut().flatten().filter(|j| j.abs() <= 1e-7 * size).for_each(|j| *j = 0.0);
     let largest = state.force.iter().flatten().fold(0.0, |a: f64, f| a.max(f.abs()));
-    let Some((_, after)) = updated(problem, &state.gap, &state.memory, &problem.law_step_to(state)) else {
+    let Some((_, after)) = updated(problem, &state.gap, &state.memory, &LawStep::to(problem, state)) else {
         return 0.0;
     };
-    let step = problem.law_step_at(state);
+    let step = LawStep::from(problem, state);
     let mut worst: f64 = 0.0;
     for distance in [1e-9, 1e-6, 1e-3, 1.0] {
         let share = distance * problem.length / size.max(1e-300);

@@ -11,15 +11,10 @@ use crate::path::newton::solve::step::solve_step;
 use crate::path::newton::tracing::commit::commit;
 use crate::path::newton::tracing::step_energy::step_energy;
 use crate::path::newton::tracing::tracer::{LoadStepEnding, Tracer, end_path};
+use crate::settings::SETTINGS;
 use voussoir_core::limit::Status;
 use voussoir_core::path::LoadStep;
 
-/// Greatest error of a step, relative to the greatest gap and the greatest force.
-const MAX_ERROR: f64 = 1e-6;
-/// Length of the first step, as a share of the load step.
-const FIRST_STEP: f64 = 1.0 / 64.0;
-/// Least length of a step, as a share of the load step.
-const LEAST_STEP: f64 = 1e-9;
 /// Greatest number of attempted steps of a load step.
 const MAX_STEPS: u64 = 20_000;
 /// Bounds on the change of length from one step to the next.
@@ -29,7 +24,7 @@ const LENGTHEN: f64 = 3.0;
 /// Follows a load step to a factor in steps of time.
 pub(super) fn follow(tracer: &mut Tracer, load_step: &LoadStep, target: f64) -> LoadStepEnding {
     let range = target - load_step.start;
-    let mut length = FIRST_STEP;
+    let mut length = SETTINGS.first_time_step;
     for _ in 0..MAX_STEPS {
         let left = (target - tracer.state.factor) / range;
         if left <= 0.0 {
@@ -39,15 +34,15 @@ pub(super) fn follow(tracer: &mut Tracer, load_step: &LoadStep, target: f64) -> 
         let share = if left < 1.5 * length { left } else { length };
         let end = if share == left { target } else { tracer.state.factor + share * range };
         let growth = match halves(tracer, end) {
-            Ok((states, error)) if error <= MAX_ERROR => {
-                let growth = (0.5 * MAX_ERROR / error.max(1e-300)).cbrt().clamp(SHORTEN, LENGTHEN);
+            Ok((states, error)) if error <= SETTINGS.time_error => {
+                let growth = (0.5 * SETTINGS.time_error / error.max(1e-300)).cbrt().clamp(SHORTEN, LENGTHEN);
                 match accept(tracer, states, share) {
                     Accepted::Stopped => return LoadStepEnding::Ended,
                     Accepted::Whole(by_energy) => growth.min(by_energy),
                     Accepted::Less(by_energy) => by_energy,
                 }
             }
-            Ok((_, error)) => (0.5 * MAX_ERROR / error).cbrt().clamp(SHORTEN, 0.7),
+            Ok((_, error)) => (0.5 * SETTINGS.time_error / error).cbrt().clamp(SHORTEN, 0.7),
             Err(why) => {
                 tracer.system.report.failure = Some(why);
                 SHORTEN
@@ -57,7 +52,7 @@ pub(super) fn follow(tracer: &mut Tracer, load_step: &LoadStep, target: f64) -> 
             tracer.system.count("cutbacks", 1);
         }
         length = share.min(length) * growth;
-        if length < LEAST_STEP {
+        if length < SETTINGS.least_time_step {
             let failure = tracer.system.report.failure.take().map_or(String::new(), |why| format!(": {why}"));
             let why = format!("no equilibrium follows in time beyond factor {}{failure}", tracer.state.factor);
             return end_path(tracer, Status::Stalled, why);
@@ -105,7 +100,7 @@ fn accept(tracer: &mut Tracer, states: [State; 2], share: f64) -> Accepted {
     let mut growth = f64::INFINITY;
     for state in states {
         let energy = step_energy(tracer, &state);
-        if !energy.holds && share > LEAST_STEP.sqrt() {
+        if !energy.holds && share > SETTINGS.least_time_step.sqrt() {
             return Accepted::Less(energy.growth.clamp(SHORTEN, 0.7));
         }
         growth = growth.min(energy.growth.max(0.5));

@@ -60,6 +60,7 @@ impl InterfaceResponse for Bond {
             branch: UpdateBranch::ELASTIC,
             stored: 0.5 * secant * gap[0] * gap[0] + 0.5 * BOND[0] * gap[1] * gap[1],
             dissipated: self.dissipated(new[0]) - self.dissipated(old[0]),
+            supplied: 0.0,
         })
     }
 }

@@ -89,7 +89,8 @@ fn first_fields(problem: &PathProblem) -> Vec<(&str, f64)> {
 /// Returns the additional compliance of contact points with laws of tractions from gaps, before any motion.
 fn softening(problem: &PathProblem, responses: &Responses) -> Result<Vec<[f64; 2]>, String> {
     let closed = vec![[0.0; 2]; problem.contacts.len()];
-    let step = LawStep { previous_gap: &closed, time_step: 0.0, fields: first_fields(problem) };
+    // Without fields: a pressure of water may open a joint before any load presses it.
+    let step = LawStep::instant(&closed, Vec::new());
     let untouched = responses.update(&closed, &problem.untouched(), &step)?;
     let of_point = |(point, c): (&TractionPoint, &voussoir_core::path::Contact)| {
         [0, 1].map(|k| {
@@ -203,7 +204,7 @@ impl<'a> StepSystem<'a> {
             blocks: self.laws.undeformed.clone(),
         };
         // The update of undeformed joints has succeeded in `new`.
-        let step = LawStep { previous_gap: &state.gap, time_step: 0.0, fields: first_fields(self.problem) };
+        let step = LawStep::instant(&state.gap, first_fields(self.problem));
         if let Ok(updates) = self.laws.responses.update(&state.gap, &state.updates.memory, &step) {
             state.updates = updates;
         }
@@ -216,6 +217,7 @@ impl<'a> StepSystem<'a> {
             previous_gap: &start.gap,
             time_step: self.problem.time_between((self.load_step, start.factor), (self.load_step, factor)),
             fields: self.problem.fields_at(self.load_step, factor),
+            previous_fields: self.problem.fields_at(self.load_step, start.factor),
         }
     }
 

@@ -10,7 +10,7 @@
 //! are conditioned like the other rows. The history is that of the last converged state until the step is accepted.
 
 use std::sync::Arc;
-use voussoir_core::law::{Fields, InterfaceResponse, PointContext, TractionPoint, UpdateBranch};
+use voussoir_core::law::{InterfaceResponse, PointContext, TractionPoint, UpdateBranch};
 use voussoir_core::path::{Contact, LawStep, PathProblem};
 
 /// Contact points of one law, with the places of their states.
@@ -101,7 +101,7 @@ impl Responses {
 
     /// Returns the context of a contact point in a step.
     fn context<'s>(&self, contact: usize, step: &'s LawStep<'_>) -> PointContext<'s> {
-        self.contexts[contact].during(step.previous_gap[contact], step.time_step, Fields::new(&step.fields))
+        self.contexts[contact].during(step.previous_gap[contact], step.time_step, step.both_fields())
     }
 
     /// Returns the response of the law of a contact point at a gap in a step, from the states of all points before.
@@ -142,7 +142,7 @@ impl Responses {
                 p.traction
                     .iter()
                     .chain(p.tangent.as_flattened())
-                    .chain([&p.stored, &p.dissipated])
+                    .chain([&p.stored, &p.dissipated, &p.supplied])
                     .all(|v| v.is_finite())
             };
             if let Some(index) = points.iter().position(|p| !finite(p)) {

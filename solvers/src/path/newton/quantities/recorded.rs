@@ -2,7 +2,7 @@
 
 use super::inelastic::plastic_work;
 use super::measure::load_displacement;
-use super::response::{dissipated_by, stored_by_tractions};
+use super::response::{dissipated_by, stored_by_tractions, supplied_by};
 use crate::path::energy::{EnergyBalance, WorkState};
 use crate::path::newton::model::blocks::yielded;
 use crate::path::newton::model::derivatives::Gradient;
@@ -41,6 +41,7 @@ pub fn energy_after(
 ) -> EnergyBalance {
     let mut energy = before;
     energy.dissipated += dissipated_by(system, &state.updates);
+    energy.work += supplied_by(system, &state.updates);
     for contact in 0..state.gap.len() {
         let Some(law) = system.law(contact) else { continue };
         let (kept, _) = law.irreversible(state.mode[contact], system.step_gap(start, state, contact));

@@ -60,6 +60,12 @@ pub fn dissipated_by(system: &StepSystem, updates: &TractionUpdates) -> f64 {
     points.map(|(point, c)| c.area * point.dissipated).sum()
 }
 
+/// Returns the energy that changing fields supply to these laws in the step of an update \[J\].
+pub fn supplied_by(system: &StepSystem, updates: &TractionUpdates) -> f64 {
+    let points = updates.points.iter().zip(&system.problem.contacts);
+    points.map(|(point, c)| c.area * point.supplied).sum()
+}
+
 /// Returns the energy that these laws store \[J\].
 pub fn stored_by_tractions(system: &StepSystem, state: &State) -> f64 {
     let points = state.updates.points.iter().zip(&system.problem.contacts);

@@ -125,7 +125,7 @@ impl InterfaceResponse for NoTension {
         let slope = (pressed(gap[0] + 1e-8) - pressed(gap[0] - 1e-8)) / 2e-8;
         let stored = (traction[0].powi(2) + traction[1].powi(2)) / (2.0 * STIFFNESS);
         let tangent = [[slope, 0.0], [0.0, -STIFFNESS]];
-        Ok(TractionPoint { traction, tangent, branch: UpdateBranch::ELASTIC, stored, dissipated: 0.0 })
+        Ok(TractionPoint { traction, tangent, branch: UpdateBranch::ELASTIC, stored, dissipated: 0.0, supplied: 0.0 })
     }
 }
 
