@@ -28,3 +28,4 @@ pub mod rankine;
 pub mod rigid;
 pub mod strength_envelope;
 pub mod unilateral;
+pub mod uplift_joint;

@@ -38,4 +38,5 @@ mod settlements;
 mod snap_through;
 mod softening;
 mod statuses;
+mod uplift;
 mod walls;

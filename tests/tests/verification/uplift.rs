@@ -1,0 +1,127 @@
+//! Uplift in an open joint: a dam monolith on its base, against the equilibrium of its closed part.
+
+use voussoir::core::limit::Status;
+use voussoir::results::CaseResult;
+use voussoir::verify::verify;
+use voussoir_tests::{answered, assert_close, changed, passes, study};
+
+/// Base B, height of the dam, weight per length W, level h, and specific weight of water.
+const BASE: f64 = 4.0;
+const WEIGHT: f64 = 2400.0 * 10.0 * BASE * 6.0;
+const LEVEL: f64 = 6.0;
+const WATER: f64 = 10e3;
+
+/// A block of 4 m × 6 m × 1 m. The water rises to 6 m with its thrust γ h²/2 at h/3, and the joint is fine.
+const DAM: &str = r#"name = "dam"
+[scene]
+scene = "blocks"
+width = 1.0
+material = "concrete"
+joint = "base"
+blocks = [
+  { name = "rock", vertices = [[-1.0, -1.0], [5.0, -1.0], [5.0, 0.0], [-1.0, 0.0]], fixed = true },
+  { name = "dam", vertices = [[0.0, 0.0], [4.0, 0.0], [4.0, 6.0], [0.0, 6.0]] },
+]
+[scene.mesh]
+elements = [1, 200]
+order = 2
+[materials.concrete]
+law = "rigid"
+density = 2400.0
+[joints.base]
+law = "uplift_joint"
+friction = 0.9
+normal_stiffness = "10 GPa/m"
+shear_stiffness = "4 GPa/m"
+water_weight = "10 kPa/m"
+[[stages]]
+name = "weight"
+gravity = 10.0
+fields = { water_level = "0 m" }
+[[stages]]
+name = "water"
+fields = { water_level = "6 m" }
+loads = [{ kind = "point", block = "dam", point = [0.0, 2.0], force = ["180 kN", 0.0] }]
+"#;
+
+/// Solves a study that must stand, with a certificate that passes and that `verify` confirms.
+fn confirmed(text: &str) -> CaseResult {
+    let result = answered(text);
+    assert_eq!(result.status, Status::Stands, "{:?}", result.notes);
+    passes(&result);
+    let study = study(text);
+    assert_eq!(verify(&study, &study.results("test", vec![result.clone()])), vec![]);
+    result
+}
+
+/// Returns the normal force of the joint \[N\].
+fn force(result: &CaseResult) -> f64 {
+    result.proof.field.as_ref().expect("a field").iter().map(|entry| entry.force[0]).sum()
+}
+
+/// Returns the rotation of the dam.
+fn rotation(result: &CaseResult) -> f64 {
+    let all = result.path.displacements.as_ref().expect("displacements");
+    all.iter().find(|entry| entry.body == "dam").expect("the dam").displacement[2]
+}
+
+/// Returns the length of the closed part and the rotation, from equilibrium with the pressure p in the crack: a triangle
+/// of effective pressure on c carries W − p B, so c = 3 ((W − p B) B/2 − H a)/(W − p B) and θ = 2 (W − p B)/(k c²).
+fn by_hand(pressure: f64) -> (f64, f64) {
+    let (thrust, arm) = (0.5 * WATER * LEVEL * LEVEL, LEVEL / 3.0);
+    let effective = WEIGHT - pressure * BASE;
+    let closed = 3.0 * (0.5 * effective * BASE - thrust * arm) / effective;
+    (closed, 2.0 * effective / (10e9 * closed * closed))
+}
+
+/// Returns the length of the closed part of the base \[m\]: of the points with more pressure than water has, by their
+/// areas.
+fn closed(result: &CaseResult) -> f64 {
+    let field = result.proof.field.as_ref().expect("a field");
+    let open = field.iter().filter(|entry| entry.point[0] < 2.0).count();
+    assert!(open > 0);
+    // Forces of points of one rule: the middle of an element represents 2/3 of it, and the pressure there is the mean.
+    let length = BASE / 200.0;
+    let pressures = field.iter().filter(|entry| ((entry.point[0] / length).fract() - 0.5).abs() < 1e-6);
+    pressures.filter(|entry| entry.force[0] / (2.0 / 3.0 * length) > WATER * LEVEL * (1.0 + 1e-9)).count() as f64
+        * length
+}
+
+/// The crack opens to the length of the closed form, and the dam rotates by its angle.
+#[test]
+fn the_base_opens_to_the_length_of_the_closed_form() {
+    let result = confirmed(DAM);
+    let (length, angle) = by_hand(WATER * LEVEL);
+    assert!(length < BASE, "the base must open: {length}");
+    assert_close(force(&result), WEIGHT, 1e-9);
+    assert_close(-rotation(&result), angle, 1e-4);
+    assert!((closed(&result) - length).abs() < 1.5 * BASE / 200.0, "{} instead of {length}", closed(&result));
+}
+
+/// Without the field no water enters: the same thrust opens the base less.
+#[test]
+fn a_dry_base_opens_less() {
+    let dry =
+        changed(&changed(DAM, "fields = { water_level = \"0 m\" }", ""), "fields = { water_level = \"6 m\" }", "");
+    let (length, angle) = by_hand(0.0);
+    let result = confirmed(&dry);
+    if length >= BASE {
+        // Closed everywhere: θ = 12 M/(k B³).
+        let moment = 0.5 * WATER * LEVEL * LEVEL * LEVEL / 3.0;
+        assert_close(-rotation(&result), 12.0 * moment / (10e9 * BASE.powi(3)), 1e-6);
+    } else {
+        assert_close(-rotation(&result), angle, 1e-4);
+    }
+}
+
+/// The thrust at which the dam slides is μ (W − p B): friction acts on the effective pressure.
+#[test]
+fn the_dam_slides_at_the_friction_of_the_effective_weight() {
+    let push = "[[stages]]\nname = \"push\"\nuntil = \"collapse\"\nloads = [{ kind = \"point\", block = \"dam\", point = [0.0, 0.05], force = [\"1 kN\", 0.0] }]\n";
+    let low = changed(DAM, "friction = 0.9", "friction = 0.7");
+    let result = answered(&format!("{low}{push}"));
+    assert_eq!(result.status, Status::Collapse, "{:?}", result.notes);
+    passes(&result);
+    let limit = 0.7 * (WEIGHT - WATER * LEVEL * BASE) - 180e3;
+    assert_close(result.load_factor.expect("a factor"), limit / 1e3, 1e-6);
+}
