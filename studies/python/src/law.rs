@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
 use std::sync::{Arc, LazyLock, Mutex};
 use voussoir::core::law::{
-    BatchFailure, Effect, Facet, FacetMode, FacetResponse, InterfaceLaw, InterfaceResponse, PointContext, TractionPoint,
-    UpdateBranch, UpdateFailure,
+    BatchFailure, Effect, Facet, FacetMode, FacetResponse, InterfaceLaw, InterfaceResponse, PointContext,
+    TractionPoint, UpdateBranch, UpdateFailure,
 };
 use voussoir::core::plugin::{Capability, Card, Need, Parameter, PluginKind, Shape};
 
@@ -216,7 +216,13 @@ impl InterfaceResponse for Response {
         self.names
     }
 
-    fn respond_point(&self, gap: [f64; 2], context: &PointContext, old: &[f64], new: &mut [f64]) -> Result<TractionPoint, UpdateFailure> {
+    fn respond_point(
+        &self,
+        gap: [f64; 2],
+        context: &PointContext,
+        old: &[f64],
+        new: &mut [f64],
+    ) -> Result<TractionPoint, UpdateFailure> {
         let mut point = [TractionPoint::ZERO];
         self.respond(&[gap], &[*context], old, new, &mut point).map_err(|failed| failed.failure)?;
         Ok(point[0])
@@ -255,7 +261,8 @@ impl InterfaceResponse for Response {
                 tangent: [[k[0], k[1]], [k[2], k[3]]],
                 branch: if dissipated[index] > 0.0 { DISSIPATING } else { UpdateBranch::ELASTIC },
                 stored: stored[index],
-                dissipated: dissipated[index], supplied: 0.0,
+                dissipated: dissipated[index],
+                supplied: 0.0,
             };
         }
         Ok(())
