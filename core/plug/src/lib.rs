@@ -68,9 +68,10 @@ pub use voussoir_core::{inventory, nalgebra, package, serde, typetag};
 /// The traits of laws and materials, and the types in them.
 pub mod law {
     pub use voussoir_core::law::{
-        BatchFailure, BulkMaterial, Effect, Elasticity, Facet, FacetMode, FacetResponse, FillResistance, FillState,
-        FlowRule, InterfaceLaw, InterfaceResponse, Isotropic, JointStrength, LinearUpdate, StressPoint, StressUpdate,
-        TractionPoint, UpdateBranch, UpdateContext, UpdateFailure, Voigt, is_associated, von_mises,
+        BatchFailure, BulkMaterial, Effect, Elasticity, Facet, FacetMode, FacetResponse, Fields, FillResistance,
+        FillState, FlowRule, ForceRow, InterfaceLaw, InterfaceResponse, Isotropic, JointStrength, LinearUpdate,
+        PointContext, ShearEnvelope, StressPoint, StressUpdate, TractionPoint, UpdateBranch, UpdateContext,
+        UpdateFailure, Voigt, is_associated, von_mises,
     };
 }
 

@@ -106,8 +106,9 @@ impl Point {
         let (mut new, mut done) = (vec![0.0; old.len()], false);
         let counted = match self {
             Point::Joint(law) => {
-                let (gaps, mut points) = ([[at[0], at[1]]], [TractionPoint::ZERO]);
-                count(&mut || done = law.respond(&gaps, old, &mut new, &mut points).is_ok())
+                let (gaps, contexts) = ([[at[0], at[1]]], [PointContext::default()]);
+                let mut points = [TractionPoint::ZERO];
+                count(&mut || done = law.respond(&gaps, &contexts, old, &mut new, &mut points).is_ok())
             }
             Point::Material(law, length) => {
                 let (contexts, mut points) = ([UpdateContext::of_length(*length)], [StressPoint::ZERO]);

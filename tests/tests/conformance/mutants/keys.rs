@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use voussoir::conformance::{Options, Report, conform};
 use voussoir::core::law::{
-    BatchFailure, Facet, FacetResponse, InterfaceLaw, InterfaceResponse, TractionPoint, UpdateFailure,
+    BatchFailure, Facet, FacetResponse, InterfaceLaw, InterfaceResponse, PointContext, TractionPoint, UpdateFailure,
 };
 use voussoir::core::plugin::{Capability, Card, KnownPath, Parameter, PluginKind, Property, Quantity, Range, Sample};
 use voussoir::laws::cohesive::Cohesive;
@@ -164,18 +164,25 @@ impl InterfaceResponse for Reports {
         Some([self.factors[0] * strength, self.factors[1] * energy])
     }
 
-    fn respond_point(&self, gap: [f64; 2], old: &[f64], new: &mut [f64]) -> Result<TractionPoint, UpdateFailure> {
-        self.inner.respond_point(gap, old, new)
+    fn respond_point(
+        &self,
+        gap: [f64; 2],
+        context: &PointContext,
+        old: &[f64],
+        new: &mut [f64],
+    ) -> Result<TractionPoint, UpdateFailure> {
+        self.inner.respond_point(gap, context, old, new)
     }
 
     fn respond(
         &self,
         gaps: &[[f64; 2]],
+        contexts: &[PointContext],
         old: &[f64],
         new: &mut [f64],
         points: &mut [TractionPoint],
     ) -> Result<(), BatchFailure> {
-        self.inner.respond(gaps, old, new, points)
+        self.inner.respond(gaps, contexts, old, new, points)
     }
 }
 

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use voussoir::conformance::{Options, conform};
 use voussoir::core::law::{
-    BatchFailure, Effect, Facet, FacetResponse, InterfaceLaw, InterfaceResponse, PointContext, TractionPoint, UpdateBranch,
-    UpdateFailure,
+    BatchFailure, Effect, Facet, FacetResponse, InterfaceLaw, InterfaceResponse, PointContext, TractionPoint,
+    UpdateBranch, UpdateFailure,
 };
 use voussoir::core::plugin::{
     Capability, Card, KnownPath, Need, Parameter, PluginKind, Property, Quantity, Range, Sample, Shape,
@@ -73,14 +73,15 @@ impl InterfaceResponse for Mutated {
     fn respond(
         &self,
         gaps: &[[f64; 2]],
+        contexts: &[PointContext],
         old: &[f64],
         new: &mut [f64],
         points: &mut [TractionPoint],
     ) -> Result<(), BatchFailure> {
         let extra = if self.fault == "allocates_in_batches" { vec![0.0; gaps.len()] } else { Vec::new() };
-        for (index, gap) in gaps.iter().enumerate() {
+        for (index, (gap, context)) in gaps.iter().zip(contexts).enumerate() {
             let place = 2 * index..2 * index + 2;
-            let said = self.respond_point(*gap, &old[place.clone()], &mut new[place]);
+            let said = self.respond_point(*gap, context, &old[place.clone()], &mut new[place]);
             points[index] = said.map_err(|failure| BatchFailure { point: index, failure })?;
             points[index].stored += extra.get(index).copied().unwrap_or(0.0);
         }
