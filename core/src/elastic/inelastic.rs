@@ -322,6 +322,20 @@ impl InelasticBody {
         internal
     }
 
+    /// Returns displacements and state of a body in which nothing has yielded, from the forces on its points. A law may
+    /// keep its strain and stress in its state; they are those of the displacements if the law calls the step elastic at all
+    /// points. Otherwise the state is the initial one.
+    pub fn elastic_state(&self, forces: &[f64]) -> (Vec<f64>, InelasticState) {
+        let displacement = self.elastic_displacement(forces);
+        let mut state = self.initial();
+        let mut history = state.history.clone();
+        let points = self.stresses(&self.strains_at(&displacement), &state.history, &mut history);
+        if points.is_ok_and(|points| points.iter().all(|point| point.branch.is_elastic())) {
+            state.history = history;
+        }
+        (displacement, state)
+    }
+
     /// Recomputes a state from displacements and history alone. Returns the greatest unbalanced force on a node \[N\]
     /// with the stresses of the law, and the change of the history that the law still gives, relative to the greatest
     /// strain: 0 if no stress is beyond the yield surface.

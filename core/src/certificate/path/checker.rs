@@ -244,7 +244,10 @@ impl PathChecker {
             }
             let found = match state.inelastic(index) {
                 Some(own) => inelastic.check(&own.displacement, &own.state.history, &flat),
-                None => inelastic.check(&inelastic.elastic_displacement(&flat), &inelastic.initial().history, &flat),
+                None => {
+                    let (displacement, own) = inelastic.elastic_state(&flat);
+                    inelastic.check(&displacement, &own.history, &flat)
+                }
             };
             let [unbalanced, drift] = found.unwrap_or([f64::NAN; 2]);
             self.note("path_inner_equilibrium", unbalanced / size.max(1e-300));

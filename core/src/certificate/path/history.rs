@@ -95,7 +95,10 @@ fn block_energies(problem: &PathProblem, states: [&PathState; 2], finite: bool) 
         let forces = [flat(&before[index]), flat(&after[index])];
         let own = |state: usize| match states[state].inelastic(index) {
             Some(Yielded { displacement, state }) => (displacement.clone(), state.clone()),
-            None => (Arc::new(inelastic.elastic_displacement(&forces[state])), Arc::new(inelastic.initial())),
+            None => {
+                let (displacement, state) = inelastic.elastic_state(&forces[state]);
+                (Arc::new(displacement), Arc::new(state))
+            }
         };
         let [from, to]: [(Arc<Vec<f64>>, Arc<InelasticState>); 2] = [own(0), own(1)];
         let passed = inelastic.passed(&to.0, [&from.1.history, &to.1.history])?;

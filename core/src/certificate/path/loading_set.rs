@@ -205,7 +205,10 @@ impl PathChain {
             let Some(inelastic) = &body.inelastic else { return Ok(None) };
             let (displacement, end) = match state.inelastic(index) {
                 Some(own) => (own.displacement.to_vec(), own.state.clone()),
-                None => (inelastic.elastic_displacement(&flat(&now[index])), Arc::new(inelastic.initial())),
+                None => {
+                    let (displacement, state) = inelastic.elastic_state(&flat(&now[index]));
+                    (displacement, Arc::new(state))
+                }
             };
             let forces = flat(&ahead[index]);
             let mut linear = inelastic.linearise(displacement, &end)?;
