@@ -1,6 +1,11 @@
 //! Materials whose stiffness changes: a damaged block unloads along its damaged stiffness.
 
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+use voussoir::core::law::{BulkMaterial, Elasticity, StressPoint, StressUpdate, UpdateContext, UpdateFailure, Voigt};
 use voussoir::core::limit::Status;
+use voussoir::core::plugin::{Capability, Card, Parameter, PluginKind, Quantity, Range};
+use voussoir::laws::mazars_damage::MazarsDamage;
 use voussoir_tests::{answered, assert_close, changed};
 
 /// A block of 1 m that is bonded to the ground and pushed sideways at its top by 250 kN, then by 50 kN only.
@@ -74,4 +79,91 @@ fn unloading_does_not_depend_on_the_form_of_damage() {
         let last = *found.last().expect("states");
         found.iter().for_each(|own| assert_close(*own, last, 1e-6));
     }
+}
+
+/// Damage as shared libraries give it: the state also holds strain and stress at the end of the last step.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct DamageWithMemory {
+    tensile_strength: f64,
+}
+
+impl DamageWithMemory {
+    fn inner(&self) -> MazarsDamage {
+        MazarsDamage {
+            young_modulus: 1e10,
+            poisson_ratio: 0.0,
+            density: 2200.0,
+            tensile_strength: self.tensile_strength,
+            fracture_energy: 2e4,
+        }
+    }
+}
+
+#[typetag::serde(name = "damage_with_memory")]
+impl BulkMaterial for DamageWithMemory {
+    fn density(&self) -> f64 {
+        2200.0
+    }
+
+    fn elasticity(&self) -> Option<Elasticity> {
+        self.inner().elasticity()
+    }
+
+    fn inelastic(&self) -> Option<Arc<dyn StressUpdate>> {
+        Some(Arc::new(Remembering(self.inner().inelastic()?)))
+    }
+}
+
+#[derive(Debug)]
+struct Remembering(Arc<dyn StressUpdate>);
+
+impl StressUpdate for Remembering {
+    fn state_size(&self) -> usize {
+        13
+    }
+
+    fn initial_state(&self, state: &mut [f64]) {
+        state.fill(0.0);
+    }
+
+    fn state_names(&self) -> &'static [&'static str] {
+        &["damage", "e1", "e2", "e3", "e4", "e5", "e6", "s1", "s2", "s3", "s4", "s5", "s6"]
+    }
+
+    fn update_point(
+        &self,
+        strain: &Voigt,
+        context: &UpdateContext,
+        old: &[f64],
+        new: &mut [f64],
+    ) -> Result<StressPoint, UpdateFailure> {
+        let said = self.0.update_point(strain, context, &old[..1], &mut new[..1])?;
+        new[1..7].copy_from_slice(strain);
+        new[7..].copy_from_slice(&said.stress);
+        Ok(said)
+    }
+}
+
+voussoir::core::inventory::submit! {
+    Card {
+        kind: PluginKind::BulkMaterial,
+        tag: "damage_with_memory",
+        summary: "for this test",
+        parameters: &[Parameter::number("tensile_strength", Quantity::Stress, Range::POSITIVE, "f_t")],
+        provides: &[Capability::STRESS_UPDATE, Capability::RIGID_LIMIT],
+        sources: &["this test"],
+        file: file!(),
+        page: "for this test",
+        ..Card::BLANK
+    }
+}
+
+/// A law may write strain and stress into its state in an elastic step. Certificates of states before the first damage start
+/// from that state, and the answer is the same.
+#[test]
+fn a_law_that_remembers_strain_and_stress_is_confirmed() {
+    let plain = "law = \"mazars_damage\"\nyoung_modulus = 1e10\npoisson_ratio = 0.0\ndensity = 2200.0\ntensile_strength = 1e6\nfracture_energy = 20000.0";
+    let found = compliances(&changed(PULL, plain, "law = \"damage_with_memory\"\ntensile_strength = 1e6"));
+    assert_close(*found.last().expect("states"), 2.896_882_00e-5 / 50e3, 1e-7);
 }
