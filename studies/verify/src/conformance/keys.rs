@@ -8,6 +8,7 @@ use super::samples::{Law, is_law, laws, own_check};
 use super::subject::Subject;
 use super::{facets, sign, walk};
 use serde_json::{Value as Json, json};
+use voussoir_core::law::{Fields, PointContext};
 use voussoir_core::plugin::{Card, Need, Parameter, Property, Sample, Shape};
 use voussoir_core::random::Random;
 use voussoir_study::config::default_table::default_of;
@@ -175,7 +176,7 @@ fn is_sound(recorder: &mut Recorder, card: &Card, sample: &Sample, law: &Law) {
         Law::Material(_) => sign::check_material(recorder, &subject),
     }
     let worst = -1e-9 * stiffness * sample.size * sample.size;
-    each_step(&subject.point, sample.size, &mut |said| {
+    each_step(&subject.point, sample.size, false, &mut |said| {
         let creates = said.is_some_and(|(_, dissipated)| dissipated < worst);
         recorder
             .hold("dissipation", !creates || !card.claims(Property::DISSIPATIVE), || "a step creates energy".into());
@@ -183,14 +184,24 @@ fn is_sound(recorder: &mut Recorder, card: &Card, sample: &Sample, law: &Law) {
 }
 
 /// Walks through gaps or strains, and passes the force and the dissipated energy of each step; `None` if the law refuses it.
-fn each_step(point: &Point, size: f64, see: &mut dyn FnMut(Option<([f64; 6], f64)>)) {
+/// If time passes, the steps take 1 s to 32 years, and the fields that every study knows change.
+fn each_step(point: &Point, size: f64, passes: bool, see: &mut dyn FnMut(Option<([f64; 6], f64)>)) {
     let mut random = Random::new(29);
     for _ in 0..WALKS {
         let (mut old, mut new) = (point.untouched(), vec![0.0; point.state_size()]);
-        let mut at = [0.0; 6];
+        let (mut at, mut fields) = ([0.0; 6], [("temperature", 280.0), ("water_level", 0.0)]);
         for _ in 0..STEPS {
+            let before = (at, fields);
             random_step(&mut random, &mut at, point.components(), size);
-            let said = point.update(&at, &old, &mut new);
+            let said = if passes {
+                let time = random.power(0.0, 9.0);
+                fields = [("temperature", random.between(260.0, 320.0)), ("water_level", random.between(0.0, 100.0))];
+                let ends = [Fields::new(&before.1), Fields::new(&fields)];
+                let context = PointContext::default().during([before.0[0], before.0[1]], time, ends);
+                point.update_in(&context, &at, &old, &mut new)
+            } else {
+                point.update(&at, &old, &mut new)
+            };
             see(said.as_ref().ok().map(|said| (said.force, said.dissipated)));
             if said.is_err() {
                 break;
@@ -221,9 +232,9 @@ fn behaviour(law: &Law, size: f64) -> Vec<f64> {
             update.map(Point::material)
         }
     };
-    for scale in SIZES {
+    for (scale, passes) in SIZES.iter().flat_map(|scale| [(scale, false), (scale, true)]) {
         let Some(point) = &point else { break };
-        each_step(point, scale * size, &mut |said| match said {
+        each_step(point, scale * size, passes, &mut |said| match said {
             Some((force, dissipated)) => numbers.extend(force.iter().chain([&dissipated])),
             None => numbers.push(-1.0),
         });

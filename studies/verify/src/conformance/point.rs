@@ -75,10 +75,24 @@ impl Point {
 
     pub(super) fn update(&self, at: &[f64; 6], old: &[f64], new: &mut [f64]) -> Result<Said, UpdateFailure> {
         match self {
-            Point::Joint(law) => Ok(joint(&law.respond_point([at[0], at[1]], &PointContext::default(), old, new)?)),
+            Point::Joint(_) => self.update_in(&PointContext::default(), at, old, new),
             Point::Material(law, length) => {
                 Ok(material(&law.update_point(at, &UpdateContext::of_length(*length), old, new)?))
             }
+        }
+    }
+
+    /// Updates a joint in a step with this context; a material has no such context.
+    pub(super) fn update_in(
+        &self,
+        context: &PointContext,
+        at: &[f64; 6],
+        old: &[f64],
+        new: &mut [f64],
+    ) -> Result<Said, UpdateFailure> {
+        match self {
+            Point::Joint(law) => Ok(joint(&law.respond_point([at[0], at[1]], context, old, new)?)),
+            Point::Material(..) => self.update(at, old, new),
         }
     }
 
