@@ -875,9 +875,10 @@ pub(super) fn idle_power(
     (impossible, idle)
 }
 
-/// Returns the distance \[N\] of forces N_0, N_1 and T of a joint from those of an admissible distribution of tractions
-/// with at least as much shear in the envelope's sense, plus what the tractions exceed their facets by. Distributions
-/// with the same normal forces are tried, and those that the deepest row points to, because the envelope may be steep.
+/// Returns the distance \[N\] of forces N_0, N_1 and T of a joint from the forces of an admissible distribution of
+/// tractions with at least as much shear in the envelope's sense. If tractions exceed a facet, the excess is added. The first
+/// distribution has the same normal forces; because the envelope may be steep, the second one has the normal forces nearest to
+/// the deepest row.
 fn beyond_envelope(envelope: &ShearEnvelope, facets: &[Facet], [n_0, n_1, t]: [f64; 3], area: f64) -> f64 {
     let whole = envelope.over(area);
     let distance = |asked: [f64; 2]| {
@@ -893,6 +894,9 @@ fn beyond_envelope(envelope: &ShearEnvelope, facets: &[Facet], [n_0, n_1, t]: [f
         exceeded + (n_0 - first).abs().max((n_1 - second).abs()).max(envelope.sense * t - shear)
     };
     let own = distance([n_0, n_1]);
+    if own <= 0.0 {
+        return own;
+    }
     let Some(ForceRow { normal: [a, b, c], bound, .. }) = whole.deepest_row([n_0, n_1, t]) else { return own };
     let beyond = (a * n_0 + b * n_1 + c * t - bound) / (a * a + b * b + c * c);
     own.min(distance([n_0 - a * beyond, n_1 - b * beyond]))

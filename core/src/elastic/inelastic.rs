@@ -323,8 +323,8 @@ impl InelasticBody {
     }
 
     /// Returns displacements and state of a body in which nothing has yielded, from the forces on its points. A law may
-    /// keep its strain and stress in its state; they are those of the displacements if the law calls the step elastic at all
-    /// points. Otherwise the state is the initial one.
+    /// store its strain and stress in its state. If every point takes an elastic branch, the state is that of the law after this
+    /// step; otherwise it is the initial state.
     pub fn elastic_state(&self, forces: &[f64]) -> (Vec<f64>, InelasticState) {
         let displacement = self.elastic_displacement(forces);
         let mut state = self.initial();

@@ -6,7 +6,7 @@ use voussoir_core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver
 
 /// Reason of solvers that read one sliding facet in each sense.
 pub const NO_ENVELOPES: &str =
-    "several facets of a joint law bound sliding in one sense: limit_conic takes them with associated flow";
+    "several facets of a joint law bound sliding in one sense: limit_conic supports this with associated flow";
 
 /// Returns the answer with associated flow, from the cheapest engine.
 pub fn associated(problem: &LimitProblem, question: LimitQuestion) -> LimitAnswer {

@@ -25,8 +25,8 @@ pub enum Greatest {
         field: Vec<JointForce>,
         /// Mechanism with varying·q̇ = 1, in the relative interior of all optimal mechanisms.
         motion: Vec<Velocity>,
-        /// True if the mechanism is the only one.
-        unique: bool,
+        /// True if the mechanism is the only one; `None` if this is not known.
+        unique: Option<bool>,
     },
     /// The cap was reached first: a field at the cap.
     Capped(Vec<JointForce>),

@@ -116,7 +116,7 @@ fn carried(
             answer.field_factor = start + factor;
             answer.field = Some(field);
             answer.motion = Some(motion);
-            answer.unique = Some(unique);
+            answer.unique = unique;
         }
         Greatest::Capped(field) => {
             answer.field_factor = max;
@@ -168,6 +168,6 @@ fn refuted(problem: &LimitProblem, engine: &mut dyn Engine, base: &Wrenches, sta
     let near = if interval[0] > start { lower } else { upper };
     if let Greatest::Collapse { motion, unique, .. } = near {
         answer.motion = Some(motion);
-        answer.unique = Some(unique);
+        answer.unique = unique;
     }
 }

@@ -93,7 +93,7 @@ impl Engine for ChainEngine<'_> {
                     factor: value * factor_unit,
                     field: program.forces(&point),
                     motion: with_unit_power(varying, motion),
-                    unique,
+                    unique: Some(unique),
                 }
             }
             Outcome::Optimal(Solved { point, .. }) => Greatest::Capped(program.forces(&point)),

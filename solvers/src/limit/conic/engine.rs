@@ -184,7 +184,7 @@ impl<'a> ConicEngine<'a> {
         }
         let motion = with_unit_power(varying, system.motion(&pair.equations));
         let factor = pair.x[system.theta] * unit;
-        Greatest::Collapse { factor, field: system.forces(&pair.x), motion, unique }
+        Greatest::Collapse { factor, field: system.forces(&pair.x), motion, unique: Some(unique) }
     }
 
     /// Finds the greatest factor by exchanges of single rows in terms of the redundants, if few joints close the bodies
@@ -364,5 +364,5 @@ fn greatest_of(solution: Solution, varying: &Wrenches) -> Greatest {
     if capped {
         return Greatest::Capped(forces);
     }
-    Greatest::Collapse { factor, field: forces, motion: with_unit_power(varying, motion), unique }
+    Greatest::Collapse { factor, field: forces, motion: with_unit_power(varying, motion), unique: Some(unique) }
 }

@@ -134,7 +134,7 @@ impl Engine for EnvelopeEngine {
                     }
                     _ => motion,
                 };
-                Greatest::Collapse { factor, field, motion, unique: false }
+                Greatest::Collapse { factor, field, motion, unique: None }
             }
             Some(other) => other,
             None => Greatest::Failed(UNSETTLED.into()),

@@ -75,7 +75,7 @@ impl Vertices {
             factor: z[systems.forces] * systems.unit,
             field: systems.joint_forces(&z),
             motion,
-            unique: false,
+            unique: None,
         })
     }
 }
