@@ -60,6 +60,22 @@ fn a_column_by_hand() {
     assert!(result.carried.permissible.is_none(), "the rule is one of arches");
 }
 
+/// Teeth are climbed with friction 1 up to 10 kPa and sheared off with 0.6 above. The pressure at the pressed end is concentrated,
+/// so the joint carries less than its facets over the whole joint: T = 0.4 Δn θ + 0.6 N with Δn θ² = N − 2 M/h, by hand.
+#[test]
+fn the_sliding_reserve_of_teeth_falls_with_the_moment() {
+    let push = 16e3 / 3.0;
+    let teeth = "law = \"strength_envelope\"\ncorners = [[0.0, 0.0], [1e4, 1e4]]\nresidual_friction = 0.6";
+    let result = answered(&column(teeth, push));
+    assert_eq!(result.status, Status::Stands);
+    for (blocks, normal, moment) in [(["left", "top"], 1e4, 0.5 * push), (["ground", "left"], 2e4, 1.5 * push)] {
+        let share = ((normal - 2.0 * moment) / 1e4).sqrt();
+        let own = entry(&result, blocks).sliding_reserve.expect("it may slide");
+        close(own, (0.4 * 1e4 * share + 0.6 * normal) / push);
+        assert!(own * push < 0.95 * (0.6 * normal + 4e3), "{own}");
+    }
+}
+
 /// A greater push opens the lowest joint: e = 0.3 m, contact over 3 (0.5 − 0.3) m. A joint that crushes also has a stress block.
 #[test]
 fn an_open_joint_and_its_stress_block() {

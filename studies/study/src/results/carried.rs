@@ -5,7 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 use voussoir_core::certificate::ContactForce;
-use voussoir_core::law::{Facet, FacetMode, UnitStrength};
+use voussoir_core::law::{Facet, FacetMode, ShearEnvelope, UnitStrength, YieldPolygon};
 use voussoir_core::limit::Status;
 use voussoir_core::model::{Assembly, Bond, Joint};
 
@@ -166,7 +166,7 @@ fn entry(assembly: &Assembly, index: usize, [normal, shear, moment]: [f64; 3], l
         contact_length,
         greatest_stress,
         block,
-        sliding_reserve: facets.and_then(|facets| sliding_reserve(&facets, height * width, [normal, shear])),
+        sliding_reserve: facets.and_then(|facets| sliding_reserve(&facets, [height, width], [normal, shear, moment])),
         zone: None,
     }
 }
@@ -184,8 +184,16 @@ fn compressive_strength(facets: &[Facet]) -> Option<f64> {
     Some(block.total - block.tension)
 }
 
-/// The factor on V at which a_n N + a_t V = b A for the first sliding facet. For friction without cohesion it is μN/|V|.
-fn sliding_reserve(facets: &[Facet], area: f64, [normal, shear]: [f64; 2]) -> Option<f64> {
+/// The factor on V at which a_n N + a_t V = b A for the first sliding facet. For friction without cohesion it is μN/|V|. If
+/// several facets bound sliding in this sense, the greatest shear depends on M too.
+fn sliding_reserve(facets: &[Facet], [height, width]: [f64; 2], [normal, shear, moment]: [f64; 3]) -> Option<f64> {
+    let area = height * width;
+    let envelopes = ShearEnvelope::both(&YieldPolygon::of(facets));
+    if let Some(envelope) = envelopes.iter().find(|envelope| envelope.sense * shear > 0.0) {
+        let ends = [normal / 2.0 - moment / height, normal / 2.0 + moment / height];
+        let [.., greatest] = envelope.over(area).greatest(ends).resultants();
+        return Some(greatest / shear.abs()).filter(|factor| factor.is_finite());
+    }
     let sliding = facets.iter().filter(|facet| facet.mode == FacetMode::Sliding && facet.normal[1] * shear > 0.0);
     let factors = sliding.map(|facet| (facet.bound * area - facet.normal[0] * normal) / (facet.normal[1] * shear));
     factors.reduce(f64::min).filter(|factor| factor.is_finite())
