@@ -199,12 +199,7 @@ impl InterfaceResponse for CreepingResponse {
 const KNOWN_PATHS: &[KnownPath] = &[KnownPath {
     table: "friction = 0.5\nnormal_stiffness = 1e10\nshear_stiffness = 5e9\ncreep_coefficient = 2.0\nretardation_time = 1e6",
     source: "by hand: without duration it is dry friction, slip at μ t_n",
-    steps: &[
-        (&[-1e-4, 4e-4], &[1e6, -5e5]),
-        (&[-1e-4, 3.5e-4], &[1e6, -2.5e5]),
-        (&[1e-5, 3.5e-4], &[0.0, 0.0]),
-        (&[-1e-4, 3.5e-4], &[1e6, 0.0]),
-    ],
+    steps: DRY_FRICTION,
     tolerance: 1e-12,
 }];
 

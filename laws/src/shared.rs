@@ -36,6 +36,15 @@ pub struct MaterialKeys {
     density: f64,
 }
 
+/// Gaps \[m\] and tractions \[Pa\] of a joint without tensile strength with μ = 0.5, k_n = 1e10 Pa/m and k_t = 5e9 Pa/m: slipped,
+/// moved back, opened, closed again.
+pub const DRY_FRICTION: &[(&[f64], &[f64])] = &[
+    (&[-1e-4, 4e-4], &[1e6, -5e5]),
+    (&[-1e-4, 3.5e-4], &[1e6, -2.5e5]),
+    (&[1e-5, 3.5e-4], &[0.0, 0.0]),
+    (&[-1e-4, 3.5e-4], &[1e6, 0.0]),
+];
+
 /// Returns μ from the key that is given.
 pub fn friction(friction: Option<f64>, friction_angle: Option<f64>) -> f64 {
     friction.or(friction_angle.map(tangent)).unwrap_or(0.0)

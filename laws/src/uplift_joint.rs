@@ -136,12 +136,7 @@ impl InterfaceResponse for UpliftResponse {
 const KNOWN_PATHS: &[KnownPath] = &[KnownPath {
     table: "friction = 0.5\nnormal_stiffness = 1e10\nshear_stiffness = 5e9",
     source: "by hand: without water it is dry friction, slip at μ t_n",
-    steps: &[
-        (&[-1e-4, 4e-4], &[1e6, -5e5]),
-        (&[-1e-4, 3.5e-4], &[1e6, -2.5e5]),
-        (&[1e-5, 3.5e-4], &[0.0, 0.0]),
-        (&[-1e-4, 3.5e-4], &[1e6, 0.0]),
-    ],
+    steps: DRY_FRICTION,
     tolerance: 1e-12,
 }];
 
