@@ -326,7 +326,7 @@ fn a_new_crate_compiles() {
     assert_eq!(code(&voussoir(&["new", "crate", "pins", "--out", into, "--repository", root])), 0);
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| Path::new(root).join("target"), Into::into);
     let krate = folder.join("pins");
-    // The versions of the example's lock file are those of the workspace.
+    // The example's lock file has the same versions as the workspace.
     let lock = text(&Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/my_law/Cargo.lock"));
     std::fs::write(krate.join("Cargo.lock"), lock.replace("\"my_law\"", "\"pins\"")).expect("a lock file");
     let cargo = Command::new(env!("CARGO"))

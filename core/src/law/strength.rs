@@ -107,7 +107,7 @@ fn bounds_sliding(facet: &Facet, sense: f64) -> bool {
 pub struct UnitStrength(JointStrength);
 
 impl UnitStrength {
-    /// Integrates facets. An error says what limit analysis cannot read.
+    /// Integrates facets. An error gives the reason why limit analysis does not support them.
     pub fn of(facets: &[Facet]) -> Result<Self, String> {
         integrate(facets).map(UnitStrength)
     }
@@ -148,7 +148,7 @@ fn integrate(facets: &[Facet]) -> Result<JointStrength, String> {
                 corners + along >= 2
             })
             .collect();
-        // A facet may touch the polygon in a corner only; then it bounds sliding where no other does.
+        // If every facet of a sense touches the polygon in a corner only, the first one bounds sliding there.
         let kept = if bounding.is_empty() { on_side.into_iter().take(1).collect() } else { bounding };
         rows.extend(kept.into_iter().map(|f| ForceRow {
             normal: [f.normal[0], f.normal[0], f.normal[1]],

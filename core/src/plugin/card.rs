@@ -251,7 +251,7 @@ pub fn nearest<'a>(wrong: &str, names: impl IntoIterator<Item = &'a str>) -> Opt
         .map(|(_, name)| name)
 }
 
-/// Returns the mistakes in the registry; empty if there are none:
+/// Returns the mistakes in the registry; an empty list if all entries are valid:
 /// - a kind without plug-ins (a crate that no source names registers nothing)
 /// - two plug-ins of one kind with the same tag
 /// - a card without a type, a type without a card, or a type whose name is not the tag of its card.

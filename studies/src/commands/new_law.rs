@@ -110,7 +110,7 @@ pub fn new_crate(options: &NewCrate) -> Outcome {
         return Err(wrong("a crate is called by small letters, digits, - and _, a letter first".into()));
     }
     if name.starts_with("voussoir") {
-        return Err(wrong("names that start with voussoir are those of the project; choose another one".into()));
+        return Err(wrong("names that start with voussoir belong to this project; choose another name".into()));
     }
     let tag = law.clone().unwrap_or_else(|| name.replace('-', "_"));
     if let Some(why) = unfit(&tag) {

@@ -90,7 +90,7 @@ fn build_fields(
         let key = format!("{at}.fields.{key}");
         if values[..position].iter().any(|(_, own, _)| own == name) {
             let message = format!("the field \"{name}\" is set twice");
-            diagnostics.wrong(&key, message, "remove this entry: the field has a key of its own");
+            diagnostics.wrong(&key, message, "remove this entry: this field has a separate key");
         }
         let last = before(name);
         if index > 0 && last.is_none() {
