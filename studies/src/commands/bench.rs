@@ -84,7 +84,7 @@ fn ladders(study: &Study, arguments: &BenchArguments, options: &BenchOptions) ->
     let known = |name: &String| {
         let found = PARAMETERS.into_iter().find(|known| known == name);
         let help = || suggest(name, &PARAMETERS, "settings that can be swept");
-        found.ok_or_else(|| CliError::wrong_input(format_args!("--sweep {name}: is no setting; {}", help())))
+        found.ok_or_else(|| CliError::wrong_input(format_args!("--sweep {name}: not a setting; {}", help())))
     };
     let parameters = arguments.sweep.iter().map(known).collect::<Result<Vec<_>, _>>()?;
     let found = sweep(study, &parameters, options);

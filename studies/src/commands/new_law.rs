@@ -42,7 +42,7 @@ fn renamed(text: &str, tag: &str, package: &str) -> String {
 fn write(files: &[(String, String)], into: &Path) -> Result<(), CliError> {
     if let Some((there, _)) = files.iter().find(|(file, _)| into.join(file).exists()) {
         let place = into.join(there);
-        let why = format_args!("voussoir: {} is there already; nothing was written", place.display());
+        let why = format_args!("voussoir: {} already exists; nothing was written", place.display());
         return Err(CliError::wrong_input(why));
     }
     for (file, text) in files {
@@ -107,7 +107,7 @@ pub fn new_crate(options: &NewCrate) -> Outcome {
     let wrong = |why: String| CliError::wrong_input(format_args!("voussoir new crate {name}: {why}"));
     let letter = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_' || c == '-';
     if !name.starts_with(|c: char| c.is_ascii_lowercase()) || !name.chars().all(letter) {
-        return Err(wrong("a crate is called by small letters, digits, - and _, a letter first".into()));
+        return Err(wrong("the name of a crate has small letters, digits, - and _, and begins with a letter".into()));
     }
     if name.starts_with("voussoir") {
         return Err(wrong("names that start with voussoir belong to this project; choose another name".into()));
@@ -137,7 +137,7 @@ pub fn new_crate(options: &NewCrate) -> Outcome {
     let into = out.join(name);
     write(&files, &into)?;
     say(format!(
-        "change the equations in src/{tag}.rs; then, in {}, say `cargo run --release -- conform {tag}`",
+        "change the equations in src/{tag}.rs; then, in {}, run `cargo run --release -- conform {tag}`",
         into.display()
     ));
     Ok(Verdict::Proved)
