@@ -1,6 +1,7 @@
 //! Joints with several sliding facets in one sense: the exact strength of whole joints against cells, paths and known loads.
 
-use voussoir::core::limit::{LimitJoint, LimitProblem, LimitQuestion, LimitSolver, Status};
+use voussoir::core::certificate::{Claim, ContactForce, certify};
+use voussoir::core::limit::{JointForce, LimitJoint, LimitProblem, LimitQuestion, LimitSolver, Status};
 use voussoir::core::model::stage_loads;
 use voussoir::solvers::limit::conic::LimitConic;
 use voussoir_tests::{answered, assert_close, changed, first_case};
@@ -132,5 +133,46 @@ fn solvers_for_one_facet_refuse() {
         let result = answered(&format!("{TEETH}[solver]\nsolver = \"{solver}\"\n"));
         assert_eq!(result.status, Status::Stalled);
         assert!(result.notes.iter().any(|note| note.contains("several facets")), "{solver}: {:?}", result.notes);
+    }
+}
+
+/// A solver that reads the facets over whole joints finds too much load. The certificate refuses its field, and confirms the
+/// exact one.
+#[test]
+fn the_field_of_a_solver_that_ignores_envelopes_is_refused() {
+    for corners in [CORNERS, OTHERS[0]] {
+        let text = changed(TEETH, CORNERS, corners);
+        let case = first_case(&text);
+        let loads = &stage_loads(&case.assembly, &case.stages)[1];
+        let exact = LimitProblem::new(&case.assembly, loads).expect("a problem");
+        let status = |problem: &LimitProblem| {
+            let question = LimitQuestion::Collapse { start: 0.0, max: f64::INFINITY };
+            let answer = LimitConic {}.solve(problem, question);
+            let (factor, forces) = (answer.factor.expect("a factor"), answer.field.expect("a field"));
+            let at = |joint: &LimitJoint, point, force| ContactForce { joint: joint.joint, point, force };
+            let of = |(joint, force): (&LimitJoint, &JointForce)| {
+                let [n_0, n_1] = force.normal;
+                [at(joint, joint.ends[0], [n_0, force.shear]), at(joint, joint.ends[1], [n_1, 0.0])]
+            };
+            let field: Vec<ContactForce> = problem.joints.iter().zip(&forces).flat_map(of).collect();
+            let claim = Claim {
+                hint: Status::Stands,
+                target: factor,
+                factor: None,
+                field_factor: factor,
+                start: 0.0,
+                field: Some(&field),
+                fill: &[],
+                start_field: None,
+                motion: None,
+                ray: None,
+                supports: None,
+                feasible_interval: None,
+                non_associated: None,
+            };
+            certify(&case.assembly, loads, &claim, 1e-9).status
+        };
+        assert_eq!(status(&exact), Status::Stands);
+        assert_ne!(status(&in_cells(&exact, 1)), Status::Stands);
     }
 }
