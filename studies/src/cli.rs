@@ -159,7 +159,7 @@ enum Command {
         #[arg(long, value_name = "FORM", value_parser = commands::explain::EXPORTS)]
         export: Option<String>,
     },
-    /// Check that a law, solver or strategy keeps the promises of its card and its trait
+    /// Check that a plug-in keeps the promises of its card and its trait
     Conform {
         /// Tags of laws, solvers or strategies; without tags all laws
         tags: Vec<String>,

@@ -70,7 +70,13 @@ impl Property {
     pub const SYMMETRIC_TANGENT: Self = Self("symmetric_tangent");
 }
 
-/// A law with numbers, for the conformance tests: walks with steps of about `size` must meet every branch in `branches`.
+/// A plug-in with numbers, for the conformance tests. For a law, walks with steps of about `size` must meet every branch in
+/// `branches`; other plug-ins have [`Sample::keys`].
+///
+/// The sample of a study kind is added to a standard study, an arch under a force that grows until collapse; for a kind with
+/// separate study files it is the whole file without name and kind. The sample of a scene can use the materials `stone` (rigid) and `brick` (elastic) and the joint laws `dry` and `mortar`.
+/// The sample of a load acts on a bridge with a road, with one span of 6 m and the voussoirs `0` to `14`; it can use the
+/// vehicle `cart`.
 #[derive(Debug, Clone, Copy)]
 pub struct Sample {
     /// The law's keys in TOML, without the tag.
@@ -85,6 +91,11 @@ impl Sample {
     /// Creates a sample from its three parts.
     pub const fn new(table: &'static str, size: f64, branches: &'static [&'static str]) -> Self {
         Sample { table, size, branches }
+    }
+
+    /// Creates a sample of a plug-in that is not a law: keys in TOML, without the tag.
+    pub const fn keys(table: &'static str) -> Self {
+        Sample::new(table, 1.0, &[])
     }
 }
 
@@ -130,10 +141,12 @@ pub struct Card {
     pub requires: &'static [Requirement],
     /// Properties that a law claims.
     pub claims: &'static [Property],
-    /// For laws: samples for the conformance tests.
+    /// For laws, scenes, loads and study kinds: samples for the conformance tests.
     pub samples: &'static [Sample],
     /// For laws: paths with known results. A law with state needs one that unloads after an irreversible change.
     pub known_paths: &'static [KnownPath],
+    /// Characteristic length of the point that follows the known paths \[m\], over which a softening material localises.
+    pub known_path_length: f64,
     /// For solvers: `auto` chooses the least cost among those that support the case; `None` if a solver is used only by name.
     pub cost: Option<u32>,
     /// Sources of its equations.
@@ -161,6 +174,7 @@ impl Card {
         claims: &[],
         samples: &[],
         known_paths: &[],
+        known_path_length: 1.0,
         cost: None,
         sources: &[],
         file: "",

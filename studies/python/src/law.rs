@@ -50,7 +50,7 @@ voussoir::core::inventory::submit! {
         provides: &[Capability::RESPONSE],
         file: file!(),
         package: voussoir::core::package!(),
-        page: "# `python_response`\n\nThe class has `stiffness`, two numbers in Pa/m, `state_names`, and `respond(gap, state)`. The class does not get the context of a point, such as its position or the duration of the step.\n",
+        page: "# `python_response`\n\nThe class has `stiffness`, two numbers in Pa/m, `state_names`, and `respond(gap, state)` or `respond(gap, state, context)`. The context has the previous gap, the position, the length and the width of each point, the duration of the step, and the fields that the attribute `fields` names.\n",
         check: |table| checked(table, "response"),
         ..Card::BLANK
     }
@@ -82,7 +82,7 @@ fn checked(table: &Json, form: &str) -> Vec<(String, String)> {
 }
 
 /// Returns a text that lives as long as the program. Each text is stored once.
-fn kept(text: String) -> &'static str {
+pub(crate) fn kept(text: String) -> &'static str {
     static TEXTS: LazyLock<Mutex<Vec<&'static str>>> = LazyLock::new(Mutex::default);
     let Ok(mut texts) = TEXTS.lock() else { return "a law written in Python" };
     match texts.iter().find(|own| **own == text) {
@@ -161,7 +161,8 @@ impl InterfaceLaw for PythonResponse {
             let names: Vec<String> = laws.call_method1("state_names", (&law,))?.extract()?;
             let initial: Vec<f64> = laws.call_method1("initial_state", (&law,))?.extract()?;
             let names: Vec<&'static str> = names.into_iter().map(kept).collect();
-            Ok(Response { law: law.unbind(), initial, names: Vec::leak(names) })
+            let fields = laws.call_method1("fields_read", (&law,))?.extract()?;
+            Ok(Response { law: law.unbind(), initial, names: Vec::leak(names), fields })
         };
         Some(Arc::new(Python::attach(read).ok()?))
     }
@@ -177,10 +178,21 @@ struct Response {
     law: Py<PyAny>,
     initial: Vec<f64>,
     names: &'static [&'static str],
+    /// Names of the fields that the law reads; `None` if it does not read the context.
+    fields: Option<Vec<String>>,
 }
 
 /// The law dissipates energy.
 const DISSIPATING: UpdateBranch = UpdateBranch::new("dissipating", Effect::Softening);
+
+/// Returns the branch of a step: open without traction, dissipating, or elastic.
+fn branch_of(gap: [f64; 2], traction: [f64; 2], dissipated: f64) -> UpdateBranch {
+    match dissipated > 0.0 {
+        true => DISSIPATING,
+        false if gap[0] > 0.0 && traction == [0.0; 2] => UpdateBranch::OPEN,
+        false => UpdateBranch::ELASTIC,
+    }
+}
 
 fn bytes_of(numbers: &[f64]) -> Vec<u8> {
     numbers.iter().flat_map(|x| x.to_ne_bytes()).collect()
@@ -190,14 +202,31 @@ fn numbers_of(bytes: &[u8]) -> Vec<f64> {
     bytes.chunks_exact(8).filter_map(|eight| Some(f64::from_ne_bytes(eight.try_into().ok()?))).collect()
 }
 
+/// The contexts of a group of points: previous gap, position, length and width of each, then the time step of each, and the
+/// fields at the start and end of the step, name by name. NaN is a field that no stage has set.
+fn context_of<'py>(py: Python<'py>, contexts: &[PointContext], names: &[String]) -> [Bound<'py, PyBytes>; 2] {
+    let places = contexts.iter().flat_map(|own| {
+        let ([n, t], [x, y]) = (own.previous_gap, own.position);
+        [n, t, x, y, own.length, own.width, own.time_step]
+    });
+    let value = |own: Option<f64>| own.unwrap_or(f64::NAN);
+    let fields = contexts.iter().flat_map(|own| {
+        names.iter().flat_map(move |name| [value(own.previous_fields.get(name)), value(own.fields.get(name))])
+    });
+    [places.collect::<Vec<_>>(), fields.collect()].map(|numbers| PyBytes::new(py, &bytes_of(&numbers)))
+}
+
 impl Response {
-    /// Calls the law: tractions, tangents, states, stored and dissipated energies of a group, point by point.
-    fn ask(&self, gaps: &[[f64; 2]], old: &[f64]) -> PyResult<[Vec<f64>; 5]> {
+    /// Calls the law: tractions, tangents, states, stored and dissipated energies of a group, point by point, and the
+    /// energies that fields supply.
+    fn ask(&self, gaps: &[[f64; 2]], contexts: &[PointContext], old: &[f64]) -> PyResult<[Vec<f64>; 6]> {
         Python::attach(|py| {
             let gap = PyBytes::new(py, &bytes_of(gaps.as_flattened()));
             let state = PyBytes::new(py, &bytes_of(old));
-            let answer = py.import("voussoir._laws")?.call_method1("respond", (&self.law, gap, state, gaps.len()))?;
-            let parts: [Bound<'_, PyBytes>; 5] = answer.extract()?;
+            let context = self.fields.as_ref().map(|names| context_of(py, contexts, names));
+            let arguments = (&self.law, gap, state, gaps.len(), context);
+            let answer = py.import("voussoir._laws")?.call_method1("respond", arguments)?;
+            let parts: [Bound<'_, PyBytes>; 6] = answer.extract()?;
             Ok(parts.map(|part| numbers_of(part.as_bytes())))
         })
     }
@@ -231,26 +260,32 @@ impl InterfaceResponse for Response {
     fn respond(
         &self,
         gaps: &[[f64; 2]],
-        _: &[PointContext],
+        contexts: &[PointContext],
         old: &[f64],
         new: &mut [f64],
         points: &mut [TractionPoint],
     ) -> Result<(), BatchFailure> {
         let failed = |failure: UpdateFailure| BatchFailure { point: 0, failure };
         let count = gaps.len();
-        if points.len() != count || old.len() != count * self.state_size() || new.len() != old.len() {
+        if points.len() != count
+            || contexts.len() != count
+            || old.len() != count * self.state_size()
+            || new.len() != old.len()
+        {
             return Err(failed(UpdateFailure::WrongSize));
         }
         if !gaps.as_flattened().iter().chain(old).all(|x| x.is_finite()) {
             return Err(failed(UpdateFailure::NotFinite));
         }
         let said = |error: PyErr| failed(UpdateFailure::Law(kept(error.to_string())));
-        let [traction, tangent, state, stored, dissipated] = self.ask(gaps, old).map_err(said)?;
+        let [traction, tangent, state, stored, dissipated, supplied] = self.ask(gaps, contexts, old).map_err(said)?;
         let right = [traction.len() == 2 * count, tangent.len() == 4 * count, state.len() == new.len()];
-        if !right.iter().all(|right| *right) || stored.len() != count || dissipated.len() != count {
+        let energies = [&stored, &dissipated, &supplied];
+        if !right.iter().all(|right| *right) || energies.iter().any(|energy| energy.len() != count) {
             return Err(failed(UpdateFailure::WrongSize));
         }
-        if !traction.iter().chain(&tangent).chain(&state).chain(&stored).chain(&dissipated).all(|x| x.is_finite()) {
+        let answers = traction.iter().chain(&tangent).chain(&state);
+        if !answers.chain(energies.into_iter().flatten()).all(|x| x.is_finite()) {
             return Err(failed(UpdateFailure::NotFinite));
         }
         new.copy_from_slice(&state);
@@ -259,10 +294,10 @@ impl InterfaceResponse for Response {
             *point = TractionPoint {
                 traction: [t[0], t[1]],
                 tangent: [[k[0], k[1]], [k[2], k[3]]],
-                branch: if dissipated[index] > 0.0 { DISSIPATING } else { UpdateBranch::ELASTIC },
+                branch: branch_of(gaps[index], [t[0], t[1]], dissipated[index]),
                 stored: stored[index],
                 dissipated: dissipated[index],
-                supplied: 0.0,
+                supplied: supplied[index],
             };
         }
         Ok(())

@@ -2,6 +2,7 @@
 //! interface is written in Python, in `python/voussoir/`.
 
 mod blocks;
+mod conform;
 mod interrupted;
 mod law;
 mod source;
@@ -138,7 +139,7 @@ fn schema() -> String {
 #[pyfunction]
 fn plugins() -> Vec<(&'static str, &'static str, &'static str)> {
     let cards = voussoir::core::plugin::cards();
-    cards.into_iter().map(|card| (card.kind.plural(), card.tag, card.summary)).collect()
+    cards.iter().map(|card| (card.kind.plural(), card.tag, card.summary)).collect()
 }
 
 /// Runs the command line and returns its exit code.
@@ -159,6 +160,8 @@ fn main(py: Python<'_>, arguments: Vec<String>) -> i32 {
 mod _voussoir {
     #[pymodule_export]
     use super::blocks::blocks;
+    #[pymodule_export]
+    use super::conform::{conform_law, conform_tag};
     #[pymodule_export]
     use super::source::StudyError;
     #[pymodule_export]

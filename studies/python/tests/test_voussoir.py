@@ -234,6 +234,10 @@ def test_ctrl_c_works_and_other_threads_go_on():
 
 @voussoir.law("test_friction")
 class Friction:
+    """Friction without tension."""
+
+    units = {"friction": "-", "stiffness": "Pa/m"}
+
     def __init__(self, friction, stiffness=None):
         self.friction, self.stiffness = friction, stiffness
 
@@ -284,6 +288,126 @@ def test_a_response_in_python_ends_at_the_limit_load():
     rigid = voussoir.run(with_(scene=elastic()["scene"], joints={"dry": {"law": "unilateral", "tangential": "stuck"}}))[0]
     assert own.solver == "newton_path" and rigid.solver == "limit_chain"
     assert own.load_factor == pytest.approx(rigid.load_factor, rel=1e-6), own.notes
+
+
+@voussoir.law("test_warm_maxwell")
+class WarmMaxwell:
+    """Springs with dampers in series, and a joint that widens with the temperature."""
+
+    stiffness = [1e9, 1e9]
+    state_names = ["creep n [m]", "creep t [m]"]
+    fields = ["temperature"]
+    retardation, widening = 3600.0, 1e-5
+
+    def respond(self, gap, state, context):
+        ends = [context.previous_fields["temperature"], context.fields["temperature"]]
+        free = [np.stack([self.widening * (np.nan_to_num(end, nan=293.15) - 293.15), np.zeros_like(end)], axis=1) for end in ends]
+        rate = (context.time_step / self.retardation)[:, None]
+        creep = (state + rate * (gap - free[1])) / (1.0 + rate)
+        strain = gap - free[1] - creep
+        traction = -self.stiffness[0] * strain
+        before = -self.stiffness[0] * (context.previous_gap - free[0] - state)
+        return {
+            "traction": traction,
+            "state": creep,
+            "stored": np.sum(self.stiffness[0] * strain**2, axis=1) / 2,
+            "dissipated": -np.sum(traction * (creep - state), axis=1),
+            "supplied": np.sum((traction + before) / 2 * (free[1] - free[0]), axis=1),
+        }
+
+
+def test_a_law_in_python_reads_time_and_fields():
+    square = lambda y, size: [[-size / 2, y], [size / 2, y], [size / 2, y + size], [-size / 2, y + size]]
+    study = {
+        "name": "warm",
+        "scene": {
+            "scene": "blocks", "width": 1.0, "material": "stone", "joint": "dry",
+            "blocks": [
+                {"name": "ground", "fixed": True, "vertices": square(-1.0, 1.0)},
+                {"name": "block", "vertices": square(0.0, 1.0)},
+            ],
+        },
+        "materials": {"stone": {"law": "rigid", "density": 2000.0}},
+        "joints": {"dry": {"law": "python_response", "class": "test_warm_maxwell"}},
+        "stages": [
+            {"name": "weight", "gravity": 10.0, "fields": {"temperature": 293.15}},
+            {"name": "rest", "duration": 7200.0, "fields": {"temperature": 303.15}},
+        ],
+        "solver": {"solver": "newton_path"},
+    }  # fmt: skip
+    case = voussoir.run(study)[0]
+    assert case.status == "stands" and case.certified, case.notes
+    # Under a constant weight of 20 kN a Maxwell joint closes by W/(k A) (1 + T/τ), and 10 K widen it by 1e-4 m.
+    assert case.displacements["displacement"][-1, 1] == pytest.approx(-20e3 / 1e9 * (1 + 2.0) + 1e-4, rel=1e-6)
+
+
+class Sheared:
+    """Elastic in both directions, with friction and no tension."""
+
+    units = {"friction": "-", "normal": "Pa/m", "shear": "Pa/m"}
+    sources = ["Coulomb 1773"]
+    claims = ["dissipative"]
+    state_names = ["slip [m]"]
+    branches = ["elastic", "open", "dissipating"]
+    known_paths = [{
+        "source": "by hand: 1 MPa of pressure carries 0.5 MPa of shear; back by 1e-4 m elastically",
+        "steps": [
+            ((-1e-4, 0.0), (1e6, 0.0)),
+            ((-1e-4, 2e-4), (1e6, -0.5e6)),
+            ((-1e-4, 1.5e-4), (1e6, 0.0)),
+        ],
+    }]  # fmt: skip
+
+    def __init__(self, friction, normal, shear):
+        self.friction, self.stiffness = friction, [normal, shear]
+
+    def respond(self, gap, state):
+        normal = np.maximum(-self.stiffness[0] * gap[:, 0], 0.0)
+        trial = -self.stiffness[1] * (gap[:, 1] - state[:, 0])
+        shear = np.clip(trial, -self.friction * normal, self.friction * normal)
+        slip = gap[:, 1] + shear / self.stiffness[1]
+        stored = normal**2 / self.stiffness[0] / 2 + shear**2 / self.stiffness[1] / 2
+        dissipated = np.abs(shear * (slip - state[:, 0]))
+        # Without this line rounding counts as slip.
+        held = np.abs(trial) <= self.friction * normal
+        slip, dissipated = np.where(held, state[:, 0], slip), np.where(held, 0.0, dissipated)
+        closed = gap[:, 0] <= 0.0
+        tangent = np.zeros((len(gap), 2, 2))
+        tangent[:, 0, 0] = np.where(closed, -self.stiffness[0], 0.0)
+        tangent[:, 1, 1] = np.where(closed & held, -self.stiffness[1], 0.0)
+        tangent[:, 1, 0] = np.where(closed & ~held, -self.friction * np.sign(trial) * self.stiffness[0], 0.0)
+        return {
+            "traction": np.stack([normal, shear], axis=1), "state": slip[:, None], "stored": stored,
+            "dissipated": dissipated, "tangent": tangent,
+        }  # fmt: skip
+
+
+class Attracting(Sheared):
+    """Its shear traction has the wrong sign."""
+
+    def respond(self, gap, state):
+        answer = super().respond(gap, state)
+        answer["traction"][:, 1] *= -1.0
+        answer["tangent"][:, 1] *= -1.0
+        return answer
+
+
+def test_conformance_of_laws_in_python():
+    keys = {"friction": 0.5, "normal": 1e10, "shear": 1e10}
+    report = voussoir.conform(Sheared, **keys)
+    assert report.passed and report.done["tangent"] > 1000 and report.done["units"] > 1000, report
+    report = voussoir.conform(Attracting, **keys)
+    assert not report.passed and {"friction", "known_path"} <= {finding.check for finding in report.findings}, report
+    study = next(finding.study for finding in report.findings if finding.study)
+    assert 'law = "python_response"' in study
+    assert voussoir.conform(Friction, friction=0.6).findings[0].check == "card"  # it names no source
+    assert voussoir.conform("coulomb").passed
+    with pytest.raises(ValueError, match="no plug-in has the tag"):
+        voussoir.conform("coulom")
+    with pytest.raises(ValueError, match='gives no unit for "friction"'):
+        voussoir.conform(type("Unitless", (Sheared,), {"units": {}}), **keys)
+    with pytest.raises(ValueError, match="no unit of a key"):
+        voussoir.conform(type("Barred", (Sheared,), {"units": {**Sheared.units, "normal": "bar/m"}}), **keys)
 
 
 def test_mistakes_in_laws_are_told():

@@ -7,6 +7,7 @@
 #[cfg(test)]
 use voussoir_laws as _;
 
+mod conformance;
 pub mod difference;
 pub mod figures;
 pub mod kinds;

@@ -3,27 +3,18 @@
 use super::error::{CliError, ErrorKind, Outcome, Verdict, joined};
 use super::print::say;
 use std::path::Path;
-use voussoir_core::plugin::{PluginKind, cards_of};
+use voussoir_core::plugin::cards;
 use voussoir_study::config::diagnostic::suggest;
 use voussoir_verify::conformance::{Options, Report, conform, conform_all};
 
-/// Kinds of plug-ins that have checks.
-const KINDS: [PluginKind; 5] = [
-    PluginKind::InterfaceLaw,
-    PluginKind::BulkMaterial,
-    PluginKind::LimitSolver,
-    PluginKind::PathSolver,
-    PluginKind::Continuation,
-];
-
-/// Checks plug-ins with these tags, or all laws. For failures of laws, studies that reproduce them are written to a
-/// folder.
+/// Checks plug-ins with these tags, or all plug-ins but solvers and strategies. For failures of laws, studies that
+/// reproduce them are written to a folder.
 pub fn conform_tags(tags: &[String], out: Option<&Path>) -> Outcome {
-    let cards: Vec<_> = KINDS.into_iter().flat_map(cards_of).collect();
+    let cards = cards();
     let names: Vec<&str> = cards.iter().map(|card| card.tag).collect();
     let unknown = tags.iter().filter(|tag| !names.contains(&tag.as_str())).map(|tag| {
-        let help = suggest(tag, &names, "plug-ins with checks");
-        format!("no law, solver or strategy is called \"{tag}\"; {help}")
+        let help = suggest(tag, &names, "plug-ins");
+        format!("no plug-in is called \"{tag}\"; {help}")
     });
     let diagnostics: Vec<String> = unknown.collect();
     if !diagnostics.is_empty() {

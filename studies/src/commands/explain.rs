@@ -86,6 +86,18 @@ pub fn explain(what: &str) -> Outcome {
     Ok(Verdict::Proved)
 }
 
+/// Returns the place of a sample in a study file, and the lines before it.
+fn place_of_sample(card: &Card) -> (&'static str, String) {
+    let tag = card.tag;
+    match card.kind {
+        PluginKind::InterfaceLaw => ("[joints.NAME]", format!("[joints.NAME]\nlaw = \"{tag}\"")),
+        PluginKind::BulkMaterial => ("[materials.NAME]", format!("[materials.NAME]\nlaw = \"{tag}\"")),
+        PluginKind::Scene => ("[scene]", format!("[scene]\nscene = \"{tag}\"")),
+        PluginKind::LoadKind => ("a load in the last of the [[stages]]", format!("[[stages.loads]]\nkind = \"{tag}\"")),
+        _ => ("tables", format!("{} = \"{tag}\"\n", card.kind.tag_key())),
+    }
+}
+
 fn print_card(card: &Card) {
     say(format!("{} — {}: {}\n", card.tag, card.kind.describe(), card.summary));
     if !card.parameters.is_empty() {
@@ -104,11 +116,8 @@ fn print_card(card: &Card) {
         }
     }
     if let Some(sample) = card.samples.first() {
-        let table = if card.kind == PluginKind::InterfaceLaw { "joints" } else { "materials" };
-        say(format!(
-            "\nan example, [{table}.NAME] of a study:\n\n[{table}.NAME]\nlaw = \"{}\"\n{}\n",
-            card.tag, sample.table
-        ));
+        let (place, head) = place_of_sample(card);
+        say(format!("\nan example, {place} of a study:\n\n{head}\n{}\n", sample.table));
     }
     card.sources.iter().for_each(|source| say(format!("source: {source}")));
     say(format!("file: {}\n\n{}", card.file, card.page));

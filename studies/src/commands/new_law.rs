@@ -15,6 +15,7 @@ const MAIN: &str = include_str!("../../templates/main.rs");
 const STUDY: &str = include_str!("../../templates/keyed.toml");
 const STUDY_TEST: &str = include_str!("../../templates/study.rs");
 const IGNORED: &str = include_str!("../../templates/gitignore");
+const PYTHON: &str = "\"\"\"Plug-ins for Voussoir: `import voussoir` has them.\"\"\"\n";
 
 /// Returns the reason why a word cannot be the tag of a new law.
 fn unfit(tag: &str) -> Option<String> {
@@ -126,8 +127,11 @@ pub fn new_crate(options: &NewCrate) -> Outcome {
         (format!("{tag}.toml"), own(STUDY)),
         (
             "src/lib.rs".into(),
-            format!("//! The laws of this crate. The name of a file is the tag of its law.\n\npub mod {tag};\n"),
+            format!(
+                "//! The laws of this crate. The name of a file is the tag of its law.\n\npub mod {tag};\n\n// The Python module.\n#[cfg(feature = \"python\")]\nuse _voussoir as _;\n"
+            ),
         ),
+        (format!("python/{}/__init__.py", module(name)), PYTHON.to_string()),
         ("src/main.rs".into(), own(MAIN)),
         (format!("src/{tag}.rs"), own(LAW)),
         (format!("src/{tag}.md"), own(PAGE)),
@@ -165,24 +169,40 @@ fn manifest(name: &str, repository: Option<&str>) -> String {
         Some(_) => String::new(),
         None => "\n# With a copy of the repository instead of published versions:\n# [patch.crates-io]\n\
                  # voussoir = { path = \"/path/to/voussoir/studies\" }\n\
-                 # voussoir-plug = { path = \"/path/to/voussoir/core/plug\" }\n"
+                 # voussoir-plug = { path = \"/path/to/voussoir/core/plug\" }\n\
+                 # voussoir-python = { path = \"/path/to/voussoir/studies/python\" }\n"
             .to_string(),
     };
     format!(
         "[package]\nname = \"{name}\"\nversion = \"0.1.0\"\nedition = \"2024\"\npublish = false\n\n[dependencies]\n\
-         voussoir = {} # the command line, for src/main.rs and the tests\nvoussoir-plug = {} # all that a law needs\n{patch}\n\
+         voussoir = {} # the command line, for src/main.rs and the tests\nvoussoir-plug = {} # all that a law needs\n\
+         voussoir-python = {{ {}, optional = true }} # the Python module\n\n[features]\npython = [\"dep:voussoir-python\"]\n\n\
+         # The second type is the Python module.\n[lib]\ncrate-type = [\"rlib\", \"cdylib\"]\n{patch}\n\
          [workspace]\n\n[profile.release]\ndebug = 1\n",
         source("studies"),
         source("core/plug"),
+        match repository {
+            Some(root) => format!("path = \"{root}/studies/python\""),
+            None => format!("version = \"{version}\""),
+        },
     )
 }
 
-/// The description of a Python wheel that contains the program.
+/// The name of a crate as a module of Rust and Python.
+fn module(name: &str) -> String {
+    name.replace('-', "_")
+}
+
+/// The description of a Python wheel whose native module contains Voussoir with the laws of the crate.
 fn wheel(name: &str) -> String {
+    let (module, version) = (module(name), env!("CARGO_PKG_VERSION"));
     format!(
-        "# A wheel with the program `{name}`: `pip install .`, or `maturin build --release`.\n[build-system]\n\
-         requires = [\"maturin>=1.7,<2\"]\nbuild-backend = \"maturin\"\n\n[project]\nname = \"{name}\"\nversion = \"0.1.0\"\n\
-         requires-python = \">=3.9\"\n\n[tool.maturin]\nbindings = \"bin\"\n"
+        "# A wheel with the plug-ins of this crate: `pip install voussoir .`; then `import voussoir` has them.\n\
+         [build-system]\nrequires = [\"maturin>=1.9.4,<2\"]\nbuild-backend = \"maturin\"\n\n[project]\nname = \"{name}\"\n\
+         version = \"0.1.0\"\nrequires-python = \">=3.10\"\ndependencies = [\"voussoir=={version}\"]\n\n\
+         [project.entry-points.\"voussoir.native\"]\n{module} = \"{module}._voussoir\"\n\n[project.scripts]\n\
+         {name} = \"voussoir.__main__:main\"\n\n[tool.maturin]\nbindings = \"pyo3\"\nfeatures = [\"python\"]\n\
+         python-source = \"python\"\nmodule-name = \"{module}._voussoir\"\nstrip = true\n"
     )
 }
 
@@ -190,7 +210,7 @@ fn readme(name: &str, tag: &str) -> String {
     format!(
         "# {name}\n\n`src/{tag}.rs` is the law. `src/main.rs` is the program: the command line of Voussoir with this law.\n\n\
          ```sh\ncargo run --release -- conform {tag}\ncargo run --release -- run {tag}.toml\ncargo test --release\n```\n\n\
-         `voussoir new law TAG --out .` writes another law with its page and its test. `pip install .` makes a Python wheel\n\
-         with the program and installs it.\n"
+         `voussoir new law TAG --out .` writes another law with its page and its test. `pip install voussoir .` installs\n\
+         a Python wheel with the laws of this crate: `import voussoir` then has them, in notebooks and on the workers of a cluster.\n"
     )
 }

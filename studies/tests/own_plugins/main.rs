@@ -4,8 +4,9 @@
 mod tower;
 
 use std::path::Path;
+use voussoir::conformance::{Options, conform};
 use voussoir::core::limit::Status;
-use voussoir::core::plugin::nearest;
+use voussoir::core::plugin::{PluginKind, card, nearest};
 use voussoir::kinds::json_schema;
 use voussoir::solve_case;
 use voussoir::study::load;
@@ -71,5 +72,14 @@ fn the_page_shows_the_plug_ins_that_are_compiled() {
         std::fs::write(&path, format!("{}{file}{}", &page[..start], &page[end..])).expect("written");
     } else {
         assert_eq!(&page[start..end], file, "UPDATE_EXPECTED=1 copies the file to the page");
+    }
+}
+
+/// The scene and the load pass the checks of conformance.
+#[test]
+fn they_conform() {
+    for (kind, tag) in [(PluginKind::Scene, "tower"), (PluginKind::LoadKind, "quake")] {
+        let report = conform(card(kind, tag).expect("a card"), &Options::default());
+        assert!(report.passed() && report.done["units"] > 1, "{report}");
     }
 }

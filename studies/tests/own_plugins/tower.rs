@@ -7,7 +7,7 @@ use voussoir_plug::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver
 use voussoir_plug::model::geometry::Vec2;
 use voussoir_plug::model::{Assembly, Catalogue, Scene};
 use voussoir_plug::path::{Constraint, Continuation, Increment};
-use voussoir_plug::plugin::{Capability, Card, Diagnostic, Keys, PluginKind, STANDARD_GRAVITY};
+use voussoir_plug::plugin::{Capability, Card, Diagnostic, Keys, PluginKind, STANDARD_GRAVITY, Sample};
 use voussoir_plug::{inventory, typetag};
 
 /// `scene = "tower"`: equal blocks on each other, each `lean` further to the right than the one below.
@@ -22,6 +22,9 @@ pub struct Tower {
     /// step to the right from block to block
     #[key(unit = "m", default = 0.0)]
     lean: f64,
+    /// width out of plane
+    #[key(unit = "m", range = "> 0", default = 1.0)]
+    width: f64,
 }
 
 #[typetag::serde(name = "tower")]
@@ -39,7 +42,8 @@ impl Scene for Tower {
             let corner = [self.lean * i as f64, height * i as f64];
             json!({ "name": format!("block {i}"), "vertices": box_at(corner[0], corner[1], length, height) })
         }));
-        let scene = json!({ "scene": "blocks", "width": 1.0, "material": "stone", "joint": "dry", "blocks": blocks });
+        let scene =
+            json!({ "scene": "blocks", "width": self.width, "material": "stone", "joint": "dry", "blocks": blocks });
         let scene: Box<dyn Scene> = serde_json::from_value(scene).expect("a scene of blocks");
         scene.build(catalogue)
     }
@@ -50,6 +54,7 @@ inventory::submit! {
         kind: PluginKind::Scene,
         tag: "tower",
         summary: "equal blocks on each other, each further to the right",
+        samples: &[Sample::keys("blocks = 3\nblock = [0.4, 0.2]\nlean = 0.05")],
         file: file!(),
         package: voussoir_plug::package!(),
         page: "# `tower`\n\nA stack that leans.\n",
@@ -77,6 +82,7 @@ inventory::submit! {
         kind: PluginKind::LoadKind,
         tag: "quake",
         summary: "a share of all weights, to the right",
+        samples: &[Sample::keys("share = 0.1")],
         file: file!(),
         package: voussoir_plug::package!(),
         page: "# `quake`\n\nA share of all weights, to the right.\n",

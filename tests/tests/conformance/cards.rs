@@ -12,7 +12,7 @@ fn every_card_is_complete() {
     assert_eq!(wrong, Vec::<String>::new());
     assert_eq!(mutants.len(), 5, "{mutants:#?}");
     assert!(mutants.iter().all(|why| why.contains("no card has this tag")), "{mutants:#?}");
-    for card in cards() {
+    for card in cards().iter().filter(|card| !card.file.contains("mutants")) {
         assert!(!card.summary.is_empty() && !card.page.is_empty(), "{}", card.tag);
         let stem = Path::new(card.file).file_stem().expect("a file").to_string_lossy().into_owned();
         let folder = Path::new(card.file)
@@ -30,7 +30,8 @@ fn every_card_is_complete() {
             documented(card.tag, parameter);
         }
         let law = matches!(card.kind, PluginKind::InterfaceLaw | PluginKind::BulkMaterial);
-        assert_eq!(law, !card.samples.is_empty(), "{}: laws, and only laws, bring samples", card.tag);
+        let sampled = law || matches!(card.kind, PluginKind::Scene | PluginKind::LoadKind | PluginKind::StudyKind);
+        assert_eq!(sampled, !card.samples.is_empty(), "{}: samples", card.tag);
         if law || card.kind == PluginKind::LimitSolver {
             assert!(!card.sources.is_empty(), "{} names no source", card.tag);
         }

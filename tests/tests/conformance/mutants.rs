@@ -1,15 +1,17 @@
-//! Laws with one fault each: the checks must find the fault by name. A law without a fault conforms.
+//! Plug-ins with one fault each: the checks must find the fault by name. A plug-in without a fault conforms.
 
 mod facets;
+mod files;
 mod keys;
 mod materials;
 mod responses;
+mod scenes;
 
 use super::laws::allocations;
 use voussoir::conformance::{Options, conform};
 use voussoir::core::plugin::{Card, Sample};
 
-/// Checks a law for each fault: (value of the key, names of checks of which at least one must find it). `none` must
+/// Checks a plug-in for each fault: (value of the key, names of checks of which at least one must find it). `none` must
 /// conform.
 fn every_fault_is_found(card: &Card, table: &'static str, sample: Sample, faults: &[(&str, &[&str])]) {
     let options = Options { allocations: Some(allocations) };

@@ -5,7 +5,8 @@
     results[0].load_factor
 
 `run` solves all cases of a study and returns the results with their proofs. `load` reads the results of a folder. `sweep`
-solves many cases, on this machine or on a cluster, and returns columns. `law` registers a class as a joint law.
+solves many cases, on this machine or on a cluster, and returns columns. `law` registers a class as a joint law, and
+`conform` checks it.
 """
 
 from __future__ import annotations
@@ -14,17 +15,22 @@ import json as _json
 import os as _os
 from typing import Any as _Any
 
-from . import _voussoir
+from ._native import choose as _choose
+
+_choose()
+
+from . import _voussoir  # noqa: E402
+from ._conform import Finding, Report, conform
 from ._folder import load
-from ._laws import Facet, law
+from ._laws import Context, Facet, law
 from ._results import Block, Case, Figure, Results
 from ._study import Study
 from ._sweep import Table, sweep
 from ._voussoir import StudyError, __version__
 
 __all__ = [
-    "Block", "Case", "Facet", "Figure", "Results", "Study", "StudyError", "Table", "__version__",
-    "check", "law", "load", "plugins", "run", "schema", "sweep", "verify",
+    "Block", "Case", "Context", "Facet", "Figure", "Finding", "Report", "Results", "Study", "StudyError", "Table", "__version__",
+    "check", "conform", "law", "load", "plugins", "run", "schema", "sweep", "verify",
 ]  # fmt: skip
 
 

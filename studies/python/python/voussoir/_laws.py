@@ -17,6 +17,7 @@ from __future__ import annotations
 import inspect
 import json
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Any, TypeVar
 
 import numpy as np
@@ -46,6 +47,26 @@ class Facet:
         return f"Facet({self.mode!r}, {self.normal}, {self.bound}, {self.flow})"
 
 
+@dataclass(frozen=True)
+class Context:
+    """What a law can read besides gaps and states: arrays with one entry for each point.
+
+    `previous_gap` (points, 2) is the gap at the start of the step [m], `position` (points, 2) the place of the point in the
+    undeformed scene [m], `length` the length of the joint that it represents [m], `width` the width of the joint [m],
+    `time_step` the duration of the step [s] (0 without duration). `fields` and `previous_fields` are the values at the end
+    and at the start of the step of the fields that the attribute `fields` of the class names; a field that no stage has
+    set is NaN.
+    """
+
+    previous_gap: Any
+    position: Any
+    length: Any
+    width: Any
+    time_step: Any
+    fields: dict[str, Any]
+    previous_fields: dict[str, Any]
+
+
 def law(name: str) -> Callable[[_Class], _Class]:
     """Registers a class as a joint law. For `law = "python_facets"`, the class has `facets()`, which returns a list of
     `Facet`. For `law = "python_response"`, it has `respond(gap, state)`, `stiffness` and, if the law has a memory,
@@ -55,6 +76,9 @@ def law(name: str) -> Callable[[_Class], _Class]:
     with `traction` (points, 2) [Pa], compression > 0, `state`, and optionally `tangent` (points, 2, 2) [Pa/m], `stored`
     and `dissipated` (points) [J/m2]. If the tangent is missing, it is computed by differences with a step of 1e-6 times the
     attribute `size` of the class (default 1e-4 m). `respond` must be a pure function of its arguments.
+
+    If `respond` has a third argument, it also receives a `Context`. A law that reads fields may return `supplied`, the
+    energy that changing fields supply (points) [J/m2].
     """
 
     def register(cls: _Class) -> _Class:
@@ -91,7 +115,9 @@ def check(name: str, parameters: str, form: str) -> tuple[str, str] | None:
             if stiffness(made) is None:
                 return "class", f"{name} needs `stiffness`, two numbers [k_n, k_t] in Pa/m"
             state = np.array(initial_state(made), dtype=float)
-            answers = respond(made, np.zeros((1, 2)).tobytes(), state.tobytes(), 1)
+            names = fields_read(made)
+            context = None if names is None else _untouched(names)
+            answers = respond(made, np.zeros((1, 2)).tobytes(), state.tobytes(), 1, context)
             if not all(np.all(np.isfinite(np.frombuffer(part))) for part in answers):
                 return "class", f"{name}.respond gives numbers that are not finite at the untouched state"
             tangent = np.frombuffer(answers[1]).reshape(2, 2)
@@ -134,14 +160,51 @@ def initial_state(made: Any) -> list[float]:
     return numbers
 
 
-def respond(made: Any, gap: bytes, state: bytes, count: int) -> tuple[bytes, bytes, bytes, bytes, bytes]:
-    """Computes tractions, tangents, states, stored and dissipated energies of a group of points."""
+def fields_read(made: Any) -> list[str] | None:
+    """Returns the names of the fields that a law reads, or None if `respond` has no argument for the context."""
+    if len(inspect.signature(made.respond).parameters) < 3:
+        return None
+    return [str(name) for name in getattr(made, "fields", ())]
+
+
+def _untouched(names: list[str]) -> tuple[bytes, bytes]:
+    """Returns the context of one point of a square metre, without duration. All fields are 1, so that the check of a class
+    does not meet NaN."""
+    return np.array([0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0]).tobytes(), np.ones(2 * len(names)).tobytes()
+
+
+def _context(made: Any, count: int, told: tuple[bytes, bytes]) -> Context:
+    names = [str(name) for name in getattr(made, "fields", ())]
+    places = np.frombuffer(told[0]).reshape(count, 7)
+    fields = np.frombuffer(told[1]).reshape(count, len(names), 2)
+    ends = [{name: fields[:, index, end] for index, name in enumerate(names)} for end in range(2)]
+    return Context(
+        previous_gap=places[:, :2],
+        position=places[:, 2:4],
+        length=places[:, 4],
+        width=places[:, 5],
+        time_step=places[:, 6],
+        fields=ends[1],
+        previous_fields=ends[0],
+    )
+
+
+def respond(
+    made: Any, gap: bytes, state: bytes, count: int, context: tuple[bytes, bytes] | None = None
+) -> tuple[bytes, ...]:
+    """Computes tractions, tangents, states, and stored, dissipated and supplied energies of a group of points."""
     gaps = np.frombuffer(gap).reshape(count, 2)
     old = np.frombuffer(state).reshape(count, len(state_names(made)))
-    answer = _answer(made, gaps, old)
+    further = () if context is None else (_context(made, count, context),)
+
+    def ask(gaps: Any) -> dict[str, Any]:
+        answer = made.respond(gaps, old, *further)
+        return answer if isinstance(answer, dict) else {"traction": answer[0], "state": answer[1]}
+
+    answer = ask(gaps)
     tangent = answer.get("tangent")
     if tangent is None:
-        tangent = _differences(made, gaps, old)
+        tangent = _differences(lambda gaps: ask(gaps)["traction"], 1e-6 * float(getattr(made, "size", 1e-4)), gaps)
     zeros = np.zeros(count)
     parts = (
         ("traction", answer["traction"], (count, 2)),
@@ -149,9 +212,9 @@ def respond(made: Any, gap: bytes, state: bytes, count: int) -> tuple[bytes, byt
         ("state", answer["state"], old.shape),
         ("stored", answer.get("stored", zeros), (count,)),
         ("dissipated", answer.get("dissipated", zeros), (count,)),
+        ("supplied", answer.get("supplied", zeros), (count,)),
     )
-    out = [_shaped(name, value, shape).tobytes() for name, value, shape in parts]
-    return out[0], out[1], out[2], out[3], out[4]
+    return tuple(_shaped(name, value, shape).tobytes() for name, value, shape in parts)
 
 
 def _shaped(name: str, value: Any, shape: tuple[int, ...]) -> Any:
@@ -161,26 +224,20 @@ def _shaped(name: str, value: Any, shape: tuple[int, ...]) -> Any:
     return array
 
 
-def _answer(made: Any, gaps: Any, old: Any) -> dict[str, Any]:
-    answer = made.respond(gaps, old)
-    return answer if isinstance(answer, dict) else {"traction": answer[0], "state": answer[1]}
-
-
-def _differences(made: Any, gaps: Any, old: Any) -> Any:
+def _differences(traction: Callable[[Any], Any], step: float, gaps: Any) -> Any:
     """Computes the tangent by differences on the smooth side of each point.
 
     Next to a corner of the law a central difference mixes the tangents of both sides. On the side of the corner the
     difference changes if the step is halved; the other side is taken. At the corner itself the stiffer side is taken.
     """
-    step = 1e-6 * float(getattr(made, "size", 1e-4))
-    here = np.asarray(_answer(made, gaps, old)["traction"])
+    here = np.asarray(traction(gaps))
     tangent = np.empty((len(gaps), 2, 2))
     for j in range(2):
 
         def slope(length: float, j: int = j) -> Any:
             shift = np.zeros(2)
             shift[j] = length
-            return (np.asarray(_answer(made, gaps + shift, old)["traction"]) - here) / length
+            return (np.asarray(traction(gaps + shift)) - here) / length
 
         ahead, behind = slope(step), slope(-step)
         bend_ahead = np.abs(ahead - slope(step / 2)).max(axis=1)

@@ -1,6 +1,9 @@
 from typing import Any, final
 
-__all__ = ["Sweep", "StudyError", "blocks", "check", "main", "plugins", "run", "schema", "verify", "__version__"]
+__all__ = [
+    "Sweep", "StudyError", "blocks", "check", "conform_law", "conform_tag", "main", "plugins", "run", "schema", "verify",
+    "__version__",
+]  # fmt: skip
 
 __version__: str
 
@@ -24,6 +27,13 @@ _Blocks = list[tuple[str, bool, list[tuple[float, float]], tuple[float, float]]]
 
 def blocks(source: _Source, case: str) -> _Blocks: ...
 def check(source: _Source) -> dict[str, Any]: ...
+
+_Report = tuple[
+    str, str, str, bool, list[tuple[str, int]], list[str], list[tuple[str, str, str | None]]
+]  # fmt: skip
+
+def conform_law(described: str) -> _Report: ...
+def conform_tag(tag: str) -> list[_Report]: ...
 def main(arguments: list[str]) -> int: ...
 def plugins() -> list[tuple[str, str, str]]: ...
 def run(source: _Source, cases: list[int] | None = None, jobs: int = 1, progress: Any = None) -> dict[str, Any]: ...

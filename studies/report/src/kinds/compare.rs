@@ -3,7 +3,7 @@
 
 use super::case_study::SceneStudy;
 use voussoir_core::limit::Status;
-use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind};
+use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind, Sample};
 use voussoir_study::config::diagnostic::suggest;
 use voussoir_study::kind::{KindEntry, LoadedStudy, OwnResults, StudyKind};
 use voussoir_study::results::{CaseResult, Comparison, ComparisonCell, ComparisonRow};
@@ -29,6 +29,15 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::StudyKind,
         tag: "compare",
         summary: "several laws and solvers (variants) on one or several scenes: one table with ratios, one figure",
+        samples: &[Sample::keys(r#"[[variants]]
+name = "as it is"
+
+[[variants]]
+name = "smooth"
+set = { "joints.dry.friction" = 0.45 }
+
+[sweep]
+"scene.profile.rise" = { list = [0.9, 1.0] }"#)],
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("compare.md"),

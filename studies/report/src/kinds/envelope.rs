@@ -10,7 +10,7 @@ use self::request::{Request, Run};
 use super::case_study::SceneStudy;
 use super::search::{case_at, range_mistakes};
 use std::borrow::Cow;
-use voussoir_core::plugin::{Card, Diagnostic, PluginKind};
+use voussoir_core::plugin::{Card, Diagnostic, PluginKind, Sample};
 use voussoir_study::cases::{Observer, solve_cases, solve_unless_cancelled};
 use voussoir_study::kind::{KindEntry, LoadedStudy, OwnResults, StudyKind};
 use voussoir_study::results::{CaseLabel, CaseResult};
@@ -29,6 +29,12 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::StudyKind,
         tag: "envelope",
         summary: "moves a load over a range, in both directions and for several vehicles: the worst position, and the factor at each position",
+        samples: &[Sample::keys(r#"[envelope]
+parameter = "stages.1.loads.0.span_fraction"
+from = 0.1
+to = 0.5
+scan = 5
+tolerance = 0.01"#)],
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("envelope.md"),

@@ -3,7 +3,7 @@
 
 use super::case_study::SceneStudy;
 use super::compare::{CompareTable, beside_each_other, check_variants};
-use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind};
+use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind, Sample};
 use voussoir_study::kind::{KindEntry, LoadedStudy, OwnResults, StudyKind};
 use voussoir_study::results::{CaseResult, Comparison, MapAxes};
 use voussoir_study::study::{Outline, Study, StudyError, StudySource};
@@ -36,6 +36,16 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::StudyKind,
         tag: "map",
         summary: "one or several laws (variants) over two swept numbers: regions of mechanisms, contours of loads or ratios",
+        samples: &[Sample::keys(r#"[[variants]]
+name = "as it is"
+
+[[variants]]
+name = "smooth"
+set = { "joints.dry.friction" = 0.45 }
+
+[sweep]
+"scene.profile.rise" = { list = [0.9, 1.0] }
+"scene.thickness" = { list = [0.4, 0.5] }"#)],
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("map.md"),

@@ -9,7 +9,7 @@ use self::request::{Request, STRIDE};
 use super::case_study::SceneStudy;
 use super::search::{case_at, range_mistakes};
 use std::borrow::Cow;
-use voussoir_core::plugin::{Card, Diagnostic, PluginKind};
+use voussoir_core::plugin::{Card, Diagnostic, PluginKind, Sample};
 use voussoir_study::cases::{Observer, solve_cases, solve_unless_cancelled};
 use voussoir_study::kind::{KindEntry, LoadedStudy, OwnResults, StudyKind};
 use voussoir_study::results::{CaseLabel, CaseResult};
@@ -26,6 +26,12 @@ voussoir_core::inventory::submit! {
         tag: "optimise",
         summary: "the value of a key at which a result is greatest or least, for each variant and sweep point",
         sources: &["Kiefer 1953, Proc. Amer. Math. Soc. 4, 502-506"],
+        samples: &[Sample::keys(r#"[optimise]
+parameter = "scene.thickness"
+from = 0.3
+to = 0.5
+scan = 4
+tolerance = 0.05"#)],
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("optimise.md"),

@@ -9,7 +9,7 @@ pub mod result;
 pub mod study;
 mod surface;
 
-use voussoir_core::plugin::{Capability, Card, Keys, Parameter, PluginKind};
+use voussoir_core::plugin::{Capability, Card, Keys, Parameter, PluginKind, Sample};
 use voussoir_study::kind::{KindEntry, LoadedStudy, StudyKind};
 use voussoir_study::study::{StudyError, StudySource};
 
@@ -23,6 +23,22 @@ voussoir_core::inventory::submit! {
         provides: &[Capability::OWN_FILE],
         tag: "point",
         summary: "drives one law at one point through strains, stresses or both",
+        samples: &[Sample::keys(r#"[joints.dry]
+law = "coulomb"
+friction = 0.6
+normal_stiffness = 1e10
+shear_stiffness = 5e9
+
+[point]
+joint = "dry"
+
+[[point.path]]
+steps = 1
+gap = { n = -1e-4 }
+
+[[point.path]]
+steps = 3
+gap = { t = 4e-4 }"#)],
         file: file!(),
         package: voussoir_core::package!(),
         page: "# `point`\n\nThis kind of study drives a material or a joint through `[[point.path]]`, segment by \

@@ -16,7 +16,7 @@ mod types;
 mod typing;
 mod value;
 
-use voussoir_core::plugin::{Capability, Card, Keys, Parameter, PluginKind};
+use voussoir_core::plugin::{Capability, Card, Keys, Parameter, PluginKind, Sample};
 use voussoir_study::kind::{KindEntry, LoadedStudy, StudyKind};
 use voussoir_study::study::{ReadFile, StudyError, StudySource, no_files};
 
@@ -30,6 +30,16 @@ voussoir_core::inventory::submit! {
         provides: &[Capability::OWN_FILE],
         tag: "report",
         summary: "runs several studies and writes one page: texts, charts of their results, verdicts on claims",
+        samples: &[Sample::keys(r#"[report]
+studies = ["run.toml"]
+
+[report.series.load]
+study = "standard"
+
+[[report.claims]]
+id = "1"
+claim = "The arch carries a load"
+tests = [{ of = "limit analysis", value = "max(load)", unit = "kN", holds = "value > 0" }]"#)],
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("report.md"),

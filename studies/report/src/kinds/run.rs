@@ -1,7 +1,7 @@
 //! `run`: every case of the study is solved on its own.
 
 use super::case_study::SceneStudy;
-use voussoir_core::plugin::{Card, PluginKind};
+use voussoir_core::plugin::{Card, PluginKind, Sample};
 use voussoir_study::kind::{KindEntry, LoadedStudy, StudyKind};
 use voussoir_study::study::{StudyError, StudySource};
 
@@ -14,6 +14,8 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::StudyKind,
         tag: "run",
         summary: "solves every case of the study (variants × sweep)",
+        samples: &[Sample::keys(r#"[sweep]
+"joints.dry.friction" = { list = [0.4, 0.7] }"#)],
         file: file!(),
         package: voussoir_core::package!(),
         page: "# `run`\n\nThis kind of study solves every case: variants outermost, then the axes of the sweep. Each \

@@ -4,7 +4,7 @@ use super::extrados::{on_extrados, reach, x_at};
 use super::load_kind::{LoadKind, Placed};
 use super::site::LoadSite;
 use voussoir_core::model::geometry::Vec2;
-use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind};
+use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind, Sample};
 
 /// Wheels or axles on the extrados of an arch.
 #[derive(Debug, Keys)]
@@ -59,6 +59,9 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::LoadKind,
         tag: "axles",
         summary: "wheels or axles on the extrados of an arch",
+        samples: &[
+            Sample::keys("at = 0.4\npositions = [0.0, 1.8]\nforces = [40e3, 60e3]"),
+        ],
         file: file!(),
         package: voussoir_core::package!(),
         page: "# `axles`\n\nDownward forces act on the extrados of an arch at distances from a span fraction, like \

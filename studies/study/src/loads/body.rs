@@ -3,7 +3,7 @@
 use super::load_kind::{LoadKind, Placed};
 use super::site::LoadSite;
 use voussoir_core::model::geometry::Vec2;
-use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind};
+use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind, Sample};
 
 /// Acceleration of every block, times its mass.
 #[derive(Debug, Keys)]
@@ -26,6 +26,9 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::LoadKind,
         tag: "body",
         summary: "acceleration of every block, times its mass",
+        samples: &[
+            Sample::keys("acceleration = [1.5, -2.0]"),
+        ],
         file: file!(),
         package: voussoir_core::package!(),
         page: "# `body`\n\nAn acceleration acts on every block; the force is the acceleration times the mass. Use it \

@@ -4,7 +4,7 @@ use super::extrados::on_faces;
 use super::load_kind::{LoadKind, Placed};
 use super::site::LoadSite;
 use voussoir_core::model::geometry::Vec2;
-use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind};
+use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind, Sample};
 
 /// An even load along the road.
 #[derive(Debug, Clone, Keys)]
@@ -44,6 +44,9 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::LoadKind,
         tag: "lane",
         summary: "an even load along the road of a bridge, as of a lane or a track",
+        samples: &[
+            Sample::keys("from = 0.5\nto = 3.5\npressure = 5e3"),
+        ],
         file: file!(),
         package: voussoir_core::package!(),
         page: "# `lane`\n\nA uniform vertical pressure acts on the plan area between two x, over the full width. Each \

@@ -6,7 +6,7 @@ use super::load_kind::{LoadKind, Placed};
 use super::site::{BlockName, LoadSite};
 use crate::scenes::dispersion::{Dispersion, Patch};
 use voussoir_core::model::geometry::Vec2;
-use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind};
+use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind, Sample};
 
 /// A force at a point.
 #[derive(Debug, Keys)]
@@ -73,6 +73,9 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::LoadKind,
         tag: "point",
         summary: "a force at a point",
+        samples: &[
+            Sample::keys("span_fraction = 0.3\nforce = [1e3, -2e4]"),
+        ],
         file: file!(),
         package: voussoir_core::package!(),
         page: "# `point`\n\nA force acts at a point: on the extrados of an arch at `span_fraction`, or in or on a \

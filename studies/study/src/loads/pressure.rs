@@ -4,7 +4,7 @@ use super::keys::LoadKeys;
 use super::load_kind::{LoadKind, Placed};
 use super::site::{BlockName, LoadSite};
 use voussoir_core::model::geometry::turned;
-use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind};
+use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind, Sample};
 
 /// Pressure on an edge of a block.
 #[derive(Debug, Keys)]
@@ -41,6 +41,11 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::LoadKind,
         tag: "pressure",
         summary: "pressure on an edge of a block",
+        samples: &[
+            Sample::keys(r#"block = "4"
+edge = 2
+value = 2e4"#),
+        ],
         file: file!(),
         package: voussoir_core::package!(),
         page: "# `pressure`\n\nA uniform pressure acts on one edge of a block, over the full width. A positive \

@@ -6,7 +6,7 @@ use super::load_kind::{LoadKind, Placed};
 use super::site::LoadSite;
 use crate::scenes::dispersion::{Dispersion, Patch};
 use voussoir_core::model::geometry::Vec2;
-use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind};
+use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind, Sample};
 
 /// Vertical pressure on the extrados of an arch, over the full width.
 #[derive(Debug, Keys)]
@@ -52,6 +52,9 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::LoadKind,
         tag: "strip",
         summary: "vertical pressure on the extrados of an arch, over the full width",
+        samples: &[
+            Sample::keys("from = 0.2\nto = 0.45\npressure = 8e3"),
+        ],
         file: file!(),
         package: voussoir_core::package!(),
         page: "# `strip`\n\nA uniform vertical pressure acts on the plan area between two span fractions, over the \

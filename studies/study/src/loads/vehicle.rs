@@ -7,7 +7,7 @@ use super::site::LoadSite;
 use super::track::{Track, footprints, loaded_width};
 use super::vehicle_axles::Axle;
 use crate::scenes::dispersion::Patch;
-use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind};
+use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind, Sample};
 
 /// Direction of the vehicle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
@@ -113,6 +113,12 @@ voussoir_core::inventory::submit! {
         sources: &[
             "National Highways 2020, CS 454 (effective width, lift-off)",
             "EN 1991-2:2003, 6.3.6.1 and 6.3.6.2 (25, 50 and 25 % on three sleepers; 4 : 1 in ballast)",
+        ],
+        samples: &[
+            Sample::keys(r#"vehicle = "cart"
+at = 1.5
+direction = "backward"
+across = "effective""#),
         ],
         file: file!(),
         package: voussoir_core::package!(),

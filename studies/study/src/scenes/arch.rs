@@ -8,7 +8,7 @@ use super::profile::{Profile, Ring, Springing};
 use super::thickness::Thickness;
 use voussoir_core::model::geometry::bounding_box;
 use voussoir_core::model::{ArchLayout, Assembly, Body, Bond, Catalogue, Gap, Joint, Scene, find_joints};
-use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind};
+use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind, Sample};
 
 /// Connection of the ring with its supports.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
@@ -145,6 +145,24 @@ voussoir_core::inventory::submit! {
         tag: "arch",
         summary: "a ring of voussoirs between two supports",
         sources: &["Heyman 1982, The Masonry Arch"],
+        samples: &[
+            Sample::keys(r#"profile = { shape = "segmental", span = 9.0, rise = 2.0 }
+thickness = 0.6
+width = 2.0
+voussoirs = 15
+springing = 30.0
+material = "stone"
+joint = "dry""#),
+            Sample::keys(r#"profile = { shape = "elliptical", span = 9.0, rise = 2.0 }
+thickness = { crown = 0.5, springing = 0.7 }
+width = 2.0
+voussoirs = 9
+ends = "bonded"
+plane = "strain"
+material = "brick"
+joint = "mortar"
+mesh = { elements = [2, 4] }"#),
+        ],
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("arch.md"),

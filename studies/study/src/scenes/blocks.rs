@@ -8,7 +8,7 @@ use voussoir_core::model::geometry::{Vec2, area_and_centroid, bounding_box, cros
 use voussoir_core::model::{
     Assembly, Body, Bond, Catalogue, Gap, Interpenetration, Joint, Scene, crosses_itself, find_joints,
 };
-use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind, Range};
+use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind, Range, Sample};
 
 /// One block.
 #[derive(Debug, Clone, PartialEq, Keys)]
@@ -331,6 +331,17 @@ voussoir_core::inventory::submit! {
         tag: "blocks",
         summary: "any assembly of polygonal blocks",
         sources: &["Livesley 1978, Int. J. Numer. Methods Eng. 12"],
+        samples: &[
+            Sample::keys(r#"width = 0.5
+material = "stone"
+joint = "dry"
+blocks = [
+  { name = "ground", vertices = [[-1.0, -0.5], [2.0, -0.5], [2.0, 0.0], [-1.0, 0.0]], fixed = true },
+  { name = "low", vertices = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.5], [0.0, 0.5]] },
+  { name = "high", vertices = [[0.2, 0.5], [1.2, 0.5], [1.2, 1.0], [0.2, 1.0]], material = "brick" },
+]
+pairs = [{ between = ["low", "high"], joint = "mortar" }]"#),
+        ],
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("blocks.md"),

@@ -21,7 +21,7 @@ use super::lookup::{from_root, law, material, out_of_range, pairs_of, take};
 use super::mesh::{Mesh, density, mesh_diagnostics};
 use voussoir_core::model::geometry::bounding_box;
 use voussoir_core::model::{ArchLayout, Assembly, Body, Bond, Bridge, Catalogue, Gap, Scene, find_joints};
-use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind};
+use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind, Sample};
 
 /// Spans on abutments and piers, with fill.
 #[derive(Debug, Keys)]
@@ -236,6 +236,20 @@ voussoir_core::inventory::submit! {
         tag: "bridge",
         summary: "spans of one or several rings on abutments and piers, with fill",
         sources: &["Heyman 1982, The Masonry Arch", "Melbourne, Gilbert & Wagstaff 1997, Struct. Eng. 75 (multi-span)"],
+        samples: &[
+            Sample::keys(r#"width = 3.0
+material = "stone"
+joint = "dry"
+ring_joint = "mortar"
+spans = [{ profile = { shape = "segmental", span = 4.0, rise = 1.0 }, thickness = 0.4, voussoirs = 12, rings = 2 }]
+[fill]
+cover = 0.3
+density = 2000.0
+friction_angle = 35.0
+cohesion = 0.0
+dispersion = { law = "uniform", angle = 26.6 }
+resistance = { law = "fill_pressure", passive_factor = 0.33 }"#),
+        ],
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("bridge.md"),

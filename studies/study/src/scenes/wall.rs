@@ -6,7 +6,7 @@ use super::lookup::{from_root, law, material, out_of_range, pairs_of, take};
 use super::mesh::{Mesh, density, mesh_diagnostics};
 use voussoir_core::model::geometry::{Vec2, bounding_box};
 use voussoir_core::model::{Assembly, Body, Bond, Catalogue, Gap, Scene, find_joints};
-use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind};
+use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind, Sample};
 
 /// Bond of the courses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
@@ -262,6 +262,19 @@ voussoir_core::inventory::submit! {
         tag: "wall",
         summary: "bricks in running bond on the ground, with openings",
         sources: &["Ferris & Tin-Loi 2001, Int. J. Mech. Sci. 43 (walls given by rows)"],
+        samples: &[
+            Sample::keys(r#"width = 1.0
+brick = [0.4, 0.2]
+courses = 4
+bricks = 3
+material = "stone"
+joint = "dry""#),
+            Sample::keys(r#"width = 1.0
+brick = [0.4, 0.2]
+rows = [[1, 1, 1], [0.5, 1, 1, 0.5]]
+material = "brick"
+joint = "mortar""#),
+        ],
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("wall.md"),

@@ -56,8 +56,8 @@ impl fmt::Display for Report {
     }
 }
 
-/// Collects findings: the first of each check in each sample.
-pub(super) struct Recorder<'a> {
+/// Collects findings: the first one of each check in each sample.
+pub struct Recorder<'a> {
     card: &'a Card,
     sample: Option<Sample>,
     report: Report,
@@ -77,19 +77,19 @@ impl<'a> Recorder<'a> {
     }
 
     /// Begins the checks of a sample.
-    pub(super) fn sample(&mut self, sample: &Sample) {
+    pub fn sample(&mut self, sample: &Sample) {
         self.sample = Some(*sample);
         self.seen.clear();
     }
 
     /// Begins the checks of the whole law.
-    pub(super) fn whole(&mut self) {
+    pub fn whole(&mut self) {
         self.sample = None;
         self.seen.clear();
     }
 
     /// Records a check.
-    pub(super) fn hold(&mut self, check: &'static str, holds: bool, what: impl FnOnce() -> String) {
+    pub fn hold(&mut self, check: &'static str, holds: bool, what: impl FnOnce() -> String) {
         self.hold_on(check, holds, &[], what);
     }
 
@@ -113,12 +113,12 @@ impl<'a> Recorder<'a> {
     }
 
     /// Records a check that fails.
-    pub(super) fn fail(&mut self, check: &'static str, what: String) {
+    pub fn fail(&mut self, check: &'static str, what: String) {
         self.hold(check, false, || what);
     }
 
     /// Records a check that was skipped.
-    pub(super) fn leave_out(&mut self, why: &str) {
+    pub fn leave_out(&mut self, why: &str) {
         if !self.report.left_out.iter().any(|known| known == why) {
             self.report.left_out.push(why.into());
         }

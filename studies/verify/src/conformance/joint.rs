@@ -2,8 +2,9 @@
 
 use super::findings::Recorder;
 use super::options::Options;
+use super::plug_in::PlugIn;
 use super::point::Point;
-use super::samples::{Law, laws};
+use super::samples::samples_of;
 use super::subject::Subject;
 use super::walk;
 use super::{energy, facets, sign, softening, units};
@@ -15,9 +16,9 @@ pub(super) fn check(recorder: &mut Recorder, card: &Card, options: &Options) {
     if card.kind != PluginKind::InterfaceLaw {
         return;
     }
-    for (sample, table, law) in laws(card) {
+    for (sample, table, law) in samples_of(card) {
         recorder.sample(&sample);
-        let Law::Joint(law) = law else { continue };
+        let PlugIn::Joint(law) = law else { continue };
         let other = units::other_units(recorder, card, &table);
         check_sample(recorder, (card, &sample), law.as_ref(), other.as_ref(), options);
     }
@@ -27,7 +28,7 @@ fn check_sample(
     recorder: &mut Recorder,
     (card, sample): (&Card, &Sample),
     law: &dyn InterfaceLaw,
-    other: Option<&Law>,
+    other: Option<&PlugIn>,
     options: &Options,
 ) {
     let (own, response) = (law.facets(), law.response());
@@ -44,9 +45,9 @@ fn check_sample(
         facets::check(recorder, card, own);
     }
     let Some(response) = response else { return };
-    let written = serde_json::to_value(law).ok().and_then(|table| Law::read(card.kind, &table).ok());
+    let written = serde_json::to_value(law).ok().and_then(|table| PlugIn::read(card.kind, &table).ok());
     let again = match &written {
-        Some(Law::Joint(again)) => again.response(),
+        Some(PlugIn::Joint(again)) => again.response(),
         _ => None,
     };
     let point = Point::Joint(response.clone());
@@ -60,7 +61,7 @@ fn check_sample(
     if let (Some(own), Some(k)) = (&own, law.stiffness()) {
         facets::against_response(recorder, &subject, own, k);
     }
-    if let Some(Law::Joint(other)) = other
+    if let Some(PlugIn::Joint(other)) = other
         && let Some(other) = other.response()
     {
         units::check(recorder, &subject, &Point::Joint(other));

@@ -1,15 +1,18 @@
-//! Keys: each key changes the law, and a table that the card accepts gives a law with correct signs.
+//! Keys: each key changes what a plug-in does, and a table that the card accepts gives a law with correct signs, or a scene or
+//! load without mistakes.
 
 use super::findings::Recorder;
 use super::options::Options;
+use super::plug_in::PlugIn;
 use super::point::Point;
 use super::random::random_step;
-use super::samples::{Law, is_law, laws, own_check};
+use super::samples::{own_check, samples_of};
+use super::site::{Site, catalogue};
 use super::subject::Subject;
-use super::{facets, sign, walk};
+use super::{assembly, facets, load, sign, walk};
 use serde_json::{Value as Json, json};
 use voussoir_core::law::{Fields, PointContext};
-use voussoir_core::plugin::{Card, Need, Parameter, Property, Sample, Shape};
+use voussoir_core::plugin::{Card, Need, Parameter, PluginKind, Property, Sample, Shape};
 use voussoir_core::random::Random;
 use voussoir_study::config::default_table::default_of;
 
@@ -18,16 +21,16 @@ const SIZES: [f64; 3] = [1.0, 10.0, 100.0];
 const WALKS: usize = 8;
 const STEPS: usize = 25;
 
-/// Checks the keys of a law.
+/// Checks the keys of a plug-in with samples.
 pub(super) fn check(recorder: &mut Recorder, card: &Card, _: &Options) {
-    if !is_law(card) {
+    if !PlugIn::is_of(card.kind) {
         return;
     }
-    let laws = laws(card);
+    let laws = samples_of(card);
     for (sample, table, _) in &laws {
         recorder.sample(sample);
         for (what, other) in accepted(card, table) {
-            let Ok(law) = Law::read(card.kind, &other) else { continue };
+            let Ok(law) = PlugIn::read(card.kind, &other) else { continue };
             let mut own = Recorder::new(card);
             is_sound(&mut own, card, sample, &law);
             let report = own.report();
@@ -44,7 +47,7 @@ pub(super) fn check(recorder: &mut Recorder, card: &Card, _: &Options) {
     for parameter in card.parameters {
         match changes(card, &laws, parameter) {
             Some(changed) => recorder.hold("keys", changed, || {
-                format!("{} changes nothing: no traction, stress, energy or stiffness of any sample", parameter.name)
+                format!("{} changes nothing: no {} of any sample", parameter.name, observed(card.kind))
             }),
             None => {
                 recorder.leave_out(&format!("keys: no sample has a value of {} that can be changed", parameter.name))
@@ -53,8 +56,17 @@ pub(super) fn check(recorder: &mut Recorder, card: &Card, _: &Options) {
     }
 }
 
-/// Returns true if some other value of a key changes the law of some sample; `None` if no other value could be tried.
-fn changes(card: &Card, laws: &[(Sample, Json, Law)], parameter: &Parameter) -> Option<bool> {
+/// Returns what the check of keys compares.
+fn observed(kind: PluginKind) -> &'static str {
+    match kind {
+        PluginKind::Scene => "block or joint",
+        PluginKind::LoadKind => "force or acceleration on the standard bridge",
+        _ => "traction, stress, energy or stiffness",
+    }
+}
+
+/// Returns true if some other value of a key changes the plug-in of some sample; `None` if no other value could be tried.
+fn changes(card: &Card, laws: &[(Sample, Json, PlugIn)], parameter: &Parameter) -> Option<bool> {
     let mut tried = None;
     for (sample, table, _) in laws {
         let value = match (table.get(parameter.name), parameter.need) {
@@ -63,7 +75,7 @@ fn changes(card: &Card, laws: &[(Sample, Json, Law)], parameter: &Parameter) -> 
             (None, _) => continue,
         };
         let own = with(table, &[(parameter.name, value.clone())]);
-        let Ok(law) = Law::read(card.kind, &own) else { continue };
+        let Ok(law) = PlugIn::read(card.kind, &own) else { continue };
         let before = behaviour(&law, sample.size);
         for other in other_values(&parameter.shape, &value) {
             let table = with(table, &[(parameter.name, other)]);
@@ -86,8 +98,8 @@ fn with(table: &Json, keys: &[(&str, Json)]) -> Json {
     table
 }
 
-fn read_accepted(card: &Card, table: &Json) -> Option<Law> {
-    own_check(card, table).is_empty().then(|| Law::read(card.kind, table).ok())?
+fn read_accepted(card: &Card, table: &Json) -> Option<PlugIn> {
+    own_check(card, table).is_empty().then(|| PlugIn::read(card.kind, table).ok())?
 }
 
 /// Returns other values of a key within its range.
@@ -151,29 +163,42 @@ fn accepted(card: &Card, table: &Json) -> Vec<(String, Json)> {
     found
 }
 
-/// Checks the signs of a law, and that no step creates energy if the card claims it.
-fn is_sound(recorder: &mut Recorder, card: &Card, sample: &Sample, law: &Law) {
+/// Checks a plug-in that the card accepts: a scene or load has no mistakes, a law has correct signs, and that no step creates energy if the card claims it.
+fn is_sound(recorder: &mut Recorder, card: &Card, sample: &Sample, law: &PlugIn) {
     let point = match law {
-        Law::Joint(law) => {
+        PlugIn::Joint(law) => {
             if let Some(own) = law.facets() {
                 facets::check(recorder, card, &own);
             }
             law.response().map(Point::Joint)
         }
-        Law::Material(law) => {
+        PlugIn::Material(law) => {
             let density = law.density();
             recorder.hold("density", density.is_finite() && density >= 0.0, || format!("has a density of {density}"));
             let possible = law.elasticity().map_or(Ok(()), |elasticity| elasticity.check());
             recorder.hold("elasticity", possible.is_ok(), || format!("{possible:?}"));
             law.stress_update().map(Point::material)
         }
+        PlugIn::Scene(scene) => {
+            if let Ok(built) = scene.build(&catalogue()) {
+                assembly::check(recorder, &built);
+            }
+            None
+        }
+        PlugIn::Load(load) => {
+            let site = Site::standard();
+            if let Ok(placed) = load.place(&site.place()) {
+                load::is_sound(recorder, &placed, &site.assembly);
+            }
+            None
+        }
     };
     let Some(point) = point else { return };
     let Some(stiffness) = walk::measure(recorder, &point, sample) else { return };
     let subject = Subject { card, sample, point: point.clone(), again: point, stiffness };
     match law {
-        Law::Joint(law) => sign::check_joint(recorder, &subject, law.as_ref()),
-        Law::Material(_) => sign::check_material(recorder, &subject),
+        PlugIn::Joint(law) => sign::check_joint(recorder, &subject, law.as_ref()),
+        _ => sign::check_material(recorder, &subject),
     }
     let worst = -1e-9 * stiffness * sample.size * sample.size;
     each_step(&subject.point, sample.size, false, &mut |said| {
@@ -211,11 +236,11 @@ fn each_step(point: &Point, size: f64, passes: bool, see: &mut dyn FnMut(Option<
     }
 }
 
-/// Returns numbers that describe all that a law does: two laws with equal numbers behave alike.
-fn behaviour(law: &Law, size: f64) -> Vec<f64> {
+/// Returns numbers that describe all that a plug-in does: two plug-ins with equal numbers behave alike.
+fn behaviour(law: &PlugIn, size: f64) -> Vec<f64> {
     let mut numbers = Vec::new();
     let point = match law {
-        Law::Joint(law) => {
+        PlugIn::Joint(law) => {
             for facet in law.facets().into_iter().flatten() {
                 numbers.extend(facet.normal.iter().chain(&facet.flow).chain([&facet.bound]));
             }
@@ -224,12 +249,16 @@ fn behaviour(law: &Law, size: f64) -> Vec<f64> {
             numbers.extend(response.iter().filter_map(|own| own.tensile_softening()).flatten());
             response.map(Point::Joint)
         }
-        Law::Material(law) => {
+        PlugIn::Material(law) => {
             numbers.push(law.density());
             numbers.extend(law.elasticity().iter().flat_map(|own| own.stiffness()).flatten());
             let update = law.stress_update();
             numbers.extend(update.iter().map(|own| own.largest_length()));
             update.map(Point::material)
+        }
+        PlugIn::Scene(_) | PlugIn::Load(_) => {
+            numbers.extend(law.says().bytes().map(f64::from));
+            None
         }
     };
     for (scale, passes) in SIZES.iter().flat_map(|scale| [(scale, false), (scale, true)]) {

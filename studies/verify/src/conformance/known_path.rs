@@ -2,8 +2,9 @@
 
 use super::findings::Recorder;
 use super::options::Options;
+use super::plug_in::PlugIn;
 use super::point::Point;
-use super::samples::{Law, is_law, laws, table};
+use super::samples::{is_law, samples_of, table};
 use voussoir_core::plugin::{Card, KnownPath, Sample};
 
 /// Checks every known path of a law. A law that answers at a point needs at least one; a law with a memory needs one that
@@ -12,7 +13,7 @@ pub(super) fn check(recorder: &mut Recorder, card: &Card, _: &Options) {
     if !is_law(card) {
         return;
     }
-    let points: Vec<Point> = laws(card).iter().filter_map(|(_, _, law)| point(law)).collect();
+    let points: Vec<Point> = samples_of(card).iter().filter_map(|(_, _, law)| point(law)).collect();
     if points.is_empty() {
         return;
     }
@@ -31,17 +32,18 @@ pub(super) fn check(recorder: &mut Recorder, card: &Card, _: &Options) {
     });
 }
 
-fn point(law: &Law) -> Option<Point> {
+fn point(law: &PlugIn) -> Option<Point> {
     match law {
-        Law::Joint(law) => Some(Point::Joint(law.response()?)),
-        Law::Material(law) => Some(Point::material(law.stress_update()?)),
+        PlugIn::Joint(law) => Some(Point::Joint(law.response()?)),
+        PlugIn::Material(law) => Some(Point::material(law.stress_update()?)),
+        PlugIn::Scene(_) | PlugIn::Load(_) => None,
     }
 }
 
-/// Returns the law at a point; materials get a characteristic length of one metre.
-fn metre(law: &Law) -> Option<Point> {
+/// Returns the law at a point; materials get the characteristic length on the card.
+fn point_of_length(law: &PlugIn, length: f64) -> Option<Point> {
     match point(law)? {
-        Point::Material(law, _) => Some(Point::Material(law, 1.0)),
+        Point::Material(law, _) => Some(Point::Material(law, length)),
         joint => Some(joint),
     }
 }
@@ -50,8 +52,8 @@ fn metre(law: &Law) -> Option<Point> {
 fn check_path(recorder: &mut Recorder, card: &Card, known: &KnownPath) -> bool {
     recorder.sample(&Sample::new(known.table, 1.0, &[]));
     let law =
-        table(card, known.table).ok_or("it is no TOML".to_string()).and_then(|table| Law::read(card.kind, &table));
-    let point = match law.as_ref().map(metre) {
+        table(card, known.table).ok_or("it is no TOML".to_string()).and_then(|table| PlugIn::read(card.kind, &table));
+    let point = match law.as_ref().map(|law| point_of_length(law, card.known_path_length)) {
         Ok(Some(point)) => point,
         Ok(None) => {
             recorder.fail("known_path", format!("{}: the law answers at no point", known.source));

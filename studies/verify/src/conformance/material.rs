@@ -2,9 +2,10 @@
 
 use super::findings::Recorder;
 use super::options::Options;
+use super::plug_in::PlugIn;
 use super::point::Point;
 use super::random::random_step;
-use super::samples::{Law, laws};
+use super::samples::samples_of;
 use super::subject::Subject;
 use super::walk;
 use super::{energy, sign, units};
@@ -17,9 +18,9 @@ pub(super) fn check(recorder: &mut Recorder, card: &Card, options: &Options) {
     if card.kind != PluginKind::BulkMaterial {
         return;
     }
-    for (sample, table, law) in laws(card) {
+    for (sample, table, law) in samples_of(card) {
         recorder.sample(&sample);
-        let Law::Material(material) = law else { continue };
+        let PlugIn::Material(material) = law else { continue };
         let other = units::other_units(recorder, card, &table);
         check_sample(recorder, (card, &sample), material.as_ref(), other.as_ref(), options);
     }
@@ -29,7 +30,7 @@ fn check_sample(
     recorder: &mut Recorder,
     (card, sample): (&Card, &Sample),
     material: &dyn BulkMaterial,
-    other: Option<&Law>,
+    other: Option<&PlugIn>,
     options: &Options,
 ) {
     let density = material.density();
@@ -47,9 +48,9 @@ fn check_sample(
     };
     let possible = elasticity.check();
     recorder.hold("elasticity", possible.is_ok(), || format!("{possible:?}"));
-    let written = serde_json::to_value(material).ok().and_then(|table| Law::read(card.kind, &table).ok());
+    let written = serde_json::to_value(material).ok().and_then(|table| PlugIn::read(card.kind, &table).ok());
     let again = match &written {
-        Some(Law::Material(again)) => again.stress_update(),
+        Some(PlugIn::Material(again)) => again.stress_update(),
         _ => None,
     };
     let point = Point::material(update.clone());
@@ -62,12 +63,12 @@ fn check_sample(
     energy::check(recorder, &subject);
     axes(recorder, &subject);
     planar(recorder, &subject, options);
-    if let Some(Law::Material(other)) = other
+    if let Some(PlugIn::Material(other)) = other
         && let Some(other) = other.stress_update()
     {
         let mut there = Point::material(other);
         if let (Point::Material(_, length), Point::Material(_, here)) = (&mut there, &subject.point) {
-            *length = here * units::LENGTH;
+            *length = here * super::scaled::LENGTH;
         }
         units::check(recorder, &subject, &there);
     }

@@ -1,4 +1,4 @@
-//! Conformance: checks that a law keeps the promises of its trait and its card, without knowledge of the law.
+//! Conformance: checks that a plug-in keeps the promises of its trait and its card, without knowledge of the plug-in.
 //!
 //! [`conform`] takes a card, walks through its samples and reports every check with its number of repetitions and its
 //! findings; `voussoir conform TAG` prints the report. A law of another crate calls it in its own test.
@@ -6,6 +6,7 @@
 //! The page `docs/reference/conformance.md` lists the checks by name. Generic checks cannot find a memory that is missing in
 //! a consistent way. Therefore each law that answers at a point has a [known path](voussoir_core::plugin::KnownPath).
 
+mod assembly;
 mod energy;
 mod facets;
 mod findings;
@@ -13,33 +14,51 @@ mod joint;
 mod keys;
 mod known_path;
 pub mod lies;
+mod load;
 mod material;
 mod options;
+mod plug_in;
 mod point;
 mod random;
 mod reproduce;
 mod samples;
+mod scaled;
+mod scene;
 mod sign;
+mod site;
 mod softening;
 mod subject;
 mod units;
 mod walk;
 
-pub use findings::{Finding, Report};
+pub use findings::{Finding, Recorder, Report};
 pub use options::{CountAllocations, Options};
 
-use findings::Recorder;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use voussoir_core::plugin::{Card, PluginKind, cards_of};
+use voussoir_core::plugin::{Card, PluginKind, cards};
 
-/// Checks one law, solver or continuation strategy by its card. Other plug-ins have no checks.
+/// A check of plug-ins that another crate adds. It does nothing for plug-ins of other kinds.
+pub struct FurtherCheck(pub fn(&mut Recorder, &Card, &Options));
+
+voussoir_core::inventory::collect!(FurtherCheck);
+
+/// Checks one plug-in by its card.
 pub fn conform(card: &Card, options: &Options) -> Report {
     let mut recorder = Recorder::new(card);
-    // A law that panics fails; the other laws are still checked.
+    // A plug-in that panics fails; the other plug-ins are still checked.
     let solver = |recorder: &mut Recorder, card: &Card, _: &Options| lies::check(recorder, card);
-    let checks: [fn(&mut Recorder, &Card, &Options); 6] =
-        [samples::check, keys::check, joint::check, material::check, known_path::check, solver];
-    for check in checks {
+    let checks: [fn(&mut Recorder, &Card, &Options); 8] = [
+        samples::check,
+        keys::check,
+        joint::check,
+        material::check,
+        scene::check,
+        load::check,
+        known_path::check,
+        solver,
+    ];
+    let further = voussoir_core::inventory::iter::<FurtherCheck>.into_iter().map(|check| check.0);
+    for check in checks.into_iter().chain(further) {
         let ended = catch_unwind(AssertUnwindSafe(|| check(&mut recorder, card, options)));
         if let Err(panic) = ended {
             let said = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
@@ -49,8 +68,9 @@ pub fn conform(card: &Card, options: &Options) -> Report {
     recorder.report()
 }
 
-/// Checks every registered law of joints and materials. Returns one report for each, in the order of `voussoir list`.
+/// Checks every registered plug-in but solvers and strategies, whose checks take minutes. Returns one report for each, in the
+/// order of `voussoir list`.
 pub fn conform_all(options: &Options) -> Vec<Report> {
-    let kinds = [PluginKind::InterfaceLaw, PluginKind::BulkMaterial];
-    kinds.into_iter().flat_map(cards_of).map(|card| conform(card, options)).collect()
+    let slow = [PluginKind::LimitSolver, PluginKind::PathSolver, PluginKind::Continuation];
+    cards().iter().filter(|card| !slow.contains(&card.kind)).map(|card| conform(card, options)).collect()
 }

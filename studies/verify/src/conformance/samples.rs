@@ -3,51 +3,17 @@
 
 use super::findings::Recorder;
 use super::options::Options;
+use super::plug_in::PlugIn;
 use serde_json::Value as Json;
-use voussoir_core::law::{BulkMaterial, InterfaceLaw};
 use voussoir_core::plugin::{Card, Need, Parameter, PluginKind, Sample, Shape};
 use voussoir_study::config::default_table::default_of;
-
-/// A law read from its table.
-pub(super) enum Law {
-    Joint(Box<dyn InterfaceLaw>),
-    Material(Box<dyn BulkMaterial>),
-}
-
-impl Law {
-    /// Returns the law that a table configures.
-    pub(super) fn read(kind: PluginKind, table: &Json) -> Result<Law, String> {
-        let wrong = |error: serde_json::Error| error.to_string();
-        match kind {
-            PluginKind::InterfaceLaw => serde_json::from_value(table.clone()).map(Law::Joint).map_err(wrong),
-            _ => serde_json::from_value(table.clone()).map(Law::Material).map_err(wrong),
-        }
-    }
-
-    /// Returns the table of the law.
-    fn write(&self) -> Result<Json, String> {
-        match self {
-            Law::Joint(law) => serde_json::to_value(law),
-            Law::Material(law) => serde_json::to_value(law),
-        }
-        .map_err(|error| error.to_string())
-    }
-
-    /// Returns all properties of the law that need no path.
-    fn says(&self) -> String {
-        match self {
-            Law::Joint(law) => format!("{law:?} {:?} {:?}", law.facets(), law.stiffness()),
-            Law::Material(law) => format!("{law:?} {:?} {:?}", law.density(), law.elasticity()),
-        }
-    }
-}
 
 /// Returns true if a card belongs to a law.
 pub(super) fn is_law(card: &Card) -> bool {
     matches!(card.kind, PluginKind::InterfaceLaw | PluginKind::BulkMaterial)
 }
 
-/// Returns a TOML table as a law's configuration; `None` if it is not valid TOML.
+/// Returns a TOML table as a plug-in's configuration; `None` if it is not valid TOML.
 pub(super) fn table(card: &Card, keys: &str) -> Option<Json> {
     let keys: toml::Table = keys.parse().ok()?;
     let mut value = serde_json::to_value(keys).ok()?;
@@ -62,11 +28,11 @@ pub(super) fn own_check(card: &Card, table: &Json) -> Vec<(String, String)> {
     (card.check)(&keys)
 }
 
-/// Returns every sample with its law; [`check`] reports samples that give no law.
-pub(super) fn laws(card: &Card) -> Vec<(Sample, Json, Law)> {
+/// Returns every sample with its plug-in; [`check`] reports samples that cannot be read.
+pub(super) fn samples_of(card: &Card) -> Vec<(Sample, Json, PlugIn)> {
     let read = |sample: &Sample| {
         let table = table(card, sample.table)?;
-        let law = Law::read(card.kind, &table).ok()?;
+        let law = PlugIn::read(card.kind, &table).ok()?;
         Some((*sample, table, law))
     };
     card.samples.iter().filter_map(read).collect()
@@ -78,10 +44,10 @@ pub(super) fn check(recorder: &mut Recorder, card: &Card, _: &Options) {
     for parameter in card.parameters {
         documented(recorder, parameter);
     }
-    if !is_law(card) {
+    if !PlugIn::is_of(card.kind) {
         return;
     }
-    recorder.hold("card", !card.sources.is_empty(), || "names no source of its equations".into());
+    recorder.hold("card", !is_law(card) || !card.sources.is_empty(), || "names no source of its equations".into());
     recorder.hold("card", !card.samples.is_empty(), || "has no sample: nothing can be checked".into());
     for sample in card.samples {
         recorder.sample(sample);
@@ -104,7 +70,7 @@ fn check_sample(recorder: &mut Recorder, card: &Card, sample: &Sample) {
     let Some(table) = table(card, sample.table) else {
         return recorder.fail("samples", "the sample is no TOML".into());
     };
-    let law = match Law::read(card.kind, &table) {
+    let law = match PlugIn::read(card.kind, &table) {
         Ok(law) => law,
         Err(why) => return recorder.fail("samples", format!("the sample cannot be read: {why}")),
     };
@@ -114,7 +80,7 @@ fn check_sample(recorder: &mut Recorder, card: &Card, sample: &Sample) {
     for (key, _) in table.as_object().into_iter().flatten().filter(|(key, _)| *key != card.kind.tag_key()) {
         recorder.hold("samples", names.contains(&key.as_str()), || format!("{key} is not among the card's parameters"));
     }
-    let again = law.write().and_then(|written| Law::read(card.kind, &written));
+    let again = law.write().and_then(|written| PlugIn::read(card.kind, &written));
     let same = again.as_ref().is_ok_and(|again| again.says() == law.says());
     recorder.hold("round_trip", same, || {
         format!("written and read again it is {:?}, not {}", again.map(|again| again.says()), law.says())
@@ -122,7 +88,7 @@ fn check_sample(recorder: &mut Recorder, card: &Card, sample: &Sample) {
     recorder.hold("purity", law.says() == law.says(), || "two equal calls give different results".into());
     let mut unknown = table.clone();
     unknown["no_such_key"] = 1.0.into();
-    recorder.hold("unknown_keys", Law::read(card.kind, &unknown).is_err(), || {
+    recorder.hold("unknown_keys", PlugIn::read(card.kind, &unknown).is_err(), || {
         "accepts a key that it does not know: #[serde(deny_unknown_fields)] is missing".into()
     });
     for parameter in card.parameters {
@@ -135,7 +101,7 @@ fn check_need(recorder: &mut Recorder, card: &Card, table: &Json, parameter: &Pa
     let mut without = table.clone();
     without.as_object_mut().and_then(|table| table.shift_remove(parameter.name));
     match parameter.need {
-        Need::Required => recorder.hold("defaults", Law::read(card.kind, &without).is_err(), || {
+        Need::Required => recorder.hold("defaults", PlugIn::read(card.kind, &without).is_err(), || {
             format!("is read without {}, which the card calls required", parameter.name)
         }),
         Need::Default(value) => {
@@ -144,13 +110,13 @@ fn check_need(recorder: &mut Recorder, card: &Card, table: &Json, parameter: &Pa
                 with[parameter.name] = default;
                 with
             });
-            let says = |table: &Json| Law::read(card.kind, table).map(|law| law.says());
+            let says = |table: &Json| PlugIn::read(card.kind, table).map(|law| law.says());
             let [without, with] = [Some(&without), with.as_ref()].map(|table| table.map(says));
             recorder.hold("defaults", without.as_ref().is_some_and(Result::is_ok) && without == with, || {
-                format!("without {} it is another law than with the card's default {value}", parameter.name)
+                format!("without {} it is not the same as with the card's default {value}", parameter.name)
             });
         }
-        Need::Optional(_) => recorder.hold("defaults", Law::read(card.kind, &without).is_ok(), || {
+        Need::Optional(_) => recorder.hold("defaults", PlugIn::read(card.kind, &without).is_ok(), || {
             format!("is not read without {}, which the card calls optional", parameter.name)
         }),
     }

@@ -1,93 +1,30 @@
-//! Units: a joint described in other units behaves in the same way. This finds parameters with a missing or wrong unit.
+//! Units: a plug-in described in other units behaves in the same way. This finds parameters with a missing or wrong unit.
 
 use super::findings::Recorder;
+use super::plug_in::PlugIn;
 use super::random::random_step;
-use super::samples::{Law, own_check};
+use super::samples::own_check;
+use super::scaled::{LENGTH, STRESS, scaled_table, state_unit};
 use super::subject::Subject;
 use serde_json::Value as Json;
-use voussoir_core::plugin::{Card, Parameter, Quantity, Shape};
+use voussoir_core::plugin::{Card, Need, Parameter};
 use voussoir_core::random::Random;
+use voussoir_study::config::default_table::default_of;
 
-/// The other units: a length and a stress. They are powers of two, so that nothing is rounded.
-pub(super) const LENGTH: f64 = 8.0;
-const STRESS: f64 = 0.25;
-
-/// Returns the factor that converts a quantity into these units.
-fn factor(quantity: Quantity) -> f64 {
-    match quantity {
-        Quantity::Length => LENGTH,
-        Quantity::Force => STRESS * LENGTH * LENGTH,
-        Quantity::Stress => STRESS,
-        Quantity::Stiffness => STRESS / LENGTH,
-        Quantity::EnergyPerArea => STRESS * LENGTH,
-        Quantity::Ratio
-        | Quantity::Degrees
-        | Quantity::Radians
-        | Quantity::Density
-        | Quantity::Acceleration
-        | Quantity::Temperature
-        | Quantity::Time => 1.0,
-    }
-}
-
-/// Returns the factor of a state number, from the unit in its name, such as `"slip [m]"`; `None` if the name has no unit.
-pub(super) fn state_unit(name: &str) -> Option<f64> {
-    let (_, unit) = name.trim_end().strip_suffix(']')?.rsplit_once('[')?;
-    match unit {
-        "-" | "deg" | "rad" => Some(1.0),
-        "m" => Some(LENGTH),
-        "1/m" => Some(1.0 / LENGTH),
-        "Pa" | "J/m3" => Some(STRESS),
-        "Pa/m" => Some(STRESS / LENGTH),
-        "J/m2" | "N/m" => Some(STRESS * LENGTH),
-        _ => None,
-    }
-}
-
-/// Returns a value in the other units.
-fn scaled(value: &Json, shape: &Shape) -> Json {
-    match (shape, value) {
-        (Shape::Number(quantity, _), value) => value.as_f64().map_or(value.clone(), |x| (x * factor(*quantity)).into()),
-        (Shape::List { of, .. }, Json::Array(entries)) => entries.iter().map(|entry| scaled(entry, of)).collect(),
-        (Shape::Tuple(shapes), Json::Array(entries)) => {
-            entries.iter().zip(*shapes).map(|(entry, (_, shape))| scaled(entry, shape)).collect()
-        }
-        (Shape::Table(parameters), value) => scaled_table(value, parameters),
-        (Shape::Tagged { key, variants }, value) => {
-            let own = variants.iter().find(|variant| value[*key] == variant.tag);
-            own.map_or(value.clone(), |variant| scaled_table(value, variant.parameters))
-        }
-        (Shape::Map(shape), Json::Object(entries)) => {
-            entries.iter().map(|(key, entry)| (key.clone(), scaled(entry, shape))).collect()
-        }
-        (Shape::Either(shapes), value) => {
-            let fits = |shape: &&Shape| match shape {
-                Shape::Number(..) => value.is_number(),
-                Shape::List { .. } | Shape::Tuple(_) => value.is_array(),
-                Shape::Table(_) | Shape::Tagged { .. } | Shape::Map(_) => value.is_object(),
-                _ => value.is_string(),
-            };
-            shapes.iter().find(fits).map_or(value.clone(), |shape| scaled(value, shape))
-        }
-        _ => value.clone(),
-    }
-}
-
-fn scaled_table(table: &Json, parameters: &[Parameter]) -> Json {
-    let mut table = table.clone();
-    for parameter in parameters {
-        if let Some(value) = table.get(parameter.name) {
-            table[parameter.name] = scaled(value, &parameter.shape);
+/// Returns the plug-in of a sample in the other units; records a finding if it is refused.
+pub(super) fn other_units(recorder: &mut Recorder, card: &Card, table: &Json) -> Option<PlugIn> {
+    // Defaults have units too.
+    let mut whole = table.clone();
+    for Parameter { name, need, .. } in card.parameters {
+        if let (Need::Default(text), None) = (need, table.get(name))
+            && let Some(default) = default_of(text)
+        {
+            whole[*name] = default;
         }
     }
-    table
-}
-
-/// Returns the law of a sample in the other units; records a finding if there is no such law.
-pub(super) fn other_units(recorder: &mut Recorder, card: &Card, table: &Json) -> Option<Law> {
-    let table = scaled_table(table, card.parameters);
+    let table = scaled_table(&whole, card.parameters);
     let wrong = own_check(card, &table);
-    let law = Law::read(card.kind, &table);
+    let law = PlugIn::read(card.kind, &table);
     let refused = law.as_ref().err().cloned().or((!wrong.is_empty()).then(|| format!("{wrong:?}")));
     recorder.hold("units", refused.is_none(), || {
         format!(

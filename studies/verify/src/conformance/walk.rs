@@ -85,7 +85,7 @@ fn state(recorder: &mut Recorder, subject: &Subject) {
     let (size, names) = (point.state_size(), point.state_names());
     recorder.hold("state", names.len() == size, || format!("{} names for a state of {size} numbers", names.len()));
     for name in names {
-        recorder.hold("state", super::units::state_unit(name).is_some(), || {
+        recorder.hold("state", super::scaled::state_unit(name).is_some(), || {
             format!("\"{name}\" names no unit: write it as \"slip [m]\", or [-] for a pure number")
         });
     }
