@@ -7,27 +7,19 @@ use std::path::PathBuf;
 use std::{env, fs};
 use voussoir::bench::{Bench, BenchOptions, Measurement, bench, csv, error_chart, profile_chart, table};
 use voussoir::cli::processor_time;
-use voussoir_tests::known::peers_ring;
-use voussoir_tests::{Arch, Wall, compliant, crushing, elastic, friction, study};
+use voussoir_tests::study;
 
-/// Names and studies: arches (shallow, deep, strong, many voussoirs), walls, elastic, crushing, compliant, finite
-/// displacements.
-fn scenes() -> Vec<(&'static str, String)> {
-    let stone = || elastic(5e9, 0.3);
-    let finite = |arch: Arch| arch.study().replacen("[[stages]]", "kinematics = \"finite\"\n[[stages]]", 1);
-    let arch = Arch { voussoirs: 9, ..Arch::default() };
-    vec![
-        ("rigid ring of 13", peers_ring(13).study()),
-        ("rigid ring of 1000", peers_ring(1000).study()),
-        ("rigid, shallow", Arch { rise: 1.79, ..arch.clone() }.study()),
-        ("rigid, deep", Arch { rise: 4.49, ..arch.clone() }.study()),
-        ("rigid that crushes", Arch { joint: crushing(0.6, 1e7), ..arch.clone() }.study()),
-        ("wall of 10 x 10", Wall::in_bond(10, 10).study()),
-        ("compliant joints", Arch { joint: compliant(&friction(0.6), 2e10, 8e9), ..arch.clone() }.study()),
-        ("elastic", Arch { material: stone(), ..arch.clone() }.study()),
-        ("elastic that crushes", Arch { material: stone(), joint: crushing(0.6, 1e7), ..arch.clone() }.study()),
-        ("elastic, finite", finite(Arch { material: stone(), voussoirs: 7, ..arch })),
-    ]
+/// The folder of the scenes: arches (shallow, deep, strong, many voussoirs), a wall, elastic, crushing, compliant, finite
+/// displacements. `voussoir bench benches/scenes/*.toml` measures the same.
+const SCENES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes");
+
+/// Returns the studies in alphabetical order.
+fn scenes() -> Vec<(String, String)> {
+    let files = fs::read_dir(SCENES).expect("the folder of scenes").map(|entry| entry.expect("a file").path());
+    let name = |file: &PathBuf| file.file_stem().expect("a name").to_string_lossy().into_owned();
+    let mut scenes: Vec<_> = files.map(|file| (name(&file), fs::read_to_string(&file).expect("a study"))).collect();
+    scenes.sort();
+    scenes
 }
 
 fn main() {
@@ -41,7 +33,7 @@ fn main() {
     let mut all = Bench::default();
     for (name, text) in scenes().into_iter().filter(|(name, _)| name.contains(&word)) {
         eprintln!("{name}");
-        all.join(name, bench(&study(&text), &options));
+        all.join(&name, bench(&study(&text), &options));
     }
     print!("{}", table(&all));
     let folder = env::var_os("WORK_PRECISION").map_or_else(|| PathBuf::from("target/work_precision"), PathBuf::from);

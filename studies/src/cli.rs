@@ -79,9 +79,10 @@ enum Command {
     },
     /// Compare a study's variants, or all compatible solvers: processor time and error
     Bench {
-        /// Study file (TOML)
-        study: PathBuf,
-        /// Folder for bench.csv and figures (default: results/NAME/bench)
+        /// Study files (TOML); the profile counts the problems of all of them
+        #[arg(required = true)]
+        studies: Vec<PathBuf>,
+        /// Folder for bench.csv and figures (default: results/NAME/bench, of several studies results/bench)
         #[arg(long)]
         out: Option<PathBuf>,
         /// Override a key of the study
@@ -232,10 +233,10 @@ impl Command {
             Command::Merge { dirs, out, jobs, quiet } => {
                 commands::merge::merge(&dirs, &commands::merge::MergeOptions { out, jobs, quiet })
             }
-            Command::Bench { study, out, set, runs, reference, within, sweep, output, quiet } => {
+            Command::Bench { studies, out, set, runs, reference, within, sweep, output, quiet } => {
                 let arguments =
                     commands::bench::BenchArguments { out, set, runs, reference, within, sweep, output, quiet };
-                commands::bench::measure(&study, &arguments)
+                commands::bench::measure(&studies, &arguments)
             }
             Command::Serve { study, set, open, port } => commands::serve::serve(&study, &set, open, port),
             Command::New { what } => what.answer(),

@@ -151,6 +151,10 @@ fn ladders_of_settings_are_measured() {
         .filter_map(|line| line.rsplit(',').nth(3)?.parse().ok())
         .collect();
     assert!(differences.len() == 4 && differences[3] < 0.2 * differences[0], "{table}");
+    // The table is not overwritten.
+    let output = run(&["--set", path, "--sweep", "mesh", "--output", "ladders.csv"]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.code() == Some(2) && said.contains("the file exists"), "{said}");
     // A mistyped name, and settings that the solver does not have.
     let output = run(&["--sweep", "tolerence"]);
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -158,5 +162,22 @@ fn ladders_of_settings_are_measured() {
     let output = run(&["--set", "solver.solver=limit_chain", "--sweep", "first_step"]);
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(output.status.code() == Some(2) && said.contains("the solver limit_chain does not use it"), "{said}");
+    drop(std::fs::remove_dir_all(folder));
+}
+
+/// Several studies are measured together, and have one profile.
+#[test]
+fn several_studies_have_one_profile() {
+    let folder = folder("several");
+    std::fs::write(
+        folder.join("large.toml"),
+        STUDY.replace("small", "large").replace("voussoirs = 5", "voussoirs = 7"),
+    )
+    .expect("a study");
+    let output = bench(&folder, STUDY, &["large.toml", "--quiet"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = std::fs::read_to_string(folder.join("out/bench.csv")).expect("bench.csv");
+    assert!(text.contains("small") && text.contains("large"), "{text}");
+    assert!(folder.join("out/profile.svg").exists(), "two problems have a profile");
     drop(std::fs::remove_dir_all(folder));
 }

@@ -9,6 +9,7 @@ use crate::bench::{
     Bench, BenchOptions, Measurement, PARAMETERS, Reference, bench, csv, error_chart, names, profile_chart, sweep,
     sweep_csv, sweep_table, table,
 };
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use voussoir_plot::svg::as_file;
 use voussoir_study::config::diagnostic::suggest;
@@ -36,33 +37,47 @@ pub struct BenchArguments {
     pub quiet: bool,
 }
 
-/// Measures the variants of a study, or all solvers that support it, and compares them.
-pub fn measure(path: &Path, arguments: &BenchArguments) -> Outcome {
-    let loaded = files::study(path, &files::overrides(&arguments.set)?)?;
-    let Some(study) = loaded.with_cases().filter(|study| !study.cases.is_empty()) else {
-        let why = format_args!("{}: only studies with a scene and at most {HELD} cases can be benched", path.display());
-        return Err(CliError::wrong_input(why));
-    };
-    let reference = arguments.reference.as_deref().map(|word| reference(study, word)).transpose()?;
-    let told = |own: &Measurement| {
-        if !arguments.quiet {
-            let status = status_word(own.result.status);
-            complain(format_args!("{}: {status}, {} s", own.contestant, format_short(own.seconds, 3)));
+/// Measures the variants of each study, or all solvers that support it, and compares them.
+pub fn measure(paths: &[PathBuf], arguments: &BenchArguments) -> Outcome {
+    let (mut found, mut title) = (Bench::default(), "bench".to_string());
+    for path in paths {
+        let loaded = files::study(path, &files::overrides(&arguments.set)?)?;
+        let Some(study) = loaded.with_cases().filter(|study| !study.cases.is_empty()) else {
+            let why =
+                format_args!("{}: only studies with a scene and at most {HELD} cases can be benched", path.display());
+            return Err(CliError::wrong_input(why));
+        };
+        let reference = arguments.reference.as_deref().map(|word| reference(study, word)).transpose()?;
+        let told = |own: &Measurement| {
+            if !arguments.quiet {
+                let status = status_word(own.result.status);
+                complain(format_args!("{}: {status}, {} s", own.contestant, format_short(own.seconds, 3)));
+            }
+            true
+        };
+        let options = BenchOptions { runs: arguments.runs, reference, clock: &processor_time, told: &told };
+        match paths {
+            [_] if !arguments.sweep.is_empty() => return ladders(study, arguments, &options),
+            [_] => (found, title) = (bench(study, &options), study.name.clone()),
+            _ if !arguments.sweep.is_empty() => {
+                return Err(CliError::wrong_input("--sweep measures one study; give one study file"));
+            }
+            _ => found.join(&study.name, bench(study, &options)),
         }
-        true
-    };
-    let options = BenchOptions { runs: arguments.runs, reference, clock: &processor_time, told: &told };
-    if !arguments.sweep.is_empty() {
-        return ladders(study, arguments, &options);
     }
-    let found = bench(study, &options);
-    let dir = arguments.out.clone().unwrap_or_else(|| Path::new("results").join(&study.name).join("bench"));
-    let folder = ResultFolder::open(&dir)?;
-    folder.write("bench.csv", csv(&found).as_bytes())?;
-    let charts = [
-        ("bench.svg", error_chart(&study.name, &found)),
-        ("profile.svg", profile_chart(&study.name, &found, arguments.within)),
-    ];
+    let default = || match paths {
+        [_] => Path::new("results").join(&title).join("bench"),
+        _ => Path::new("results").join("bench"),
+    };
+    written(&found, &title, &arguments.out.clone().unwrap_or_else(default), arguments)
+}
+
+/// Writes the measurements and their figures.
+fn written(found: &Bench, title: &str, dir: &Path, arguments: &BenchArguments) -> Outcome {
+    let folder = ResultFolder::open(dir)?;
+    folder.write("bench.csv", csv(found).as_bytes())?;
+    let charts =
+        [("bench.svg", error_chart(title, found)), ("profile.svg", profile_chart(title, found, arguments.within))];
     for (name, chart) in charts {
         match chart {
             Some(chart) => folder.write(name, as_file(&chart).as_bytes())?,
@@ -70,8 +85,8 @@ pub fn measure(path: &Path, arguments: &BenchArguments) -> Outcome {
         }
     }
     if !arguments.quiet {
-        say(table(&found).trim_end());
-        references(&found).into_iter().for_each(say);
+        say(table(found).trim_end());
+        references(found).into_iter().for_each(say);
         say(format!("bench.csv and figures in {}", dir.display()));
     }
     let answered =
@@ -87,13 +102,19 @@ fn ladders(study: &Study, arguments: &BenchArguments, options: &BenchOptions) ->
         found.ok_or_else(|| CliError::wrong_input(format_args!("--sweep {name}: not a setting; {}", help())))
     };
     let parameters = arguments.sweep.iter().map(known).collect::<Result<Vec<_>, _>>()?;
+    if let Some(file) = arguments.output.as_ref().filter(|file| file.exists()) {
+        let why = format_args!("--output {}: the file exists; nothing is overwritten", file.display());
+        return Err(CliError::wrong_input(why));
+    }
     let found = sweep(study, &parameters, options);
     if found.rungs.is_empty() {
         let reasons = found.refused.iter().map(|(_, name, why)| format!("--sweep {name}: {why}"));
         return Err(CliError::of_lines(ErrorKind::WrongInput, reasons));
     }
     if let Some(file) = &arguments.output {
-        std::fs::write(file, sweep_csv(&found)).map_err(|error| CliError::unwritten(file, error))?;
+        let new = std::fs::File::create_new(file);
+        new.and_then(|mut new| new.write_all(sweep_csv(&found).as_bytes()))
+            .map_err(|error| CliError::unwritten(file, error))?;
     }
     if !arguments.quiet {
         say(sweep_table(&found).trim_end());
