@@ -79,10 +79,10 @@ enum Command {
     },
     /// Compare a study's variants, or all compatible solvers: processor time and error
     Bench {
-        /// Study files (TOML); the profile counts the problems of all of them
+        /// Study files (TOML), measured together
         #[arg(required = true)]
         studies: Vec<PathBuf>,
-        /// Folder for bench.csv and figures (default: results/NAME/bench, of several studies results/bench)
+        /// Folder for bench.csv and figures (default: results/NAME/bench)
         #[arg(long)]
         out: Option<PathBuf>,
         /// Override a key of the study
