@@ -49,6 +49,7 @@ impl LimitSolver for Fussy {
             feasible_interval: None,
             non_associated: None,
             counters: Counters::new(),
+            outputs: Default::default(),
             notes: Vec::new(),
         }
     }

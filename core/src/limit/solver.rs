@@ -94,6 +94,8 @@ pub struct LimitAnswer {
     pub non_associated: Option<NonAssociated>,
     /// Work done.
     pub counters: Counters,
+    /// Outputs that the card of the solver declares, by name.
+    pub outputs: BTreeMap<String, f64>,
     /// Notes for the user.
     pub notes: Vec<String>,
 }

@@ -6,6 +6,7 @@ use super::problem::PathProblem;
 use super::state::{PathEvent, PathState};
 use super::witness::Witness;
 use crate::limit::{Counters, Status};
+use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -43,6 +44,8 @@ pub struct PathAnswer {
     pub witnesses: Vec<Witness>,
     /// Counts of work done.
     pub counters: Counters,
+    /// Outputs that the card of the solver declares, by name.
+    pub outputs: BTreeMap<String, f64>,
     /// Notes for the user.
     pub notes: Vec<String>,
 }

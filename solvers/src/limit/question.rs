@@ -27,6 +27,7 @@ pub fn answer_by(problem: &LimitProblem, question: LimitQuestion, engine: &mut d
         feasible_interval: None,
         non_associated: None,
         counters: Counters::new(),
+        outputs: Default::default(),
         notes: Vec::new(),
     };
     let base = combined(&problem.fixed, &problem.varying, start);

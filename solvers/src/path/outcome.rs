@@ -91,6 +91,7 @@ impl Outcome {
             events,
             witnesses,
             counters,
+            outputs: Default::default(),
             notes,
         }
     }

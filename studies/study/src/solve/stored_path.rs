@@ -136,6 +136,7 @@ pub(super) fn answer(path: &StoredPath, states: &[PathState]) -> Result<PathAnsw
         events: Vec::new(),
         witnesses: path.witnesses.iter().map(witness).collect::<Result<_, _>>()?,
         counters: Counters::new(),
+        outputs: Default::default(),
         notes: Vec::new(),
     })
 }
