@@ -6,7 +6,7 @@ use std::sync::Arc;
 use voussoir_core::law::{
     Effect, InterfaceLaw, InterfaceResponse, PointContext, TractionPoint, UpdateBranch, UpdateFailure,
 };
-use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, PluginKind, Property, Sample};
+use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, Output, PluginKind, Property, Sample};
 
 /// A mortar joint that creeps.
 #[derive(Debug, Clone, Keys)]
@@ -193,7 +193,20 @@ impl InterfaceResponse for CreepingResponse {
         let branch = if slides { SLIDING } else { UpdateBranch::ELASTIC };
         Ok(TractionPoint { traction, tangent, branch, stored, dissipated, supplied: 0.0 })
     }
+
+    fn outputs(&self, _: [f64; 2], _: &PointContext, state: &[f64], _: &TractionPoint, values: &mut [f64]) {
+        values[0] = -state[0];
+        values[1] = state[1];
+    }
 }
+
+const OUTPUTS: &[Output] = &[
+    Output::point("creep_closing", "m", "part of the closing of the joint that is creep"),
+    Output::point("creep_slip", "m", "part of the tangential gap that is creep"),
+    Output::joint("mean_creep_closing", "m", "mean over the length of the joint").mean("creep_closing"),
+    Output::joint("mean_creep_slip", "m", "mean over the length of the joint").mean("creep_slip"),
+    Output::case("greatest_creep_closing", "m", "greatest closing of all joints by creep").greatest("creep_closing"),
+];
 
 /// Without duration the joint is elastic with dry friction.
 const KNOWN_PATHS: &[KnownPath] = &[KnownPath {
@@ -214,6 +227,7 @@ voussoir_core::inventory::submit! {
             Sample::new("friction = 0.6\nnormal_stiffness = 1e10\nshear_stiffness = 5e9\ncreep_coefficient = 2.0\nretardation_time = 1e6", 1e-4, &["elastic", "sliding"]),
         ],
         known_paths: KNOWN_PATHS,
+        outputs: OUTPUTS,
         sources: &[
             "Taylor, Pister & Goudreau 1970, Int. J. Numer. Meth. Engng 2 (exact update of linear viscoelasticity)",
             "Bazant & Wittmann 1982, Creep and Shrinkage in Concrete Structures, Wiley (creep coefficient)",

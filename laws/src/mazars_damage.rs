@@ -7,7 +7,7 @@ use std::sync::Arc;
 use voussoir_core::law::{
     BulkMaterial, Effect, Elasticity, StressPoint, StressUpdate, UpdateBranch, UpdateContext, UpdateFailure, Voigt,
 };
-use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, PluginKind, Property, Sample};
+use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, Output, PluginKind, Property, Sample};
 
 /// Isotropic damage with exponential softening.
 #[derive(Debug, Clone, Keys)]
@@ -114,7 +114,18 @@ impl StressUpdate for DamageUpdate {
             dissipated: step.growth * energy,
         })
     }
+
+    fn outputs(&self, _: &Voigt, context: &UpdateContext, state: &[f64], _: &StressPoint, values: &mut [f64]) {
+        values[0] = self.growth.step(0.0, state[0], context.length).damage;
+    }
 }
+
+const OUTPUTS: &[Output] = &[
+    Output::point("damage", "-", "D: 0 if the material is sound, 1 if it has no stiffness"),
+    Output::block("block_damage", "-", "greatest damage in the block").greatest("damage"),
+    Output::block("damaged_area", "m2", "integral of the damage over the block").integral("damage"),
+    Output::case("greatest_damage", "-", "greatest damage in all blocks").greatest("damage"),
+];
 
 /// E = 10 GPa, ν = 0, element of 1 m: κ₀ = 1e-4 and tail = G_f/(ℓ f_t) − κ₀/2 = 1e-4. Torn to half the tail, unloaded along the
 /// secant, compressed with the damaged stiffness.
@@ -141,6 +152,7 @@ voussoir_core::inventory::submit! {
             Sample::new("young_modulus = 1e10\npoisson_ratio = 0.2\ndensity = 2200.0\ntensile_strength = 1e6\nfracture_energy = 200.0", 2e-4, &["elastic", "damage", "unloading"]),
         ],
         known_paths: &[KNOWN_PATH],
+        outputs: OUTPUTS,
         sources: &[
             "Mazars & Pijaudier-Cabot 1989, J. Eng. Mech. 115 (equivalent strain)",
             "Bažant & Oh 1983, Mater. Struct. 16 (crack band: softening by element length)",

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use voussoir_core::law::{
     Effect, Fields, InterfaceLaw, InterfaceResponse, PointContext, TractionPoint, UpdateBranch, UpdateFailure,
 };
-use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, PluginKind, Property, Sample};
+use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, Output, PluginKind, Property, Sample};
 
 /// A dry joint with water in its open part.
 #[derive(Debug, Clone, Keys)]
@@ -130,7 +130,21 @@ impl InterfaceResponse for UpliftResponse {
         let branch = if slides { SLIDING } else { UpdateBranch::ELASTIC };
         Ok(TractionPoint { traction, tangent, branch, stored, dissipated: limit * slipped.abs(), supplied })
     }
+
+    fn outputs(&self, _: [f64; 2], _: &PointContext, _: &[f64], point: &TractionPoint, values: &mut [f64]) {
+        let open = point.branch == UpdateBranch::OPEN;
+        values[0] = if open { 1.0 } else { 0.0 };
+        values[1] = if open { point.traction[0] } else { 0.0 };
+    }
 }
+
+const OUTPUTS: &[Output] = &[
+    Output::point("open", "-", "1 if water can enter the point, otherwise 0"),
+    Output::point("water_pressure", "Pa", "pressure of the water in an open point; 0 if it is closed"),
+    Output::joint("crack_length", "m", "length of the open part of the joint").integral("open"),
+    Output::joint("water_force", "N/m", "force of the water on the open part, per width").integral("water_pressure"),
+    Output::case("total_crack_length", "m", "length of the open parts of all joints").integral("open"),
+];
 
 /// Without water the joint is dry friction.
 const KNOWN_PATHS: &[KnownPath] = &[KnownPath {
@@ -151,6 +165,7 @@ voussoir_core::inventory::submit! {
             Sample::new("friction = 0.6\nnormal_stiffness = 1e10\nshear_stiffness = 5e9", 1e-4, &["elastic", "sliding"]),
         ],
         known_paths: KNOWN_PATHS,
+        outputs: OUTPUTS,
         sources: &[
             "ICOLD 1993, Bulletin 88, Rock Foundations for Dams (full pressure in a crack)",
             "Terzaghi 1943, Theoretical Soil Mechanics, Wiley (effective pressure)",

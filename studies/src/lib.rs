@@ -121,10 +121,11 @@ pub mod results {
         BranchEntry, Build, CaseLabel, CaseResult, Comparison, ComparisonCell, ComparisonRow, DisplacementEntry,
         EndProof, EventEntry, FORMAT, FieldEntry, FillEntry, FinishedCases, FiniteEntry, FollowedTo, HEAD,
         IntervalEntry, KindEntries, LimitPointEntry, LoadEntry, LoadFactorError, LoadOrigin, MAX_SHOWN, MapAxes,
-        MotionEntry, NextState, NonAssociatedAnswer, OptimumEntry, Origin, PathRecord, PlaceEntry, PluginCrate, Proof,
-        ProofFields, RESULTS_SCHEMA, SensitivityEntry, StabilityEntry, StageResult, StateEntry, StoredEntry,
-        StoredOutline, StudyResults, TakeCases, Totals, WorstEntry, YieldedEntry, carried, head, inelastic_state,
-        least_of, load_rank, other_limit_point, sealed_line, stored_path, this_program, without_origin, words,
+        MotionEntry, NextState, NonAssociatedAnswer, OptimumEntry, Origin, OutputColumn, OutputEntry, PathRecord,
+        PlaceEntry, PluginCrate, Proof, ProofFields, RESULTS_SCHEMA, SensitivityEntry, StabilityEntry, StageResult,
+        StateEntry, StoredEntry, StoredOutline, StudyResults, TakeCases, Totals, WorstEntry, YieldedEntry, carried,
+        head, inelastic_state, least_of, load_rank, other_limit_point, sealed_line, stored_path, this_program,
+        without_origin, words,
     };
 }
 

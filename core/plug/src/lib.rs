@@ -80,8 +80,9 @@ pub mod plugin {
     pub use voussoir_core::plugin::keys;
     pub use voussoir_core::plugin::keys::{KeyValue, Keys};
     pub use voussoir_core::plugin::{
-        Capability, Card, Diagnostic, KnownPath, Need, Package, Parameter, PluginKind, Property, Quantity, Range,
-        Requirement, STANDARD_GRAVITY, Sample, Shape, Variant, audit, card, cards, cards_of, check_as, nearest,
+        Capability, Card, Diagnostic, KnownPath, Need, Output, OutputOf, OutputRule, Package, Parameter, PluginKind,
+        Property, Quantity, Range, Requirement, STANDARD_GRAVITY, Sample, Shape, Variant, audit, card, cards, cards_of,
+        check_as, nearest,
     };
     /// Declares the keys of a table; the trait [`Keys`](trait@Keys) describes the attributes.
     pub use voussoir_keys_derive::PlugKeys as Keys;
@@ -93,7 +94,7 @@ pub use voussoir_core::{limit, model, path};
 pub mod prelude {
     pub use crate::law::*;
     pub use crate::plugin::{
-        Capability, Card, Diagnostic, Keys, KnownPath, PluginKind, Property, Quantity, Range, Sample, card,
+        Capability, Card, Diagnostic, Keys, KnownPath, Output, PluginKind, Property, Quantity, Range, Sample, card,
     };
     pub use crate::{inventory, typetag};
 }

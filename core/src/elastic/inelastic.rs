@@ -26,7 +26,7 @@
 //! and the middle point follows with half of its strain, so that 13/18 of the element take part. Softening is therefore
 //! only for elements of order 1.
 
-use super::element::strain_operators;
+use super::element::{bilinear, strain_operators};
 use super::mesh::Mesh;
 use super::shape::{Place, Placement, Response, Shape, at_places};
 use super::stress::Recovered;
@@ -412,6 +412,37 @@ impl InelasticBody {
         let stress = sums.into_iter().map(|(sum, count)| sum.map(|s| s / count)).collect();
         let recovered = Recovered::with(mesh, local, stress, element_stress);
         Ok(recovered.placed(self.origin, self.rotation, self.size, 1.0, [0.0; 3]))
+    }
+
+    /// Returns the outputs of the law at all Gauss points: position in world axes of the undeformed placement \[m\], area
+    /// \[m²\], and `count` values.
+    ///
+    /// # Errors
+    /// If an update fails or the numbers do not fit the mesh.
+    pub fn outputs(
+        &self,
+        displacement: &[f64],
+        history: &[f64],
+        count: usize,
+    ) -> Result<Vec<([f64; 2], f64, Vec<f64>)>, String> {
+        let size = self.state_size();
+        if displacement.len() != 2 * self.nodes() || history.len() != self.gauss_points() * size {
+            return Err("the state of a block does not fit its mesh".into());
+        }
+        let (strains, mut found) = (self.strains_at(displacement), Vec::new());
+        for (element, operators) in self.strains.operators.iter().enumerate() {
+            let (corners, context) = (self.shape.mesh.corners(element), self.context(element));
+            for ((_, weight), point) in operators.iter().zip(&self.shape.reference.points) {
+                let (index, mut values) = (found.len(), vec![f64::NAN; count]);
+                let state = &history[index * size..(index + 1) * size];
+                self.update
+                    .outputs(&strains[index], &context, state, &mut values)
+                    .map_err(|wrong| format!("the outputs of a Gauss point cannot be found: {wrong}"))?;
+                let place = self.origin + self.rotation * bilinear(&corners, point.place).0 * self.size;
+                found.push((place.into(), weight * self.size * self.size, values));
+            }
+        }
+        Ok(found)
     }
 
     /// Returns the mean over each element of a quantity at its Gauss points.

@@ -134,6 +134,26 @@ impl PlanarUpdate {
         self.law.inelastic_strain(&[xx, yy, zz, xy, 0.0, 0.0], memory).map(|strain| [0, 1, 2, 3].map(|i| strain[i]))
     }
 
+    /// Writes the outputs of the law at a strain, for a state that this strain does not change; see
+    /// [`StressUpdate::outputs`].
+    ///
+    /// # Errors
+    /// The law's failure.
+    pub fn outputs(
+        &self,
+        strain: &[f64; 3],
+        context: &UpdateContext,
+        state: &[f64],
+        values: &mut [f64],
+    ) -> Result<(), UpdateFailure> {
+        let (own, mut new) = (self.law.state_size(), state.to_vec());
+        let across = self.update_point(strain, context, state, &mut new)?.strain_across;
+        let strain = in_space(strain, across);
+        let point = self.law.update_point(&strain, context, &state[..own], &mut new[..own])?;
+        self.law.outputs(&strain, context, &new[..own], &point, values);
+        Ok(())
+    }
+
     /// Updates one point; see [`StressUpdate::update_point`].
     ///
     /// # Errors

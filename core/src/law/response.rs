@@ -65,6 +65,12 @@ pub trait InterfaceResponse: Debug + Send + Sync {
         new: &mut [f64],
     ) -> Result<TractionPoint, UpdateFailure>;
 
+    /// Writes the outputs of points that the card of the law declares, in their order. They belong to the end of a step: its
+    /// gap, its context, the state and the result of the update there. A pure function, like the update.
+    fn outputs(&self, gap: [f64; 2], context: &PointContext, state: &[f64], point: &TractionPoint, values: &mut [f64]) {
+        let _ = (gap, context, state, point, values);
+    }
+
     /// Updates a group of points: one gap, one context and one result per point; the states of the points follow one
     /// another.
     fn respond(

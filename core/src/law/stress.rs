@@ -76,6 +76,12 @@ pub trait StressUpdate: Debug + Send + Sync {
         None
     }
 
+    /// Writes the outputs of points that the card of the material declares, in their order. They belong to the end of a step:
+    /// its strain, its context, the state and the result of the update there. A pure function, like the update.
+    fn outputs(&self, strain: &Voigt, context: &UpdateContext, state: &[f64], point: &StressPoint, values: &mut [f64]) {
+        let _ = (strain, context, state, point, values);
+    }
+
     /// Updates a group of points: one strain, context and result per point; the states of the points follow one
     /// another.
     ///

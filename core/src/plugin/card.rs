@@ -5,6 +5,7 @@
 //! conformance tests read only cards.
 
 use super::keys::Keys;
+use super::output::{self, Output, OutputOf};
 use super::registered::names_with_cards;
 use super::schema::{Parameter, PluginKind};
 use std::sync::OnceLock;
@@ -147,6 +148,8 @@ pub struct Card {
     pub known_paths: &'static [KnownPath],
     /// Characteristic length of the point that follows the known paths \[m\], over which a softening material localises.
     pub known_path_length: f64,
+    /// For laws, materials and solvers: quantities that they compute at the end of a case.
+    pub outputs: &'static [Output],
     /// For solvers: `auto` chooses the least cost among those that support the case; `None` if a solver is used only by name.
     pub cost: Option<u32>,
     /// Sources of its equations.
@@ -175,6 +178,7 @@ impl Card {
         samples: &[],
         known_paths: &[],
         known_path_length: 1.0,
+        outputs: &[],
         cost: None,
         sources: &[],
         file: "",
@@ -196,6 +200,11 @@ impl Card {
     /// Returns true if it meets a requirement of a solver; requirements on other kinds of plug-in are always met.
     pub fn meets(&self, requirement: Requirement) -> bool {
         requirement.iter().all(|one| one.of != self.kind) || requirement.iter().any(|one| self.offers(*one))
+    }
+
+    /// Iterates over its outputs of points, in the order in which a law writes their values.
+    pub fn point_outputs(&self) -> impl Iterator<Item = &'static Output> {
+        self.outputs.iter().filter(|output| output.of == OutputOf::Point)
     }
 
     /// Returns true if it claims a property.
@@ -268,7 +277,8 @@ pub fn nearest<'a>(wrong: &str, names: impl IntoIterator<Item = &'a str>) -> Opt
 /// Returns the mistakes in the registry; an empty list if all entries are valid:
 /// - a kind without plug-ins (a crate that no source names registers nothing)
 /// - two plug-ins of one kind with the same tag
-/// - a card without a type, a type without a card, or a type whose name is not the tag of its card.
+/// - a card without a type, a type without a card, or a type whose name is not the tag of its card
+/// - an output with a name that is taken, an unknown unit, or a rule that does not fit.
 pub fn audit() -> Vec<String> {
     audit_of(cards(), &names_with_cards())
 }
@@ -291,6 +301,7 @@ fn audit_of(all: &[&Card], readers: &[(PluginKind, Vec<&str>)]) -> Vec<String> {
             ));
         }
     }
+    wrong.extend(all.iter().flat_map(|card| output::mistakes(card)));
     for (kind, names) in readers {
         let cards: Vec<&Card> = all.iter().copied().filter(|card| card.kind == *kind).collect();
         wrong.extend(unmatched(*kind, &cards, names));

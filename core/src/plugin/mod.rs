@@ -3,6 +3,7 @@
 mod card;
 mod diagnostic;
 pub mod keys;
+mod output;
 mod registered;
 mod schema;
 mod units;
@@ -13,6 +14,7 @@ pub use self::card::{
 };
 pub use self::diagnostic::Diagnostic;
 pub use self::keys::{KeyValue, Keys};
+pub use self::output::{FIXED_COLUMNS, Output, OutputOf, OutputRule, unit_powers};
 pub use self::registered::{Registered, WithoutCard};
 pub use self::schema::{Need, Parameter, PluginKind, Range, Shape, Variant};
 pub use self::units::{Quantity, STANDARD_GRAVITY};

@@ -6,6 +6,8 @@ use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use voussoir::core::plugin::OutputOf;
+use voussoir::results::{CaseResult, OutputColumn};
 use voussoir::study::{Study, StudyFile};
 use voussoir::writers::columns::{Cell, CellKind, Column, Labels};
 
@@ -70,12 +72,14 @@ impl Sweep {
         }
         let (swept, keys) = (self.study.keys(), self.study.swept_keys());
         let variants = !self.study.outline.variants.is_empty();
-        let columns = Labels { swept: &swept, keys: &keys, variants, scenes: false }.with_results();
+        let columns = Labels { swept: &swept, keys: &keys, variants, scenes: false, outputs: &[] }.with_results();
         let mut rows: Vec<Vec<Cell>> = vec![Vec::new(); columns.len()];
         let mut hashes = Vec::new();
+        let mut outputs: Vec<(OutputColumn, Vec<f64>)> = Vec::new();
         interruptible(py, progress, |told: &Told| {
             self.study.solve(&ids, jobs, told, &mut |case| {
                 rows.iter_mut().zip(&columns).for_each(|(cells, column)| cells.push(column.cell(&case)));
+                add_outputs(&mut outputs, &case, hashes.len());
                 hashes.push(case.label.case_hash);
             });
         })?;
@@ -83,8 +87,27 @@ impl Sweep {
         for (column, cells) in columns.iter().zip(rows) {
             dict.set_item(name(column), values(py, column.kind, cells)?)?;
         }
+        for (column, mut cells) in outputs {
+            cells.resize(hashes.len(), f64::NAN);
+            // With the tag, so that the name does not depend on the other cases of the chunk.
+            dict.set_item(format!("{}.{}", column.plugin, column.name), cells)?;
+        }
         dict.set_item("case_hash", hashes)?;
         Ok(dict)
+    }
+}
+
+/// Adds the outputs of a case that `before` cases precede. Cases without a value have NaN.
+fn add_outputs(outputs: &mut Vec<(OutputColumn, Vec<f64>)>, case: &CaseResult, before: usize) {
+    for entry in case.outputs.iter().filter(|entry| entry.of == OutputOf::Case) {
+        let column = OutputColumn::of(entry);
+        let place = outputs.iter().position(|(own, _)| *own == column).unwrap_or_else(|| {
+            outputs.push((column, Vec::new()));
+            outputs.len() - 1
+        });
+        let cells = &mut outputs[place].1;
+        cells.resize(before, f64::NAN);
+        cells.push(entry.values.first().copied().flatten().unwrap_or(f64::NAN));
     }
 }
 

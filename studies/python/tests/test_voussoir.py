@@ -79,6 +79,46 @@ def test_arrays():
         path.strength
 
 
+def standing(*factors):
+    """A block of 4 m x 6 m on a joint into which water enters, pushed by factors of a thrust."""
+    corners = [[0.0, 0.0], [4.0, 0.0], [4.0, 6.0], [0.0, 6.0]]
+    thrust = {"kind": "point", "block": "dam", "point": [0.0, 2.0], "force": ["180 kN", 0.0]}
+    return {
+        "name": "dam",
+        "scene": {
+            "scene": "blocks",
+            "width": 1.0,
+            "material": "concrete",
+            "joint": "base",
+            "mesh": {"elements": [1, 20], "order": 2},
+            "blocks": [
+                {"name": "rock", "vertices": [[-1.0, -1.0], [5.0, -1.0], [5.0, 0.0], [-1.0, 0.0]], "fixed": True},
+                {"name": "dam", "vertices": corners},
+            ],
+        },
+        "materials": {"concrete": {"law": "rigid", "density": 2400.0}},
+        "joints": {
+            "base": {"law": "uplift_joint", "friction": 0.9, "normal_stiffness": "10 GPa/m", "shear_stiffness": "4 GPa/m"}
+        },
+        "stages": [
+            {"name": "weight", "gravity": 10.0, "fields": {"water_level": "0 m"}},
+            {"name": "water", "fields": {"water_level": "6 m"}, "loads": [thrust]},
+        ],
+        "sweep": {"stages.1.factor": {"list": list(factors)}},
+    }
+
+
+def test_outputs_of_plug_ins_are_arrays_and_columns():
+    results = voussoir.run(standing(0.5, 1.0))
+    lengths = [case.outputs["crack_length"] for case in results]
+    assert [length.shape for length in lengths] == [(1,), (1,)] and 0 <= lengths[0][0] < lengths[1][0] < 4
+    assert set(np.unique(results[1].outputs["open"])) == {0.0, 1.0}
+    assert results.df["total_crack_length [m]"].tolist() == [float(length[0]) for length in lengths]
+    table = voussoir.sweep(standing(0.5, 1.0))
+    assert list(table["uplift_joint.total_crack_length"]) == [float(length[0]) for length in lengths]
+    assert voussoir.run(ARCH)[0].outputs == {}
+
+
 def test_mistakes_are_exceptions_with_text_and_place(tmp_path):
     path = tmp_path / "wrong.toml"
     path.write_bytes(voussoir.run(ARCH).files["resolved.toml"].replace(b"friction", b"frictoin"))

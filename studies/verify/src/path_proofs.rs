@@ -9,9 +9,9 @@ use voussoir_study::cases::proved_case;
 use voussoir_study::caught::caught;
 use voussoir_study::checks::Agreement;
 use voussoir_study::checks::{meaning, misfits};
-use voussoir_study::results::CaseResult;
 use voussoir_study::results::sealed_line::case_in;
 use voussoir_study::results::stored_path::{PATH_PROOFS, PathLine, StoredPath};
+use voussoir_study::results::{CaseResult, OutputEntry};
 use voussoir_study::study::Case;
 
 /// Greatest length of a line.
@@ -184,10 +184,14 @@ pub fn check_stored_path(case: &Case, result: &CaseResult, path: &StoredPath) ->
     }
 }
 
-/// Copies the parts of a stored result that no states prove: events, branches, stability, the uniqueness of a
+/// Copies the parts of a stored result that no states prove: events, branches, outputs of the solver, stability, the uniqueness of a
 /// mechanism, and the rate at a limit point of finite displacements.
 fn take_unproved(again: &mut CaseResult, stored: &CaseResult, finite: bool) {
     again.counters.clone_from(&stored.counters);
+    let of_solver = |entry: &OutputEntry| !entry.is_of_law();
+    let unproved = stored.outputs.iter().filter(|own| of_solver(own)).cloned();
+    let proved = again.outputs.iter().filter(|own| !of_solver(own)).cloned();
+    again.outputs = unproved.chain(proved).collect();
     again.path.events.clone_from(&stored.path.events);
     again.path.branches.clone_from(&stored.path.branches);
     for (own, stored) in again.path.limit_points.iter_mut().zip(&stored.path.limit_points) {

@@ -10,6 +10,7 @@ mod gates;
 mod labels;
 mod left_out;
 mod lower_bound;
+mod outputs;
 mod pages;
 mod path_proofs;
 mod report;

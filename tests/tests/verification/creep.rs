@@ -107,6 +107,18 @@ fn a_constant_load_creeps() {
     }
 }
 
+/// Under a constant load the outputs give the creep p/k φ (1 − e^(−t/τ)), which is the same everywhere.
+#[test]
+fn the_outputs_give_the_creep() {
+    let result = confirmed(STANDING);
+    let exact = PRESSURE / STIFFNESS * CREEP * (1.0 - (-1.5_f64).exp());
+    for name in ["creep_closing", "mean_creep_closing", "greatest_creep_closing"] {
+        let entry = result.outputs.iter().find(|entry| entry.name == name).expect("an output");
+        assert!(!entry.values.is_empty() && entry.note().is_none());
+        entry.values.iter().flatten().for_each(|value| assert_close(*value, exact, 5e-5));
+    }
+}
+
 /// With finite displacements the same block creeps by the same amount.
 #[test]
 fn finite_displacements_give_the_same_creep() {

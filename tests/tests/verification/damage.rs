@@ -64,6 +64,30 @@ fn a_damaged_block_unloads_through_the_origin() {
     found.iter().for_each(|own| assert_close(*own, last, 1e-8));
 }
 
+/// In a bar under uniform tension the output is D of the law at its strain. Damage of the bent block is least at mid-width, and its
+/// greatest value in the block is the greatest one of its points.
+#[test]
+fn the_outputs_give_the_damage() {
+    let result = answered(PULL);
+    let of = |name: &str| result.outputs.iter().find(|entry| entry.name == name).expect("an output");
+    let (points, block, case) = (of("damage"), of("block_damage"), of("greatest_damage"));
+    let values: Vec<f64> = points.values.iter().map(|value| value.expect("a number")).collect();
+    let greatest = values.iter().copied().fold(0.0, f64::max);
+    assert!(values.iter().all(|own| (0.0..1.0).contains(own)) && greatest > 0.0, "{values:?}");
+    assert_eq!((block.places.as_slice(), block.values.as_slice()), (&[1][..], &[Some(greatest)][..]));
+    assert_eq!(case.values, [Some(greatest)]);
+    // D = 1 − κ₀/κ exp(−(κ − κ₀)/t) at the greatest κ that is stored.
+    let (onset, length) = (1e6 / 1e10, 0.25);
+    let tail = 20_000.0 / (length * 1e6) - 0.5 * onset;
+    let kappa = result.path.yielded.iter().flat_map(|entry| &entry.points).map(|point| point.3[0]).fold(0.0, f64::max);
+    assert_close(greatest, 1.0 - onset / kappa * (-(kappa - onset) / tail).exp(), 1e-12);
+    // Points are inside the block, and their areas add up to it.
+    assert!(points.positions.iter().flatten().all(|x| (0.0..1.0).contains(x)));
+    let (area, mean) =
+        (of("damaged_area").values[0].expect("a number"), values.iter().sum::<f64>() / values.len() as f64);
+    assert!(area > 0.0 && area < greatest && mean < greatest, "{area} {mean}");
+}
+
 /// The same holds if cracks can close and the block can crush far above these stresses, with another element order, in plane
 /// strain, and on another mesh.
 #[test]

@@ -98,6 +98,51 @@ fn the_base_opens_to_the_length_of_the_closed_form() {
     assert!((closed(&result) - length).abs() < 1.5 * BASE / 200.0, "{} instead of {length}", closed(&result));
 }
 
+/// Returns the values of an output.
+fn output(result: &CaseResult, name: &str) -> Vec<f64> {
+    let entry = result.outputs.iter().find(|entry| entry.name == name).expect("an output");
+    entry.values.iter().map(|value| value.expect("a number")).collect()
+}
+
+/// The outputs of the law give the length of the crack and the force of the water in it.
+#[test]
+fn the_outputs_give_the_crack_and_its_water() {
+    let result = confirmed(DAM);
+    let (closed, _) = by_hand(WATER * LEVEL);
+    let (crack, water) = (BASE - closed, WATER * LEVEL);
+    let spacing = BASE / 200.0;
+    let [length] = output(&result, "crack_length")[..] else { panic!("one joint") };
+    assert!((length - crack).abs() < spacing, "{length} instead of {crack}");
+    assert_eq!(output(&result, "total_crack_length"), [length]);
+    let [force] = output(&result, "water_force")[..] else { panic!("one joint") };
+    assert_close(force, water * length, 1e-9);
+    let pressures = output(&result, "water_pressure");
+    assert_eq!(pressures.len(), result.proof.field.as_ref().expect("a field").len());
+    assert!(pressures.iter().all(|own| *own == 0.0 || (own - water).abs() < 1e-6 * water));
+}
+
+/// The outputs follow from the stored state: a changed value is found.
+#[test]
+fn a_changed_output_is_found() {
+    let (study, result) = (study(DAM), confirmed(DAM));
+    let mut findings = |change: &dyn Fn(&mut CaseResult)| {
+        let mut changed = result.clone();
+        change(&mut changed);
+        let found = verify(&study, &study.results("test", vec![changed]));
+        found.first().map(|(_, why)| why.clone()).unwrap_or_default()
+    };
+    let length = result.outputs.iter().position(|entry| entry.name == "crack_length").expect("an output");
+    let longer = findings(&|result| result.outputs[length].values[0] = Some(9.0));
+    assert!(
+        longer.starts_with("output \"crack_length\" of uplift_joint, value 0 is 9.0, but the stored state gives"),
+        "{longer}"
+    );
+    let gone = findings(&|result| drop(result.outputs.remove(length)));
+    assert!(gone.starts_with("the list of names in outputs is"), "{gone}");
+    let elsewhere = findings(&|result| result.outputs[length].places[0] = 7);
+    assert_eq!(elsewhere, "output \"crack_length\": a place is not in the scene");
+}
+
 /// Without the field no water enters: the same thrust opens the base less.
 #[test]
 fn a_dry_base_opens_less() {

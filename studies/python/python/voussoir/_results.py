@@ -132,6 +132,15 @@ class Case:
         return None if found is None else _array([[np.nan, np.nan] if point is None else point for point in found])
 
     @property
+    def outputs(self) -> dict[str, Array]:
+        """Outputs of plug-ins by name, with NaN for null: one value for each point, joint or block, or one value of the case. If two
+        plug-ins have an output of the same name, the key is "TAG.NAME". Places and positions are in `raw["outputs"]`."""
+        entries = self.raw.get("outputs", [])
+        names = [entry["name"] for entry in entries]
+        key = (entry["name"] if names.count(entry["name"]) == 1 else f"{entry['plugin']}.{entry['name']}" for entry in entries)
+        return {name: _array(entry["values"]) for name, entry in zip(key, entries)}
+
+    @property
     def rows(self) -> Array | None:
         """For a driven point: one row for each step; `columns` contains the names."""
         found = self.raw.get("rows")

@@ -79,7 +79,8 @@ def sweep(
     chunk: int | None = None,
     progress: Callable[[int, int], Any] | None = None,
 ) -> Table:
-    """Solves every case of a study and returns a row for each: parameters, status, load factor, bounds, mechanism.
+    """Solves every case of a study and returns a row for each: parameters, status, load factor, bounds, mechanism. Outputs of the
+    case that plug-ins declare have columns "TAG.NAME".
 
     Forces and motions are not stored, so that a hundred thousand cases fit into memory; `voussoir.run(study, cases=[id])`
     returns them for one case.
@@ -122,8 +123,10 @@ def _joined(parts: list[dict[str, Any]]) -> Table:
     table = Table()
     for name in names:
         values: list[Any] = []
+        # A part without a column of numbers has NaN.
+        missing = math.nan if any(isinstance(value, float) for part in parts for value in part.get(name, ())) else None
         for part in parts:
-            values.extend(part[name] if name in part else [None] * len(part["id"]))
+            values.extend(part[name] if name in part else [missing] * len(part["id"]))
         if values and isinstance(values[0], (bool, int, float)) and all(value is not None for value in values):
             table[name] = np.array(values)
         else:

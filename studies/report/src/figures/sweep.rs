@@ -3,11 +3,12 @@
 use super::map::load_factor_maps;
 use crate::output::StudyOutput;
 use voussoir_core::limit::Status;
+use voussoir_core::plugin::OutputOf;
 use voussoir_plot::axis::WIDE;
 use voussoir_plot::chart::chart;
 use voussoir_plot::series::{ChartStyle, Marker, Series, Spot};
-use voussoir_study::results::CaseResult;
 use voussoir_study::results::format::{format_short, kind_words, status_word, unit_load};
+use voussoir_study::results::{CaseResult, OutputColumn};
 
 /// The value of a swept key in each case; NaN in cases that a search has solved without it. `None` if a value is not a number.
 fn swept_values(study: &StudyOutput, key: &str) -> Option<Vec<f64>> {
@@ -82,6 +83,36 @@ fn lines(study: &StudyOutput) -> Option<String> {
         .filter(|_| units.len() == values.len() && units.windows(2).all(|w| w[0] == w[1]));
     let cases: Vec<_> = cases.iter().zip(values).collect();
     sweep_chart(study.name, &cases, &label, unit)
+}
+
+/// The charts of the outputs of the case over a swept number: name and SVG.
+pub fn output_charts<'a>(study: &StudyOutput<'a>) -> Vec<(String, String)> {
+    let Some((label, values)) = sweep_axis(study) else { return Vec::new() };
+    let columns = &study.totals.outputs;
+    let of_case = columns.iter().filter(|column| column.of == OutputOf::Case);
+    let chart = |column: &OutputColumn| {
+        let name = column.name_among(columns);
+        let point =
+            |(case, x): (&'a CaseResult, &f64)| Some((*x, column.value(case, None).filter(|_| x.is_finite())?, case));
+        let mut points: Vec<(f64, f64, &CaseResult)> =
+            study.results.cases.iter().zip(&values).filter_map(point).collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut series: Vec<Series> = Vec::new();
+        for (x, y, case) in points {
+            let variant = case.label.variant.clone().unwrap_or_else(|| name.replace('_', " "));
+            let place = series.iter().position(|own| own.name == variant).unwrap_or_else(|| {
+                series.push(Series { name: variant, dots: true, ..Series::default() });
+                series.len() - 1
+            });
+            series[place].points.push((x, y));
+            series[place].cases.push(case.label.id);
+        }
+        let y_label = format!("{} [{}]", name.replace('_', " "), column.unit);
+        let title = format!("{}: {y_label} over {label}", study.name);
+        let drawn = series.iter().any(|own| own.points.len() > 1);
+        drawn.then(|| (name, chart(&title, &label, &y_label, &series, &[], &ChartStyle::default())))
+    };
+    of_case.filter_map(chart).collect()
 }
 
 /// Load over a swept value, one series per variant. With `unit_load` \[N\], the load at factor 1,

@@ -1,8 +1,9 @@
 //! The columns of the table of results. CSV, Parquet, the terminal, the report and Python use this list.
 
 use serde_json::Value as Json;
-use voussoir_study::results::CaseResult;
+use voussoir_core::plugin::OutputOf;
 use voussoir_study::results::format::{continuation_word, format_value, kind_word, status_word};
+use voussoir_study::results::{CaseResult, OutputColumn};
 use voussoir_study::study::SweptKeys;
 
 /// Greatest number of characters of a number without a power of ten.
@@ -92,6 +93,7 @@ pub struct Column {
 enum Source {
     Swept(String),
     Field(Value),
+    Output(OutputColumn),
 }
 
 /// The columns after those that identify a case: name, unit, value.
@@ -158,6 +160,13 @@ impl Column {
         }
     }
 
+    fn of_output(output: &OutputColumn, all: &[OutputColumn]) -> Self {
+        let name = output.name_among(all);
+        let title = name.replace('_', " ");
+        let value = Source::Output(output.clone());
+        Column { name, unit: Some(output.unit.clone()), title, kind: CellKind::Number, value }
+    }
+
     /// Its header in files: the name with the unit.
     pub fn header(&self) -> String {
         self.unit.as_ref().map_or(self.name.clone(), |unit| format!("{} [{unit}]", self.name))
@@ -167,6 +176,7 @@ impl Column {
     pub fn cell(&self, case: &CaseResult) -> Cell {
         match (&self.value, self.kind) {
             (Source::Field(value), _) => value(case),
+            (Source::Output(output), _) => Cell::Number(output.value(case, None)),
             (Source::Swept(key), CellKind::Number) => {
                 Cell::Number(case.label.parameters.get(key).and_then(Json::as_f64))
             }
@@ -178,7 +188,7 @@ impl Column {
     pub fn words(&self, case: &CaseResult) -> String {
         match &self.value {
             Source::Swept(key) => case.label.parameters.get(key).map(format_value).unwrap_or_default(),
-            Source::Field(value) => value(case).text(),
+            Source::Field(_) | Source::Output(_) => self.cell(case).text(),
         }
     }
 
@@ -199,6 +209,8 @@ pub struct Labels<'a> {
     pub variants: bool,
     /// True if the study compares scenes.
     pub scenes: bool,
+    /// Outputs of plug-ins.
+    pub outputs: &'a [OutputColumn],
 }
 
 impl Labels<'_> {
@@ -215,7 +227,9 @@ impl Labels<'_> {
     /// All columns of the table of results.
     pub fn with_results(&self) -> Vec<Column> {
         let fields = FIELDS.iter().map(|(name, unit, value)| Column::of_field(name, unit, *value));
-        self.columns().into_iter().chain(fields).collect()
+        let of_case = self.outputs.iter().filter(|output| output.of == OutputOf::Case);
+        let outputs = of_case.map(|output| Column::of_output(output, self.outputs));
+        self.columns().into_iter().chain(fields).chain(outputs).collect()
     }
 }
 
@@ -227,7 +241,8 @@ mod tests {
 
     #[test]
     fn a_cell_without_a_value_has_the_kind_of_its_column() {
-        let labels = Labels { swept: &["a.b".into()], keys: &SweptKeys::default(), variants: true, scenes: true };
+        let labels =
+            Labels { swept: &["a.b".into()], keys: &SweptKeys::default(), variants: true, scenes: true, outputs: &[] };
         let mut case = CaseResult::stalled("a note");
         case.label.parameters.insert("a.b".into(), "-2 MPa".into());
         for column in labels.with_results() {
@@ -247,7 +262,7 @@ mod tests {
             Some(ReserveEntry { stage, target: 1.0, status, factor, bounds: Some([factor, factor]), flow });
         case.carried.permissible =
             Some(PermissibleEntry { rule: "rule".into(), share: 0.5, used: 0.25, holds: Some(true) });
-        let labels = Labels { swept: &[], keys: &SweptKeys::default(), variants: false, scenes: false };
+        let labels = Labels { swept: &[], keys: &SweptKeys::default(), variants: false, scenes: false, outputs: &[] };
         let cell = |name: &str| {
             let columns = labels.with_results();
             columns.iter().find(|column| column.header() == name).map(|column| column.cell(&case).text())

@@ -84,6 +84,7 @@ impl<'a> StudyOutput<'a> {
             keys: &self.keys,
             variants: any(|case| case.label.variant.is_some()),
             scenes: self.totals.scenes,
+            outputs: &self.totals.outputs,
         }
     }
 

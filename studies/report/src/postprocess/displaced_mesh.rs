@@ -6,9 +6,10 @@ use voussoir_core::limit::Status;
 use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::model::{Assembly, Stage};
 use voussoir_core::path::{PathProblem, PathState};
+use voussoir_core::plugin::OutputOf;
 use voussoir_study::checks::fields::{path_forces, path_motion};
-use voussoir_study::results::CaseResult;
 use voussoir_study::results::inelastic_state;
+use voussoir_study::results::{CaseResult, OutputEntry};
 
 /// A block with its mesh; a rigid block is a single cell with its vertices as nodes.
 #[derive(Debug, Clone)]
@@ -30,6 +31,9 @@ pub struct DisplacedBlock {
     pub order: usize,
     /// Mean equivalent plastic strain of each cell; empty if the block has not yielded.
     pub plastic_strain: Vec<f64>,
+    /// Outputs of the material: name with unit, and one value for each cell (the mean over its points, or the value of the
+    /// block); NaN if a value is missing.
+    pub outputs: Vec<(String, Vec<f64>)>,
     /// Greatest residual resultant on the block, including its weight, relative to the forces on it (moments are divided by the
     /// size of the scene); 0 for a rigid block.
     pub imbalance: f64,
@@ -71,7 +75,7 @@ pub fn displaced_blocks(
     let gravity: Vec2 =
         problem.load_steps.iter().zip(applied).map(|(load_step, factor)| load_step.loading.acceleration * factor).sum();
     let forces = problem.forces_on_points(&state, finite);
-    let end = EndState { assembly, problem: &problem, state: &state, forces: &forces, gravity, finite };
+    let end = EndState { assembly, problem: &problem, state: &state, forces: &forces, gravity, finite, result };
     let mut condenser = Condenser::new(assembly.plane, assembly.width);
     let shaped = (0..assembly.bodies.len()).filter(|block| assembly.bodies[*block].vertices.len() >= 3);
     shaped
@@ -90,6 +94,7 @@ struct EndState<'a> {
     forces: &'a [Vec<Vec2>],
     gravity: Vec2,
     finite: bool,
+    result: &'a CaseResult,
 }
 
 impl EndState<'_> {
@@ -116,9 +121,27 @@ impl EndState<'_> {
             stress: Vec::new(),
             cell_stress: Vec::new(),
             plastic_strain: Vec::new(),
+            outputs: Vec::new(),
             order: 0,
             imbalance: 0.0,
         }
+    }
+
+    /// Returns the outputs of the material of a block, cell by cell.
+    fn outputs(&self, block: usize, cells: usize) -> Vec<(String, Vec<f64>)> {
+        let Some(inelastic) = &self.problem.bodies[self.problem.body_of[block]].inelastic else { return Vec::new() };
+        let of_block = |entry: &&OutputEntry| entry.is_of_blocks() && entry.places.contains(&block);
+        let column = |entry: &OutputEntry| {
+            let own = entry.places.iter().zip(&entry.values).filter(|(place, _)| **place == block);
+            let values: Vec<f64> = own.map(|(_, value)| value.unwrap_or(f64::NAN)).collect();
+            let by_cell = match entry.of {
+                OutputOf::Point if values.len() == inelastic.gauss_points() => inelastic.by_element(&values),
+                OutputOf::Block if values.len() == 1 => vec![values[0]; cells],
+                _ => return None,
+            };
+            Some((entry.header(), by_cell))
+        };
+        self.result.outputs.iter().filter(of_block).filter_map(column).collect()
     }
 
     fn deformable_block(&self, block: usize, condenser: &mut Condenser) -> Result<DisplacedBlock, String> {
@@ -138,6 +161,7 @@ impl EndState<'_> {
             recovered = Recovered { imbalance, ..inelastic.recover(&own.displacement, &own.state)? };
             plastic_strain = inelastic.by_element(&own.state.equivalent);
         }
+        let outputs = self.outputs(block, recovered.elements.len());
         let [fx, fy, moment] = recovered.imbalance;
         let size = own.iter().map(|f| f.norm()).sum::<f64>() + weight.norm() * self.problem.bodies[body].mass;
         let displaced = recovered.nodes.iter().zip(&recovered.displacement);
@@ -150,6 +174,7 @@ impl EndState<'_> {
             cells: recovered.elements,
             order: recovered.order,
             plastic_strain,
+            outputs,
             imbalance: fx.hypot(fy).max(moment.abs() / self.problem.length) / size.max(f64::MIN_POSITIVE),
         })
     }

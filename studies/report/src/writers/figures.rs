@@ -4,7 +4,7 @@ use super::register::register;
 use super::writer::Writer;
 use crate::figures::envelope::envelope_chart;
 use crate::figures::moving_load::moving_load_svg;
-use crate::figures::sweep::study_chart;
+use crate::figures::sweep::{output_charts, study_chart};
 use crate::figures::{curve_charts, curve_svg, mechanism_svg, scene_svg};
 use crate::output::StudyOutput;
 use rayon::prelude::*;
@@ -23,6 +23,7 @@ impl Writer for Figures {
         }
         let mut files: Vec<(String, String)> =
             study_chart(study).map(|svg| ("figures/sweep.svg".to_string(), svg)).into_iter().collect();
+        files.extend(output_charts(study).into_iter().map(|(name, svg)| (format!("figures/sweep-{name}.svg"), svg)));
         files.extend(envelope_chart(study).map(|svg| ("figures/envelope.svg".to_string(), svg)));
         files.extend(moving_load_svg(study).map(|svg| ("figures/moving-load.svg".to_string(), svg)));
         files.extend(curve_charts(study).into_iter().map(|(name, svg)| (format!("figures/{name}.svg"), svg)));
@@ -47,7 +48,8 @@ register!(
     Figures,
     "figures/*.svg: each case's scene, mechanism and path, and charts of sweeps",
     "# `figures`\n\nWrites `figures/case-NNNN-scene.svg`, `figures/case-NNNN-mechanism.svg` and, where exactly one \
-     number is swept, `figures/sweep.svg`. Displacements of mechanisms are exaggerated. Where `[output] curve = true`, the \
+     number is swept, `figures/sweep.svg` and `figures/sweep-NAME.svg` for each output of the case that a plug-in declares. \
+     Displacements of mechanisms are exaggerated. Where `[output] curve = true`, the \
      load over its displacement is in `figures/case-NNNN-curve.svg`, and two to seven cases together in `figures/curve.svg` \
      (more cases: `figures/curve-N.svg` for the N-th variant), with the joints that become hinges or slide. With `[output] \
      animation = true` an envelope has `figures/moving-load.svg`, which a browser plays; the report shows it too.\n"

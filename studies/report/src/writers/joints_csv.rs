@@ -5,17 +5,40 @@ use super::page;
 use super::register::register;
 use super::writer::{CaseTable, Writer};
 use crate::output::StudyOutput;
+use crate::output::columns::Cell;
 use maud::{Markup, html};
 use serde_json::Value as Json;
 use std::io::{self, Write};
-use voussoir_study::results::CaseResult;
+use voussoir_core::plugin::OutputOf;
 use voussoir_study::results::carried::{BlockEntry, JointEntry, PermissibleEntry, ReserveEntry, ReserveFlow};
 use voussoir_study::results::format::{capitalised, format_force, format_number, status_word};
+use voussoir_study::results::{CaseResult, OutputColumn};
 
 /// Greatest number of joints of a case in the report; the file contains all.
 const ROWS: usize = 400;
 /// Greatest number of cases whose joints are in the report.
 const CASES: usize = 10;
+
+/// The columns without outputs.
+pub(crate) const HEADER: [&str; 17] = [
+    "id",
+    "variant",
+    "joint",
+    "minus",
+    "plus",
+    "normal [N]",
+    "shear [N]",
+    "moment [N m]",
+    "eccentricity [m]",
+    "contact_length [m]",
+    "greatest_stress [Pa]",
+    "block_length [m]",
+    "block_stress [Pa]",
+    "strength [Pa]",
+    "sliding_reserve",
+    "zone_least [m]",
+    "zone_greatest [m]",
+];
 
 /// Writes `joints.csv`.
 #[derive(Debug)]
@@ -23,12 +46,13 @@ pub struct Joints;
 
 impl Writer for Joints {
     fn table<'a>(&self, study: &StudyOutput<'a>, _options: &Json) -> Option<Box<dyn CaseTable + 'a>> {
-        study.totals.joints.then(|| Box::new(Rows) as Box<dyn CaseTable>)
+        let outputs = study.totals.outputs.iter().filter(|output| output.of == OutputOf::Joint).cloned();
+        study.totals.joints.then(|| Box::new(Rows(outputs.collect())) as Box<dyn CaseTable>)
     }
 }
 
-/// One row for each joint of each case.
-struct Rows;
+/// One row for each joint of each case, with the outputs of joints.
+struct Rows(Vec<OutputColumn>);
 
 impl CaseTable for Rows {
     fn name(&self) -> String {
@@ -36,30 +60,17 @@ impl CaseTable for Rows {
     }
 
     fn begin(&mut self, out: &mut dyn Write) -> io::Result<()> {
-        let header = [
-            "id",
-            "variant",
-            "joint",
-            "minus",
-            "plus",
-            "normal [N]",
-            "shear [N]",
-            "moment [N m]",
-            "eccentricity [m]",
-            "contact_length [m]",
-            "greatest_stress [Pa]",
-            "block_length [m]",
-            "block_stress [Pa]",
-            "strength [Pa]",
-            "sliding_reserve",
-            "zone_least [m]",
-            "zone_greatest [m]",
-        ];
-        out.write_all(&csv_row(header.into_iter().map(String::from)))
+        let outputs = self.0.iter().map(|output| format!("{} [{}]", output.name_among(&self.0), output.unit));
+        let header = HEADER.into_iter().map(String::from).chain(outputs);
+        out.write_all(&csv_row(header))
     }
 
     fn add(&mut self, case: &CaseResult, out: &mut dyn Write) -> io::Result<()> {
-        case.carried.joints.iter().try_for_each(|entry| out.write_all(&csv_row(row(case, entry).into_iter())))
+        case.carried.joints.iter().try_for_each(|entry| {
+            let value = |output: &OutputColumn| Cell::Number(output.value(case, Some(entry.joint))).text();
+            let outputs: Vec<String> = self.0.iter().map(value).collect();
+            out.write_all(&csv_row(row(case, entry).into_iter().chain(outputs)))
+        })
     }
 }
 
@@ -220,5 +231,5 @@ register!(
     Joints,
     "joints.csv: forces, stresses and zones of thrust of joints under loads that are carried",
     "# `joints_csv`\n\nWrites `joints.csv` if a case carries its loads: one row for each case and joint, with N, V, M, eccentricity, contact \
-     length, stresses, sliding reserve and zone of thrust.\n"
+     length, stresses, sliding reserve and zone of thrust, and the outputs of joints that plug-ins declare.\n"
 );

@@ -13,7 +13,7 @@ use super::record::record;
 use super::register::register;
 use super::title_block::{ReportOrigin, title_block};
 use super::writer::Writer;
-use super::{joints_csv, sensitivities_csv};
+use super::{joints_csv, outputs_csv, sensitivities_csv};
 use crate::figures::envelope::envelope_chart;
 use crate::figures::moving_load::moving_load_svg;
 use crate::figures::sweep::study_chart;
@@ -75,6 +75,7 @@ pub fn report_html(study: &StudyOutput, drawn: usize) -> String {
         (cases::notes(&study.results.cases))
         @if figures { (pictures::others(study, worst, drawn)) }
         (joints_csv::section(study))
+        (outputs_csv::section(study))
         (sensitivities_csv::table(study))
         (paths::paths(study, drawn))
         @if let Some(inputs) = study.inputs {

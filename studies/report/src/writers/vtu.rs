@@ -6,7 +6,9 @@ use crate::output::StudyOutput;
 use crate::postprocess::displaced_mesh::{DisplacedBlock, displaced_blocks};
 use serde_json::Value as Json;
 use std::fmt::Write;
+use voussoir_core::plugin::OutputOf;
 use voussoir_plot::svg::escape;
+use voussoir_study::results::CaseResult;
 
 /// Writes `vtu/`.
 #[derive(Debug)]
@@ -28,6 +30,8 @@ impl Writer for Vtu {
                     let imbalance = blocks.iter().map(|block| block.imbalance).fold(0.0, f64::max);
                     list += &format!("{name}: {title}; forces on the blocks balance within {imbalance:.1e}\n");
                     sets += &format!("    <DataSet timestep=\"{}\" part=\"0\" file=\"{name}\"/>\n", case.label.id);
+                    let points = points_text(case).map(|text| (format!("vtu/points-{:04}.vtu", case.label.id), text));
+                    files.extend(points);
                     files.push((format!("vtu/{name}"), vtu_text(&blocks, case.proof.field_factor.unwrap_or(0.0))));
                 }
                 Err(why) => list += &format!("no file: {title}: {why}\n"),
@@ -49,7 +53,9 @@ const MEANING: &str = "Blocks at the end of each path, for ParaView. cases.pvd o
     \"stress [Pa]\": xx, yy, zz, xy, yz, xz, tension positive, at nodes (mean of the elements around) and in cells (their\n\
     middle); with finite displacements in axes that turn with the block. Rigid blocks have deformable = 0 and no stress\n\
     (zeros stand for it). \"equivalent plastic strain [-]\": mean of each cell, 0 where nothing yields; stresses of blocks that\n\
-    have yielded are those of the nearest Gauss points. Stresses at the ends of contact zones are singular: they grow with the mesh.\n\n";
+    have yielded are those of the nearest Gauss points. Stresses at the ends of contact zones are singular: they grow with the mesh.\n\
+    Outputs of plug-ins: cells of case-NNNN.vtu have those of materials (outputs of points as means); points-NNNN.vtu has the\n\
+    contact and stress points with all outputs of points, joints and blocks; nan where there is no value.\n\n";
 
 fn array(text: &mut String, name: &str, kind: &str, components: usize, rows: impl Iterator<Item = String>) {
     let _ = writeln!(
@@ -74,6 +80,61 @@ fn cell_type(order: usize) -> u8 {
 
 fn tensor([xx, yy, zz, xy]: &[f64; 4]) -> String {
     format!("{xx:e} {yy:e} {zz:e} {xy:e} 0 0")
+}
+
+/// A number of an array; `nan` without a value.
+fn number(value: Option<f64>) -> String {
+    value.filter(|value| value.is_finite()).map_or("nan".into(), |value| format!("{value:e}"))
+}
+
+/// Creates a file with the points of joints and blocks at which plug-ins have outputs. An output of a joint or a block is given at
+/// each of its points. `None` without such points.
+fn points_text(case: &CaseResult) -> Option<String> {
+    let (mut places, mut columns): (Vec<[f64; 2]>, Vec<(String, Vec<Option<f64>>)>) = Default::default();
+    let bases = case.outputs.iter().filter(|entry| entry.of == OutputOf::Point);
+    let mut done: Vec<(&str, &str)> = Vec::new();
+    for base in bases {
+        let law = (base.kind.as_str(), base.plugin.as_str());
+        if done.contains(&law) {
+            continue;
+        }
+        done.push(law);
+        let first = places.len();
+        places.extend(&base.positions);
+        for entry in case.outputs.iter().filter(|own| (own.kind.as_str(), own.plugin.as_str()) == law) {
+            let of_place =
+                |place| entry.places.iter().position(|own| *own == place).and_then(|at| *entry.values.get(at)?);
+            let values: Vec<Option<f64>> = match entry.of {
+                OutputOf::Point => entry.values.clone(),
+                OutputOf::Case => continue,
+                _ => base.places.iter().map(|place| of_place(*place)).collect(),
+            };
+            let header = entry.header();
+            let at = columns.iter().position(|(own, _)| *own == header).unwrap_or_else(|| {
+                columns.push((header, Vec::new()));
+                columns.len() - 1
+            });
+            columns[at].1.resize(first, None);
+            columns[at].1.extend(values);
+        }
+    }
+    let count = places.len();
+    let mut text = format!(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\">\n  \
+         <UnstructuredGrid>\n    <Piece NumberOfPoints=\"{count}\" NumberOfCells=\"{count}\">\n      <Points>\n"
+    );
+    array(&mut text, "Points", "Float64", 3, places.iter().map(|[x, y]| format!("{x:e} {y:e} 0")));
+    text.push_str("      </Points>\n      <Cells>\n");
+    array(&mut text, "connectivity", "Int64", 1, (0..count).map(|i| i.to_string()));
+    array(&mut text, "offsets", "Int64", 1, (1..=count).map(|i| i.to_string()));
+    array(&mut text, "types", "UInt8", 1, (0..count).map(|_| "1".into()));
+    text.push_str("      </Cells>\n      <PointData>\n");
+    for (name, values) in &mut columns {
+        values.resize(count, None);
+        array(&mut text, &escape(name), "Float64", 1, values.iter().map(|value| number(*value)));
+    }
+    text.push_str("      </PointData>\n    </Piece>\n  </UnstructuredGrid>\n</VTKFile>\n");
+    (count > 0).then_some(text)
 }
 
 /// Creates a file with all blocks as one piece, at a factor of the last loads.
@@ -120,6 +181,19 @@ pub fn vtu_text(blocks: &[DisplacedBlock], factor: f64) -> String {
         (0..b.cells.len()).map(|i| format!("{:e}", b.plastic_strain.get(i).copied().unwrap_or(0.0))).collect()
     };
     array(&mut text, "equivalent plastic strain [-]", "Float64", 1, blocks.iter().flat_map(strains));
+    let mut names: Vec<&String> = Vec::new();
+    for (name, _) in blocks.iter().flat_map(|block| &block.outputs) {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    for name in names {
+        let values = |b: &DisplacedBlock| -> Vec<String> {
+            let own = b.outputs.iter().find(|(own, _)| own == name).map(|(_, values)| values);
+            (0..b.cells.len()).map(|i| number(own.and_then(|own| own.get(i).copied()))).collect()
+        };
+        array(&mut text, &escape(name), "Float64", 1, blocks.iter().flat_map(values));
+    }
     array(&mut text, "block", "Int64", 1, of_cells(&|b| b.block.to_string()).into_iter());
     array(&mut text, "deformable", "UInt8", 1, of_cells(&|b| u8::from(b.order > 0).to_string()).into_iter());
     text.push_str("      </CellData>\n    </Piece>\n  </UnstructuredGrid>\n</VTKFile>\n");
@@ -130,7 +204,8 @@ register!(
     "vtu",
     Vtu,
     "vtu/*.vtu: meshes with displacements and stresses at the end of each path, on request",
-    "# `vtu`\n\nWith `[output] vtu = true`: `vtu/case-NNNN.vtu` for each case that a path solver followed, `vtu/cases.pvd` for all \
+    "# `vtu`\n\nWith `[output] vtu = true`: `vtu/case-NNNN.vtu` for each case that a path solver followed, \
+     `vtu/points-NNNN.vtu` with the outputs of plug-ins at contact and stress points, `vtu/cases.pvd` for all \
      of them, and `vtu/README.txt`, which says what the arrays are and which cases have none. Stresses are recovered from the \
      contact forces and loads of the result by the elements that the path was computed with.\n"
 );

@@ -2,9 +2,10 @@
 
 use crate::cases::{Observer, PathProgress};
 use crate::checks::case::verify_case;
+use crate::checks::outputs::law_outputs;
 use crate::results::carried::CarriedLoad;
 use crate::results::stored_path::StoredPath;
-use crate::results::{CaseLabel, CaseResult};
+use crate::results::{CaseLabel, CaseResult, OutputEntry};
 use crate::side_by_side::{in_order, side_by_side};
 use crate::solve::CaseInput;
 use crate::solve::accuracy::{estimate, words};
@@ -65,6 +66,7 @@ fn solve_observed(case: &Case, observer: &mut dyn PathObserver) -> CaseResult {
     let mut result = caught(|| solve_input(&CaseInput::of(case), observer));
     add_label(case, &mut result);
     add_carried(case, &mut result);
+    add_outputs(case, &mut result);
     if result.status != Status::Stalled && card(PluginKind::PathSolver, &result.solver).is_some() {
         let checked = catch_unwind(AssertUnwindSafe(|| verify_case(case, &result)));
         let wrong = checked.unwrap_or_else(|_| vec!["a panic ended its check".into()]);
@@ -110,6 +112,21 @@ fn add_carried(case: &Case, result: &mut CaseResult) {
     }
 }
 
+/// Adds the outputs of laws at the end of a path.
+fn add_outputs(case: &Case, result: &mut CaseResult) {
+    if result.status == Status::Stalled {
+        return;
+    }
+    match catch_unwind(AssertUnwindSafe(|| law_outputs(case, result))) {
+        Ok(Ok(found)) => {
+            result.notes.extend(found.iter().filter_map(OutputEntry::note));
+            result.outputs.extend(found);
+        }
+        Ok(Err(why)) => result.notes.push(format!("no outputs of laws: {why}")),
+        Err(_) => result.notes.push("a panic ended the outputs of laws".into()),
+    }
+}
+
 /// Removes the parts of a result that the study does not request.
 fn leave_out(case: &Case, result: &mut CaseResult) {
     if !case.output_curve {
@@ -129,6 +146,7 @@ pub fn proved_case(case: &Case, tag: &str, path: &StoredPath) -> Result<CaseResu
     let mut result = path::proved_by_stored_path(&input, tag, path)?;
     add_label(case, &mut result);
     add_carried(case, &mut result);
+    add_outputs(case, &mut result);
     leave_out(case, &mut result);
     Ok(result)
 }
@@ -143,6 +161,7 @@ fn withdraw(result: &mut CaseResult, wrong: Vec<String>) {
     result.greatest = Greatest::Open;
     (result.load_factor, result.bounds, result.proved_by) = (None, None, None);
     result.carried = CarriedLoad::default();
+    result.outputs.clear();
     if let Some(last) = result.stages.last_mut() {
         (last.status, last.factor) = (Status::Stalled, None);
     }

@@ -3,7 +3,7 @@
 use crate::checks::findings::Findings;
 use crate::checks::misfits;
 use crate::checks::tolerances::GEOMETRY;
-use crate::checks::{carried, limit, path};
+use crate::checks::{carried, limit, outputs, path};
 use crate::results::{CaseResult, LoadEntry};
 use crate::solve::load_entries::load_entries;
 use crate::study::Case;
@@ -47,6 +47,7 @@ fn recompute(case: &Case, result: &CaseResult, findings: &mut Findings) -> Resul
     if !case.output_fields && result.has_no_fields() {
         return Ok(());
     }
+    outputs::verify_solver_outputs(result, findings);
     carried::verify(case, result, findings)?;
     match card(PluginKind::PathSolver, &result.solver) {
         Some(_) => path::verify(case, result, findings),

@@ -1,10 +1,11 @@
 //! Checks that a stored case fits its scene, before any computation uses it: every index, name and length must fit, and
 //! every number must be in range. Later code indexes the scene with these entries and relies on this check.
 
-use crate::results::{CaseResult, FieldEntry, StateEntry};
+use crate::results::{CaseResult, FieldEntry, OutputEntry, StateEntry};
 use crate::study::Case;
 use std::collections::BTreeSet;
 use voussoir_core::certificate::{Hinge, Mechanism, in_range};
+use voussoir_core::plugin::OutputOf;
 
 /// Greatest number of steps of a lower bound by products. The check of a step costs a dense factorisation.
 const MAX_STEPS: usize = 1_000;
@@ -20,6 +21,7 @@ pub fn misfits(case: &Case, result: &CaseResult) -> Vec<String> {
     fit.motions(result);
     result.mechanism.iter().for_each(|mechanism| fit.mechanism(mechanism));
     fit.path(result);
+    result.outputs.iter().for_each(|entry| fit.output(entry));
     fit.numbers("load_factor, bounds or interval", summary(result));
     let mut found: Vec<String> = fit.found.into_iter().collect();
     found.truncate(LISTED);
@@ -218,6 +220,21 @@ impl Fit<'_> {
             let points = entry.points.iter().flat_map(|(_, a, b, state)| [*a, *b].into_iter().chain(state.clone()));
             self.numbers("yielded", points);
         }
+    }
+
+    fn output(&mut self, entry: &OutputEntry) {
+        let what = format!("output \"{}\"", entry.name);
+        let assembly = &self.case.assembly;
+        let count = if entry.is_of_blocks() { assembly.bodies.len() } else { assembly.joints.len() };
+        self.expect(entry.places.iter().all(|place| *place < count), || format!("{what}: a place is not in the scene"));
+        let (places, positions) = match entry.of {
+            OutputOf::Case => (0, 0),
+            OutputOf::Point => (entry.values.len(), entry.values.len()),
+            _ => (entry.values.len(), 0),
+        };
+        self.length(&format!("places of {what}"), entry.places.len(), places);
+        self.length(&format!("positions of {what}"), entry.positions.len(), positions);
+        self.numbers(&what, entry.positions.iter().flatten().copied());
     }
 
     fn state(&mut self, state: &StateEntry, points: Option<usize>) {

@@ -132,6 +132,8 @@ impl<'a> Comparison<'a> {
             "limit_points" if ["displacement", "released_energy"].contains(&leaf) => within(&PEAK),
             _ if ["point", "direction", "bounds"].contains(&leaf) && key != "bounds" => within(&GEOMETRY),
             "loads" => within(&GEOMETRY),
+            "outputs" if leaf == "positions" => within(&GEOMETRY),
+            "outputs" if self.route != Route::Limit => within(&STATE),
             "motion" | "mechanism" | "branches" => within(&RATE),
             "stages" if leaf != "factor" => within(&RATE),
             "field" | "fill" | "displacements" | "thrust_line" | "states" | "yielded" | "joint_states"
@@ -220,11 +222,12 @@ fn route(solver: Option<&str>) -> Route {
 }
 
 /// Returns the key of an entry of a list: the key of the list. The columns of a driven point have separate keys,
-/// because each has its unit.
+/// because each has its unit; so have outputs.
 fn item(key: &str, index: usize) -> String {
     match key {
         "rows" => "rows.".into(),
         "rows." => format!("rows.{index}"),
+        "outputs" => format!("outputs.{index}"),
         _ => key.into(),
     }
 }

@@ -12,6 +12,7 @@ mod fit;
 mod limit;
 pub mod meaning;
 mod mechanism;
+pub mod outputs;
 mod path;
 pub mod repeat;
 mod texts;

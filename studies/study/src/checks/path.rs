@@ -3,6 +3,7 @@
 
 use crate::checks::fields::{close, path_forces, path_motion, velocities};
 use crate::checks::findings::Findings;
+use crate::checks::outputs;
 use crate::results::CaseResult;
 use crate::results::inelastic_state;
 use crate::results::path_state::{mechanism_of, small};
@@ -59,6 +60,7 @@ pub(crate) fn verify(case: &Case, result: &CaseResult, findings: &mut Findings) 
     }
     verify_status(case, &problem, &state, result, findings);
     verify_range(case, &problem, &state, result, findings);
+    outputs::verify(case, (&problem, &state), result, findings);
     let place = result.path.followed_to.as_ref().map(|end| MechanismPlace::of(state.factor, end.factor));
     if let (Some(mechanism), Some(place)) = (&result.mechanism, place) {
         let places = (mechanism.at, "by field_factor and followed_to it must be", place);
@@ -182,7 +184,7 @@ fn verify_range(case: &Case, problem: &PathProblem, state: &PathState, result: &
 }
 
 /// Builds the end state of a result from its entries.
-fn stored_state(
+pub(super) fn stored_state(
     assembly: &Assembly,
     problem: &PathProblem,
     result: &CaseResult,

@@ -84,7 +84,7 @@ pub const FACTOR: Tolerance = row(
 );
 /// Forces and displacements of the stored state.
 pub const STATE: Tolerance = row(
-    "`field`, `displacements`, `thrust_line`, `states`, `yielded`, `joint_states`, `joint_time_step`, `joint_gaps`, `fill`",
+    "`field`, `displacements`, `thrust_line`, `states`, `yielded`, `joint_states`, `joint_time_step`, `joint_gaps`, `fill`, `outputs`",
     [None, Some(1e-8), Some(1e-7)],
     GREATEST,
     "gates of kinematics and laws; limit analysis: the certificate proves the stored numbers, and a second field may differ",

@@ -6,6 +6,7 @@ use super::entries::{
 };
 use super::limit_points::{BranchEntry, FollowedTo, LimitPointEntry, StabilityEntry};
 use super::load_factor_error::LoadFactorError;
+use super::output_entry::OutputEntry;
 use super::sensitivity::SensitivityEntry;
 use super::stored_path::StoredPath;
 use serde::{Deserialize, Serialize};
@@ -14,6 +15,7 @@ use std::sync::Arc;
 use voussoir_core::certificate::{Certificate, Hinge, Mechanism};
 use voussoir_core::limit::{BracketPoint, Counters, Greatest, LowerProof, Status};
 use voussoir_core::path::LimitPointEnd;
+use voussoir_core::plugin::OutputOf;
 
 /// Two factors with a smaller relative difference belong to the same limit point.
 const SAME_POINT: f64 = 1e-9;
@@ -212,6 +214,9 @@ pub struct CaseResult {
     /// Results that only paths have.
     #[serde(flatten)]
     pub path: PathRecord,
+    /// Outputs that plug-ins declare on their cards.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub outputs: Vec<OutputEntry>,
     /// On request: how the load factor changes with the numbers of the study.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sensitivities: Vec<SensitivityEntry>,
@@ -271,6 +276,7 @@ impl CaseResult {
         (self.path.displacements, self.path.joint_states) = (None, None);
         (self.path.joint_time_step, self.path.joint_gaps) = (None, None);
         self.path.yielded.clear();
+        self.outputs.retain(|entry| entry.of == OutputOf::Case);
     }
 
     /// Returns the parts of the result that study kinds use.
@@ -304,6 +310,7 @@ impl CaseResult {
             counters: self.counters.clone(),
             stages: self.stages.clone(),
             path,
+            outputs: self.outputs.iter().filter(|entry| entry.of != OutputOf::Point).cloned().collect(),
             sensitivities: self.sensitivities.clone(),
             partial_factors: None,
             loads: Vec::new(),
@@ -344,6 +351,7 @@ impl CaseResult {
             seconds: 0.0,
             stages: Vec::new(),
             path: PathRecord::default(),
+            outputs: Vec::new(),
             sensitivities: Vec::new(),
             partial_factors: None,
             loads: Vec::new(),

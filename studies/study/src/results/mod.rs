@@ -13,6 +13,7 @@ mod kind_entries;
 mod limit_points;
 mod load_factor_error;
 mod origin;
+mod output_entry;
 pub mod path_state;
 mod rank;
 pub mod sealed_line;
@@ -37,6 +38,7 @@ pub use kind_entries::{FiniteEntry, IntervalEntry, KindEntries, OptimumEntry, Pl
 pub use limit_points::{BranchEntry, FollowedTo, LimitPointEntry, NextState, StabilityEntry};
 pub use load_factor_error::LoadFactorError;
 pub use origin::{Build, FORMAT, HEAD, Origin, PluginCrate, head, this_program, without_origin, words};
+pub use output_entry::{OutputColumn, OutputEntry, kind_name};
 pub use rank::{least_of, load_rank};
 pub use sensitivity::SensitivityEntry;
 pub use stored_entry::{StoredEntry, StoredOutline};

@@ -1,6 +1,7 @@
 //! Counts over all cases of a study, and the choice of cases for tables and charts.
 
 use super::case_result::CaseResult;
+use super::output_entry::OutputColumn;
 use super::rank::load_rank;
 use std::collections::{BTreeMap, BTreeSet};
 use voussoir_core::limit::Status;
@@ -62,6 +63,8 @@ pub struct Totals {
     pub stored_paths: bool,
     /// True if some case has the name of a scene.
     pub scenes: bool,
+    /// Outputs of plug-ins, in the order in which cases have them.
+    pub outputs: Vec<OutputColumn>,
     briefs: Vec<Brief>,
     variants: Vec<Option<String>>,
 }
@@ -92,6 +95,12 @@ impl Totals {
         self.sensitivities |= !case.sensitivities.is_empty();
         self.stored_paths |= case.stored_path.is_some();
         self.scenes |= case.label.scene.is_some();
+        for entry in &case.outputs {
+            let column = OutputColumn::of(entry);
+            if !self.outputs.contains(&column) {
+                self.outputs.push(column);
+            }
+        }
         let variant = self.variants.iter().position(|own| *own == case.label.variant).unwrap_or_else(|| {
             self.variants.push(case.label.variant.clone());
             self.variants.len() - 1

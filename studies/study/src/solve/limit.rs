@@ -5,12 +5,14 @@ use super::case_input::CaseInput;
 use super::limit_result::certified;
 use super::safe_theorem::static_proof;
 use super::settlement::{Settling, follow_supports, settles};
+use super::solver_outputs::solver_outputs;
 use crate::results::stage_start::search_start;
 use crate::results::{CaseResult, StageResult};
 use crate::study::SelectedSolver;
 use voussoir_core::certificate::Hinge;
 use voussoir_core::limit::{Counters, LimitAnswer, LimitProblem, LimitQuestion, Status};
 use voussoir_core::model::{Assembly, Stage, StageLoads, Target, stage_loads};
+use voussoir_core::plugin::PluginKind;
 
 /// Returns the question of a stage: does it stand at its start, and up to which factor does it stand?
 fn ask(stage: &Stage, problem: &LimitProblem) -> LimitQuestion {
@@ -131,8 +133,13 @@ fn read(
     asked: LimitQuestion,
     (tag, solved): (&str, LimitAnswer),
 ) -> (CaseResult, bool) {
+    let (outputs, notes) = solver_outputs(PluginKind::LimitSolver, tag, &solved.outputs);
     match solved.check_form(problem) {
-        Ok(()) => certified(input, stage, (problem, loads), asked, (tag, solved)),
+        Ok(()) => {
+            let (mut result, start_is_carried) = certified(input, stage, (problem, loads), asked, (tag, solved));
+            result.notes.extend(notes);
+            (CaseResult { outputs, ..result }, start_is_carried)
+        }
         Err(why) => (CaseResult::stalled(why), false),
     }
 }

@@ -28,6 +28,7 @@ pub mod restated;
 pub(crate) mod safe_theorem;
 pub mod sensitivity;
 mod settlement;
+mod solver_outputs;
 pub(crate) mod statics;
 mod stored_path;
 mod symmetric;

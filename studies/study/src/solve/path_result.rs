@@ -11,6 +11,7 @@ use super::load_history::LoadHistory;
 use super::path_proof::PathProof;
 use super::path_status::{Evidence, PathVerdict, Progress};
 use super::safe_theorem::safe_theorem_holds;
+use super::solver_outputs::solver_outputs;
 use super::stored_path::stored;
 use super::symmetric::symmetric;
 use crate::results::convert::{field_entries, motion_entries};
@@ -32,6 +33,7 @@ use voussoir_core::limit::Status;
 use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::model::{Assembly, Stage, Target};
 use voussoir_core::path::{Branching, PathAnswer, PathEvent, PathProblem, PathState, StageStability};
+use voussoir_core::plugin::PluginKind;
 
 /// The note on a limit point of laws with a history.
 const LOADING_SET: &str = "the limit point is proved for the loading set that was found: another set of points that soften or \
@@ -147,6 +149,8 @@ pub(super) fn path_result(
     };
     let field = contact_forces(assembly, problem, &solved.state.force);
     let fill = path_fill(assembly, problem, input.stages, &solved.state.force);
+    let (outputs, missing) = solver_outputs(PluginKind::PathSolver, tag, &solved.outputs);
+    notes.extend(missing);
     let mut counters = solved.counters.clone();
     counters.insert("states".into(), checker.states);
     CaseResult {
@@ -172,6 +176,7 @@ pub(super) fn path_result(
             &solved.stability,
         ),
         notes,
+        outputs,
         path: PathRecord {
             states,
             end_is_checked: Some(end_proof.is_some()),

@@ -7,7 +7,7 @@ use super::point::Point;
 use super::samples::samples_of;
 use super::subject::Subject;
 use super::walk;
-use super::{energy, facets, sign, softening, units};
+use super::{energy, facets, outputs, sign, softening, units};
 use voussoir_core::law::InterfaceLaw;
 use voussoir_core::plugin::{Capability, Card, PluginKind, Sample};
 
@@ -61,9 +61,12 @@ fn check_sample(
     if let (Some(own), Some(k)) = (&own, law.stiffness()) {
         facets::against_response(recorder, &subject, own, k);
     }
-    if let Some(PlugIn::Joint(other)) = other
-        && let Some(other) = other.response()
-    {
-        units::check(recorder, &subject, &Point::Joint(other));
+    let there = match other {
+        Some(PlugIn::Joint(other)) => other.response().map(Point::Joint),
+        _ => None,
+    };
+    if let Some(there) = &there {
+        units::check(recorder, &subject, there);
     }
+    outputs::check(recorder, &subject, there.as_ref());
 }

@@ -8,7 +8,7 @@ use super::random::random_step;
 use super::samples::samples_of;
 use super::subject::Subject;
 use super::walk;
-use super::{energy, sign, units};
+use super::{energy, outputs, sign, units};
 use voussoir_core::law::{BulkMaterial, Elasticity, PlanarPoint, PlanarUpdate, Plane, UpdateContext};
 use voussoir_core::plugin::{Capability, Card, PluginKind, Property, Sample};
 use voussoir_core::random::Random;
@@ -71,6 +71,9 @@ fn check_sample(
             *length = here * super::scaled::LENGTH;
         }
         units::check(recorder, &subject, &there);
+        outputs::check(recorder, &subject, Some(&there));
+    } else {
+        outputs::check(recorder, &subject, None);
     }
 }
 

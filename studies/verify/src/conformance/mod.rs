@@ -17,6 +17,7 @@ pub mod lies;
 mod load;
 mod material;
 mod options;
+mod outputs;
 mod plug_in;
 mod point;
 mod random;

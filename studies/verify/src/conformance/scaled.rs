@@ -1,7 +1,7 @@
 //! Tables of keys in other units.
 
 use serde_json::Value as Json;
-use voussoir_core::plugin::{Parameter, Quantity, Shape};
+use voussoir_core::plugin::{Parameter, Quantity, Shape, unit_powers};
 
 /// The other units: a length and a stress. They are powers of two, so that nothing is rounded.
 pub(super) const LENGTH: f64 = 8.0;
@@ -28,15 +28,13 @@ fn factor(quantity: Quantity) -> f64 {
 /// Returns the factor of a state number, from the unit in its name, such as `"slip [m]"`; `None` if the name has no unit.
 pub(super) fn state_unit(name: &str) -> Option<f64> {
     let (_, unit) = name.trim_end().strip_suffix(']')?.rsplit_once('[')?;
-    match unit {
-        "-" | "deg" | "rad" => Some(1.0),
-        "m" => Some(LENGTH),
-        "1/m" => Some(1.0 / LENGTH),
-        "Pa" | "J/m3" => Some(STRESS),
-        "Pa/m" => Some(STRESS / LENGTH),
-        "J/m2" | "N/m" => Some(STRESS * LENGTH),
-        _ => None,
-    }
+    scale_of(unit)
+}
+
+/// Returns the factor of a unit of a state or an output; `None` if it is unknown.
+pub(super) fn scale_of(unit: &str) -> Option<f64> {
+    let [length, stress, ..] = unit_powers(unit)?;
+    Some(LENGTH.powi(length) * STRESS.powi(stress))
 }
 
 /// Returns a value in the other units.

@@ -113,6 +113,7 @@ impl Selection {
         match self.result.as_str() {
             _ if self.points.is_some() => Type::Number,
             "load_factor" | "first_limit_point" | "curve" | "mechanism.hinge_count" => Type::Number,
+            output if output.starts_with("outputs.") => Type::Number,
             "status" | "variant" | "mechanism.kind" => Type::Word,
             _ => Type::Unknown,
         }
@@ -168,6 +169,9 @@ fn result(head: &StoredEntry, entry: &Json, path: &str) -> Value {
             (word, _) => return Value::none(word.replace('_', " ")),
         }
     }
+    if let Some(name) = path.strip_prefix("outputs.") {
+        return output(entry, name);
+    }
     if let Some(column) = path.strip_prefix("last.") {
         return last(entry, column);
     }
@@ -179,6 +183,20 @@ fn result(head: &StoredEntry, entry: &Json, path: &str) -> Value {
         return Value::unknown("no mechanism was found");
     }
     follow(entry, &names)
+}
+
+/// Returns the value of an output of the case.
+fn output(entry: &Json, name: &str) -> Value {
+    let outputs = entry["outputs"].as_array().into_iter().flatten();
+    let mut of_case = outputs.filter(|own| own["of"] == "case" && own["name"] == name);
+    match (of_case.next(), of_case.next()) {
+        (Some(one), None) => match one["values"][0].as_f64() {
+            Some(number) => Value::Number(number),
+            None => Value::unknown(format!("the output {name} is not finite")),
+        },
+        (None, _) => Value::unknown(format!("there is no output {name} of the case")),
+        _ => Value::unknown(format!("two plug-ins have an output {name}")),
+    }
 }
 
 /// Returns the last value of a column of a driven point.
