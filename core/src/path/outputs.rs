@@ -18,35 +18,35 @@ pub struct PointOutputs {
     pub values: Vec<f64>,
 }
 
-impl PathProblem {
+impl PointOutputs {
     /// Returns the outputs at the contact points of joints, in their order. `count` returns the number of outputs of the
     /// law of a joint.
     ///
     /// # Errors
     /// If an update of a law fails or the state does not fit the problem.
-    pub fn joint_outputs(
-        &self,
+    pub fn of_joints(
+        problem: &PathProblem,
         state: &PathState,
         count: impl Fn(usize) -> usize,
     ) -> Result<Vec<PointOutputs>, String> {
-        state.check_form(self)?;
-        let step = LawStep::to(self, state);
+        state.check_form(problem)?;
+        let step = LawStep::to(problem, state);
         let (mut found, mut at) = (Vec::new(), 0);
-        for (index, contact) in self.contacts.iter().enumerate() {
-            let Some(law) = self.response(index) else { continue };
+        for (index, contact) in problem.contacts.iter().enumerate() {
+            let Some(law) = problem.response(index) else { continue };
             let old = &state.memory[at..at + law.state_size()];
             at += law.state_size();
             let count = count(contact.joint);
             if count == 0 {
                 continue;
             }
-            let (gap, context, mut new) = (state.gap[index], step.context(self, index), old.to_vec());
+            let (gap, context, mut new) = (state.gap[index], step.context(problem, index), old.to_vec());
             let point: TractionPoint = law
                 .respond_point(gap, &context, old, &mut new)
                 .map_err(|why| format!("joint {}: {why}", contact.joint))?;
             let mut values = vec![f64::NAN; count];
             law.outputs(gap, &context, &new, &point, &mut values);
-            let (place, position, size) = (contact.joint, contact.position.into(), contact.area / self.width);
+            let (place, position, size) = (contact.joint, contact.position.into(), contact.area / problem.width);
             found.push(PointOutputs { place, position, size, values });
         }
         Ok(found)
@@ -57,20 +57,20 @@ impl PathProblem {
     ///
     /// # Errors
     /// If an update of a material fails or the state does not fit the problem.
-    pub fn block_outputs(
-        &self,
+    pub fn of_blocks(
+        problem: &PathProblem,
         state: &PathState,
         finite: bool,
         count: impl Fn(usize) -> usize,
     ) -> Result<Vec<PointOutputs>, String> {
         let (mut found, mut forces) = (Vec::new(), None);
-        for (index, body) in self.bodies.iter().enumerate() {
+        for (index, body) in problem.bodies.iter().enumerate() {
             let (Some(inelastic), Some(&place)) = (&body.inelastic, body.members.first()) else { continue };
             let count = count(place);
             if count == 0 {
                 continue;
             }
-            let forces = forces.get_or_insert_with(|| self.forces_on_points(state, finite));
+            let forces = forces.get_or_insert_with(|| problem.forces_on_points(state, finite));
             let own: Vec<f64> = forces[index].iter().flat_map(|force| [force.x, force.y]).collect();
             let points = match state.inelastic(index) {
                 Some(own) => inelastic.outputs(&own.displacement, &own.state.history, count),

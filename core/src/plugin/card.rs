@@ -301,12 +301,19 @@ fn audit_of(all: &[&Card], readers: &[(PluginKind, Vec<&str>)]) -> Vec<String> {
             ));
         }
     }
-    wrong.extend(all.iter().flat_map(|card| output::mistakes(card)));
+    wrong.extend(all.iter().flat_map(|card| wrong_outputs(card)));
     for (kind, names) in readers {
         let cards: Vec<&Card> = all.iter().copied().filter(|card| card.kind == *kind).collect();
         wrong.extend(unmatched(*kind, &cards, names));
     }
     wrong
+}
+
+/// Returns the mistakes in the outputs of a card.
+fn wrong_outputs(card: &Card) -> Vec<String> {
+    let (kind, tag, file) = (card.kind.describe(), card.tag, card.file);
+    let says = |(name, what)| format!("the output \"{name}\" of the {kind} \"{tag}\" in {file} {what}");
+    output::mistakes(card.kind, card.outputs).into_iter().map(says).collect()
 }
 
 /// Compares the tags of the cards of a kind with the names by which its types are read.
@@ -354,6 +361,20 @@ mod tests {
         let wrong = audit_of(&[&ONE, &ONE], &[]);
         assert!(wrong.iter().any(|w| w == "no interface law is registered: is its crate named in the facade?"));
         assert!(wrong.iter().any(|w| w == "two scenes are called \"arch\": here.rs and here.rs"));
+    }
+
+    #[test]
+    fn the_audit_finds_a_wrong_output() {
+        const WRONG: Card = Card {
+            kind: PluginKind::InterfaceLaw,
+            tag: "own",
+            file: "here.rs",
+            outputs: &[Output::point("shear", "N", "")],
+            ..Card::BLANK
+        };
+        let expected = "the output \"shear\" of the interface law \"own\" in here.rs has the name of a column that result files \
+                        always have";
+        assert!(audit_of(&[&WRONG], &[]).iter().any(|why| why == expected));
     }
 
     /// Tags of cards and names of types must be the same.

@@ -178,10 +178,8 @@ inventory::submit! {
 /// Outputs of a solver are checked against its card.
 #[test]
 fn outputs_of_a_solver_are_those_of_its_card() {
-    let text = format!(
-        "{}[solver]\nsolver = \"reporting_limit\"\n",
-        Arch { voussoirs: 9, ends: "jointed", ..Arch::default() }.study()
-    );
+    let arch = Arch { voussoirs: 9, ends: "jointed", ..Arch::default() }.study();
+    let text = changed(&arch, "solver = \"auto\"", "solver = \"reporting_limit\"");
     let (study, results) = results(&text);
     let case = &results["cases"][0];
     assert_eq!(output(case, "joints_read")["values"], json!([10.0]));
@@ -197,6 +195,10 @@ fn outputs_of_a_solver_are_those_of_its_card() {
     let mut forged = results.clone();
     forged["cases"][0]["outputs"][0]["name"] = json!("other");
     assert!(findings(&study, &forged).iter().any(|why| why.contains("declares no output like \"other\"")));
+    let mut forged = results.clone();
+    forged["cases"][0]["outputs"][0]["kind"] = json!("interface_law");
+    let of_a_law = "outputs: limit analysis gives no output \"joints_read\" of reporting_limit";
+    assert!(findings(&study, &forged).iter().any(|why| why == of_a_law));
     let report = Written::of(&text);
     assert!(report.text("report.html").contains("No check proves outputs of solvers."));
 }

@@ -125,7 +125,7 @@ fn the_outputs_give_the_crack_and_its_water() {
 #[test]
 fn a_changed_output_is_found() {
     let (study, result) = (study(DAM), confirmed(DAM));
-    let mut findings = |change: &dyn Fn(&mut CaseResult)| {
+    let findings = |change: &dyn Fn(&mut CaseResult)| {
         let mut changed = result.clone();
         change(&mut changed);
         let found = verify(&study, &study.results("test", vec![changed]));

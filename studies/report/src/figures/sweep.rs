@@ -92,8 +92,9 @@ pub fn output_charts<'a>(study: &StudyOutput<'a>) -> Vec<(String, String)> {
     let of_case = columns.iter().filter(|column| column.of == OutputOf::Case);
     let chart = |column: &OutputColumn| {
         let name = column.name_among(columns);
-        let point =
-            |(case, x): (&'a CaseResult, &f64)| Some((*x, column.value(case, None).filter(|_| x.is_finite())?, case));
+        let point = |(case, x): (&'a CaseResult, &f64)| {
+            Some((*x, column.value(&case.outputs, None).filter(|_| x.is_finite())?, case))
+        };
         let mut points: Vec<(f64, f64, &CaseResult)> =
             study.results.cases.iter().zip(&values).filter_map(point).collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -176,7 +176,7 @@ impl Column {
     pub fn cell(&self, case: &CaseResult) -> Cell {
         match (&self.value, self.kind) {
             (Source::Field(value), _) => value(case),
-            (Source::Output(output), _) => Cell::Number(output.value(case, None)),
+            (Source::Output(output), _) => Cell::Number(output.value(&case.outputs, None)),
             (Source::Swept(key), CellKind::Number) => {
                 Cell::Number(case.label.parameters.get(key).and_then(Json::as_f64))
             }
@@ -237,6 +237,7 @@ impl Labels<'_> {
 mod tests {
     use super::*;
     use voussoir_core::limit::Status;
+    use voussoir_study::results::OutputEntry;
     use voussoir_study::results::carried::{PermissibleEntry, ReserveEntry, ReserveFlow};
 
     #[test]
@@ -270,6 +271,35 @@ mod tests {
         assert_eq!(cell("reserve_factor [-]").as_deref(), Some("4"));
         assert_eq!(cell("permissible_share_used [-]").as_deref(), Some("0.25"));
         assert_eq!(cell("permissible_holds").as_deref(), Some("true"));
+    }
+
+    /// Outputs of the case have columns. If two plug-ins have an output of the same name, the tag is in front of it.
+    #[test]
+    fn outputs_of_the_case_have_columns() {
+        let output = |plugin: &str, name: &str, of: OutputOf, value: Option<f64>| OutputEntry {
+            plugin: plugin.into(),
+            kind: "bulk_material".into(),
+            name: name.into(),
+            unit: "-".into(),
+            of,
+            places: Vec::new(),
+            positions: Vec::new(),
+            values: vec![value],
+        };
+        let mut case = CaseResult::stalled("a note");
+        case.outputs = vec![
+            output("a", "damage", OutputOf::Block, Some(1.0)),
+            output("a", "worst", OutputOf::Case, Some(0.5)),
+            output("b", "worst", OutputOf::Case, None),
+            output("b", "damage", OutputOf::Case, Some(0.25)),
+        ];
+        let outputs: Vec<OutputColumn> = case.outputs.iter().map(OutputColumn::of).collect();
+        let keys = SweptKeys::default();
+        let labels = Labels { swept: &[], keys: &keys, variants: false, scenes: false, outputs: &outputs };
+        let columns = labels.with_results();
+        let last = columns[columns.len() - 3..].iter().map(|column| (column.header(), column.cell(&case).text()));
+        let own = [("a.worst [-]", "0.5"), ("b.worst [-]", ""), ("damage [-]", "0.25")];
+        assert_eq!(last.collect::<Vec<_>>(), own.map(|(name, value)| (name.to_string(), value.to_string())));
     }
 
     /// Every bit is kept in both notations.

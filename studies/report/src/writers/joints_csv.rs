@@ -67,7 +67,7 @@ impl CaseTable for Rows {
 
     fn add(&mut self, case: &CaseResult, out: &mut dyn Write) -> io::Result<()> {
         case.carried.joints.iter().try_for_each(|entry| {
-            let value = |output: &OutputColumn| Cell::Number(output.value(case, Some(entry.joint))).text();
+            let value = |output: &OutputColumn| Cell::Number(output.value(&case.outputs, Some(entry.joint))).text();
             let outputs: Vec<String> = self.0.iter().map(value).collect();
             out.write_all(&csv_row(row(case, entry).into_iter().chain(outputs)))
         })

@@ -47,7 +47,7 @@ fn recompute(case: &Case, result: &CaseResult, findings: &mut Findings) -> Resul
     if !case.output_fields && result.has_no_fields() {
         return Ok(());
     }
-    outputs::verify_solver_outputs(result, findings);
+    outputs::verify_origin(result, findings);
     carried::verify(case, result, findings)?;
     match card(PluginKind::PathSolver, &result.solver) {
         Some(_) => path::verify(case, result, findings),

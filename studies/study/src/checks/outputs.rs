@@ -2,7 +2,7 @@
 //! code.
 
 use crate::checks::findings::Findings;
-use crate::checks::path::stored_state;
+use crate::checks::stored_state::stored_state;
 use crate::checks::tolerances::{GEOMETRY, Route, STATE};
 use crate::results::{CaseResult, OutputEntry};
 use crate::study::Case;
@@ -45,15 +45,20 @@ pub(super) fn verify(
     }
 }
 
-/// Checks that the outputs of solvers are on their cards. No check proves their values.
-pub(super) fn verify_solver_outputs(result: &CaseResult, findings: &mut Findings) {
-    for entry in result.outputs.iter().filter(|entry| !entry.is_of_law()) {
+/// Checks that the outputs of solvers are on their cards, and that limit analysis has no outputs of laws. No check proves the
+/// values of solvers.
+pub(super) fn verify_origin(result: &CaseResult, findings: &mut Findings) {
+    let followed = card(PluginKind::PathSolver, &result.solver).is_some();
+    for entry in &result.outputs {
+        if entry.is_of_law() {
+            let what = format!("outputs: limit analysis gives no output \"{}\" of {}", entry.name, entry.plugin);
+            findings.expect(followed, &what);
+            continue;
+        }
         let declared = entry.declaration().is_some_and(|own| (own.unit, own.of) == (entry.unit.as_str(), entry.of));
         let fits = declared && entry.plugin == result.solver && entry.values.len() == 1;
-        findings.expect(
-            fits,
-            &format!("outputs: the card of \"{}\" declares no output like \"{}\"", entry.plugin, entry.name),
-        );
+        let what = format!("outputs: the card of \"{}\" declares no output like \"{}\"", entry.plugin, entry.name);
+        findings.expect(fits, &what);
     }
 }
 
@@ -64,7 +69,7 @@ fn compare(stored: &OutputEntry, expected: &OutputEntry, findings: &mut Findings
     let same = (&stored.unit, stored.of, &stored.places) == (&expected.unit, expected.of, &expected.places)
         && stored.values.len() == expected.values.len()
         && GEOMETRY.same_rows(&rows(stored), &rows(expected));
-    findings.expect(same, &format!("{what}: unit, places or positions differ from those of the study"));
+    findings.expect(same, &format!("{what}: unit, places or positions differ from the study"));
     if !same {
         return;
     }
@@ -120,11 +125,11 @@ fn entries(
     let count = |card: Option<&Card>| card.map_or(0, |card| card.point_outputs().count());
     let mut found = Vec::new();
     if declared.joints.iter().any(Option::is_some) {
-        let points = problem.joint_outputs(state, |joint| count(of(&declared.joints, joint)))?;
+        let points = PointOutputs::of_joints(problem, state, |joint| count(of(&declared.joints, joint)))?;
         add(&declared.joints, &points, &mut found);
     }
     if declared.blocks.iter().any(Option::is_some) {
-        let points = problem.block_outputs(state, finite, |block| count(of(&declared.blocks, block)))?;
+        let points = PointOutputs::of_blocks(problem, state, finite, |block| count(of(&declared.blocks, block)))?;
         add(&declared.blocks, &points, &mut found);
     }
     Ok(found)
@@ -216,7 +221,7 @@ mod tests {
         let changed = "output \"crack_length\" of own, value 1 is 2.1, but the stored state gives 2.0";
         assert_eq!(says(&[Some(1.0), Some(2.1)]), [changed]);
         assert_eq!(says(&[None, Some(2.0)]).len(), 1);
-        let fewer = "output \"crack_length\" of own: unit, places or positions differ from those of the study";
+        let fewer = "output \"crack_length\" of own: unit, places or positions differ from the study";
         assert_eq!(says(&[Some(1.0)]), [fewer]);
     }
 }

@@ -1,11 +1,11 @@
 //! Checks the result of a path. The history (slip before the end) is not stored; equilibrium, strength, contact and
 //! mechanism of the state are recomputed.
 
-use crate::checks::fields::{close, path_forces, path_motion, velocities};
+use crate::checks::fields::{close, path_forces, velocities};
 use crate::checks::findings::Findings;
 use crate::checks::outputs;
+use crate::checks::stored_state::stored_state;
 use crate::results::CaseResult;
-use crate::results::inelastic_state;
 use crate::results::path_state::{mechanism_of, small};
 use crate::solve::CaseInput;
 use crate::solve::associated_load::associated_load;
@@ -15,7 +15,7 @@ use crate::solve::path_status::{ELSEWHERE, meeting_bounds, ordered};
 use crate::solve::safe_theorem::safe_theorem_holds;
 use crate::study::Case;
 use voussoir_core::certificate::{
-    CentroidVelocity, Displaced, Mechanism, MechanismPlace, PathChecker, flow_residual, forces_rest, path_structure,
+    CentroidVelocity, Mechanism, MechanismPlace, PathChecker, flow_residual, forces_rest, path_structure,
     power_residual, ray_residual,
 };
 use voussoir_core::limit::{Greatest, Status};
@@ -181,37 +181,6 @@ fn verify_range(case: &Case, problem: &PathProblem, state: &PathState, result: &
     let values = (path.continuation, "with this status and these stages it must be", expected);
     findings.expect_entry(fits, "continuation", values);
     findings.expect(path.followed_to.is_some(), "followed_to is missing; every path has it");
-}
-
-/// Builds the end state of a result from its entries.
-pub(super) fn stored_state(
-    assembly: &Assembly,
-    problem: &PathProblem,
-    result: &CaseResult,
-    finite: bool,
-) -> Result<PathState, String> {
-    let stage = result.stages.len() - 1;
-    let load_step = problem
-        .load_steps
-        .iter()
-        .rposition(|d| d.stage <= stage)
-        .ok_or("the study has no loads for the stages of this result")?;
-    let load_step = match result.status {
-        Status::NoEquilibrium => problem.load_steps.iter().position(|d| d.stage == stage).unwrap_or(load_step),
-        _ => load_step,
-    };
-    let force =
-        path_forces(assembly, problem, result.proof.field.as_deref().ok_or("field is missing")?, &result.proof.fill)?;
-    let motion = path_motion(assembly, problem, result, finite)?;
-    let factor = result.proof.field_factor.ok_or("field_factor is missing")?;
-    let mut state = PathState { load_step, factor, force, motion, ..PathState::default() };
-    state.gap = vec![[0.0; 2]; problem.contacts.len()];
-    state.memory = result.path.joint_states.clone().unwrap_or_default();
-    state.time_step = result.path.joint_time_step.unwrap_or(0.0);
-    state.step_gap = result.path.joint_gaps.clone().unwrap_or_default();
-    state.yielded = inelastic_state::read(assembly, problem, &result.path.yielded)?;
-    state.gap = Displaced::new(problem, &state, finite).gaps().to_vec();
-    Ok(state)
 }
 
 /// The motion of a path with small displacements: its flow, its scale and its mechanism.

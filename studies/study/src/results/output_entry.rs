@@ -1,6 +1,5 @@
 //! Outputs of plug-ins: quantities that laws and solvers declare on their cards.
 
-use super::case_result::CaseResult;
 use serde::{Deserialize, Serialize};
 use voussoir_core::plugin::{Card, Output, OutputOf, PluginKind};
 
@@ -111,16 +110,9 @@ impl OutputColumn {
         OutputColumn { plugin, kind, name, unit, of }
     }
 
-    /// Returns the entry of this output in a case.
-    pub fn entry<'a>(&self, case: &'a CaseResult) -> Option<&'a OutputEntry> {
-        case.outputs
-            .iter()
-            .find(|entry| (&entry.plugin, &entry.kind, &entry.name) == (&self.plugin, &self.kind, &self.name))
-    }
-
-    /// Returns the value in a case at a joint or a block, or the value of the case.
-    pub fn value(&self, case: &CaseResult, place: Option<usize>) -> Option<f64> {
-        let entry = self.entry(case)?;
+    /// Returns the value among the outputs of a case at a joint or a block, or the value of the case.
+    pub fn value(&self, outputs: &[OutputEntry], place: Option<usize>) -> Option<f64> {
+        let entry = outputs.iter().find(|entry| OutputColumn::of(entry) == *self)?;
         let index = place.map_or(Some(0), |place| entry.places.iter().position(|own| *own == place))?;
         *entry.values.get(index)?
     }

@@ -3,13 +3,14 @@
 use super::every_fault_is_found;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use voussoir::conformance::{Options, conform};
 use voussoir::core::law::{
     BatchFailure, Effect, Facet, FacetResponse, InterfaceLaw, InterfaceResponse, PointContext, TractionPoint,
     UpdateBranch, UpdateFailure,
 };
 use voussoir::core::plugin::{
-    Capability, Card, KnownPath, Need, Parameter, PluginKind, Property, Quantity, Range, Sample, Shape,
+    Capability, Card, KnownPath, Need, Output, Parameter, PluginKind, Property, Quantity, Range, Sample, Shape,
 };
 
 use voussoir::kinds::{RunRequest, read_study};
@@ -150,6 +151,20 @@ impl InterfaceResponse for Mutated {
         }
         Ok(said)
     }
+
+    fn outputs(&self, _: [f64; 2], _: &PointContext, state: &[f64], point: &TractionPoint, values: &mut [f64]) {
+        static CALLS: AtomicUsize = AtomicUsize::new(0);
+        values[0] = state[1];
+        match self.fault.as_str() {
+            "output_forgotten_when_elastic" if point.branch.is_elastic() => values[0] = f64::NAN,
+            "output_divided_by_nothing" => values[0] /= (state[0] * 1e9).min(0.0),
+            "output_in_millimetres_of_a_metre" => values[0] += 1e-3,
+            "output_of_a_stress" => values[0] = point.traction[0],
+            "output_that_counts" => values[0] += 1e-12 * CALLS.fetch_add(1, Ordering::Relaxed) as f64,
+            "more_outputs_than_declared" => values[1] = 0.0,
+            _ => {}
+        }
+    }
 }
 
 const CARD: Card = Card {
@@ -172,6 +187,7 @@ const CARD: Card = Card {
         steps: &[(&[1e-4, 0.0], &[-2e5, 0.0]), (&[0.0, 0.0], &[8e5, 0.0]), (&[0.0, 0.0], &[8e5, 0.0])],
         tolerance: 1e-12,
     }],
+    outputs: &[Output::point("plastic_slip", "m", "plastic part of the tangential gap")],
     sources: &["this test"],
     file: file!(),
     page: "for this test",
@@ -212,6 +228,19 @@ fn responses_with_a_fault_are_found() {
         ("refuses_to_open", &["finite"]),
         ("presses_when_open", &["normal"]),
         ("wrong_stiffness", &["stiffness"]),
+    ];
+    every_fault_is_found(&CARD, TABLE, SAMPLE, &faults);
+}
+
+#[test]
+fn outputs_with_a_fault_are_found() {
+    let faults: [(&str, &[&str]); 6] = [
+        ("output_forgotten_when_elastic", &["outputs"]),
+        ("output_divided_by_nothing", &["outputs"]),
+        ("output_in_millimetres_of_a_metre", &["outputs"]),
+        ("output_of_a_stress", &["outputs"]),
+        ("output_that_counts", &["outputs"]),
+        ("more_outputs_than_declared", &["panic"]),
     ];
     every_fault_is_found(&CARD, TABLE, SAMPLE, &faults);
 }

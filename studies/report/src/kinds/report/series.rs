@@ -7,8 +7,8 @@ use crate::kinds::point::result::PointRows;
 use serde::Deserialize;
 use serde_json::{Map, Value as Json};
 use voussoir_core::certificate::{Hinge, Side};
-use voussoir_core::plugin::Keys;
-use voussoir_study::results::{PathRecord, StoredEntry};
+use voussoir_core::plugin::{Keys, OutputOf};
+use voussoir_study::results::{OutputEntry, PathRecord, StoredEntry};
 
 /// The table `[report.series.NAME]`.
 #[derive(Debug, Clone, PartialEq, Keys)]
@@ -187,10 +187,10 @@ fn result(head: &StoredEntry, entry: &Json, path: &str) -> Value {
 
 /// Returns the value of an output of the case.
 fn output(entry: &Json, name: &str) -> Value {
-    let outputs = entry["outputs"].as_array().into_iter().flatten();
-    let mut of_case = outputs.filter(|own| own["of"] == "case" && own["name"] == name);
+    let outputs = Vec::<OutputEntry>::deserialize(&entry["outputs"]).unwrap_or_default();
+    let mut of_case = outputs.iter().filter(|own| own.of == OutputOf::Case && own.name == name);
     match (of_case.next(), of_case.next()) {
-        (Some(one), None) => match one["values"][0].as_f64() {
+        (Some(one), None) => match one.values.first().copied().flatten() {
             Some(number) => Value::Number(number),
             None => Value::unknown(format!("the output {name} is not finite")),
         },
@@ -282,5 +282,29 @@ mod tests {
         let places = value(json!({ "variant": "two", "over": "rise", "result": "mechanism.hinges.places" }));
         assert_eq!(places, Value::Series(vec![(1.0, Value::Number(2.0))]));
         assert!(matches!(value(json!({ "variant": "three" })), Value::Missing { proven: false, .. }));
+    }
+
+    /// A series may show an output of the case. An unknown name, a value that is not finite and an ambiguous name are unknown.
+    #[test]
+    fn an_output_of_the_case_is_a_result() {
+        let output = |plugin: &str, name: &str, of: &str, value: Json| json!({ "plugin": plugin, "kind": "interface_law", "name": name, "unit": "m", "of": of, "values": [value] });
+        let outputs = json!([
+            output("a", "crack", "joint", json!(1.0)),
+            output("a", "crack", "case", json!(2.5)),
+            output("a", "endless", "case", json!(null)),
+            output("a", "twice", "case", json!(1.0)),
+            output("b", "twice", "case", json!(2.0)),
+        ]);
+        let results = json!({ "cases": [{ "parameters": { "a.b": 3.0 }, "status": "stands", "outputs": outputs }] });
+        let value = |name: &str| selection(json!({ "result": format!("outputs.{name}") })).value(&|_| Some(&results));
+        assert_eq!(value("crack"), Value::Series(vec![(3.0, Value::Number(2.5))]));
+        for (name, why) in [
+            ("endless", "the output endless is not finite"),
+            ("twice", "two plug-ins have an output twice"),
+            ("crak", "there is no output crak of the case"),
+        ] {
+            assert_eq!(value(name), Value::Series(vec![(3.0, Value::unknown(why))]), "{name}");
+        }
+        assert_eq!(selection(json!({ "result": "outputs.crack" })).element_type(), Type::Number);
     }
 }
