@@ -96,6 +96,17 @@ pub struct InelasticState {
     pub dissipated: f64,
 }
 
+/// The outputs of a law at a Gauss point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GaussOutputs {
+    /// Position in world axes of the undeformed placement \[m\].
+    pub position: [f64; 2],
+    /// Area that the point represents \[m²\].
+    pub area: f64,
+    /// The values; NaN if the law has not written one.
+    pub values: Vec<f64>,
+}
+
 /// A step of a body, computed by its law alone.
 #[derive(Debug, Clone, Copy)]
 pub struct PassedStep {
@@ -414,17 +425,11 @@ impl InelasticBody {
         Ok(recovered.placed(self.origin, self.rotation, self.size, 1.0, [0.0; 3]))
     }
 
-    /// Returns the outputs of the law at all Gauss points: position in world axes of the undeformed placement \[m\], area
-    /// \[m²\], and `count` values.
+    /// Returns the outputs of the law at all Gauss points, `count` at each.
     ///
     /// # Errors
     /// If an update fails or the numbers do not fit the mesh.
-    pub fn outputs(
-        &self,
-        displacement: &[f64],
-        history: &[f64],
-        count: usize,
-    ) -> Result<Vec<([f64; 2], f64, Vec<f64>)>, String> {
+    pub fn outputs(&self, displacement: &[f64], history: &[f64], count: usize) -> Result<Vec<GaussOutputs>, String> {
         let size = self.state_size();
         if displacement.len() != 2 * self.nodes() || history.len() != self.gauss_points() * size {
             return Err("the state of a block does not fit its mesh".into());
@@ -439,7 +444,7 @@ impl InelasticBody {
                     .outputs(&strains[index], &context, state, &mut values)
                     .map_err(|wrong| format!("the outputs of a Gauss point cannot be found: {wrong}"))?;
                 let place = self.origin + self.rotation * bilinear(&corners, point.place).0 * self.size;
-                found.push((place.into(), weight * self.size * self.size, values));
+                found.push(GaussOutputs { position: place.into(), area: weight * self.size * self.size, values });
             }
         }
         Ok(found)

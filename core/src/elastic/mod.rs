@@ -51,7 +51,7 @@ mod shared;
 mod stress;
 
 pub use self::condensation::{Condensed, Condenser};
-pub use self::inelastic::{InelasticBody, InelasticState, PassedStep, fine_enough};
+pub use self::inelastic::{GaussOutputs, InelasticBody, InelasticState, PassedStep, fine_enough};
 pub use self::joint::{breaks_on_joint, joint_points, union_breaks};
 pub use self::linearisation::Linearisation;
 pub use self::mesh::{Mesh, edge_breaks, edge_points};

@@ -3,6 +3,7 @@
 use super::law_step::LawStep;
 use super::problem::PathProblem;
 use super::state::PathState;
+use crate::elastic::GaussOutputs;
 use crate::law::TractionPoint;
 
 /// The outputs of a law at one point.
@@ -80,7 +81,8 @@ impl PointOutputs {
                 }
             };
             let points = points.map_err(|why| format!("block {place}: {why}"))?;
-            let one = |(position, size, values)| PointOutputs { place, position, size, values };
+            let one =
+                |own: GaussOutputs| PointOutputs { place, position: own.position, size: own.area, values: own.values };
             found.extend(points.into_iter().map(one));
         }
         Ok(found)

@@ -90,7 +90,8 @@ fn number(value: Option<f64>) -> String {
 /// Creates a file with the points of joints and blocks at which plug-ins have outputs. An output of a joint or a block is given at
 /// each of its points. `None` without such points.
 fn points_text(case: &CaseResult) -> Option<String> {
-    let (mut places, mut columns): (Vec<[f64; 2]>, Vec<(String, Vec<Option<f64>>)>) = Default::default();
+    let mut places: Vec<[f64; 2]> = Vec::new();
+    let mut columns: Vec<(String, Vec<Option<f64>>)> = Vec::new();
     let bases = case.outputs.iter().filter(|entry| entry.of == OutputOf::Point);
     let mut done: Vec<(&str, &str)> = Vec::new();
     for base in bases {
