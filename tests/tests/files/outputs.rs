@@ -118,7 +118,7 @@ fn forged_outputs_are_found() {
         assert_eq!(findings(&study, &original), Vec::<String>::new(), "untouched");
         for index in 0..original["cases"][0]["outputs"].as_array().expect("outputs").len() {
             let at = |key: &str| format!("/cases/0/outputs/{index}/{key}");
-            let mut forge = |key: &str, value: Value| {
+            let forge = |key: &str, value: Value| {
                 let mut forged = original.clone();
                 let Some(slot) = forged.pointer_mut(&at(key)) else { return };
                 *slot = value;
