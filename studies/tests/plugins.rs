@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::path::Path;
-use voussoir::core::limit::{Counters, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, Status};
+use voussoir::core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, Status};
 use voussoir::core::model::stage_loads;
 use voussoir::core::plugin::{Card, Diagnostic, Need, Parameter, PluginKind, Quantity, Range, Shape};
 use voussoir::kinds::{KindEntry, LoadedStudy, OwnResults, RunRequest, SceneStudy, StudyKind, read_study};
@@ -37,21 +37,7 @@ struct Fussy {
 impl LimitSolver for Fussy {
     fn solve(&self, _: &LimitProblem, _: LimitQuestion) -> LimitAnswer {
         assert!(self.effort.is_none_or(|effort| effort.0 != 5), "an effort of 5 is too much");
-        LimitAnswer {
-            status: Status::Stalled,
-            factor: None,
-            field_factor: 0.0,
-            field: None,
-            start_field: None,
-            motion: None,
-            unique: None,
-            ray: None,
-            feasible_interval: None,
-            non_associated: None,
-            counters: Counters::new(),
-            outputs: Default::default(),
-            notes: Vec::new(),
-        }
+        LimitAnswer::stalled("it never answers")
     }
 
     fn refuses(&self, _: &LimitProblem) -> Option<String> {

@@ -23,7 +23,7 @@ pub enum LimitQuestion {
 }
 
 /// The end of a stage. The certificate decides it; the status in a solver's answer is a hint.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
     /// The structure carries the target of the stage: an admissible state at the target proves it.
@@ -39,6 +39,7 @@ pub enum Status {
     /// A number is proved, but not the statement that was asked for: `bounds` holds the proved ends.
     Open,
     /// No claim is proved; the notes give the reason.
+    #[default]
     Stalled,
 }
 
@@ -67,8 +68,9 @@ pub enum Greatest {
 /// Counts of work done, by name.
 pub type Counters = BTreeMap<String, u64>;
 
-/// The answer of a limit solver for one stage.
-#[derive(Debug, Clone)]
+/// The answer of a limit solver for one stage. Create it with a constructor, such as [`LimitAnswer::collapse`], and set
+/// the other fields afterwards: later versions may add fields.
+#[derive(Debug, Clone, Default)]
 pub struct LimitAnswer {
     /// The end of the stage.
     pub status: Status,
@@ -98,6 +100,43 @@ pub struct LimitAnswer {
     pub outputs: BTreeMap<String, f64>,
     /// Notes for the user.
     pub notes: Vec<String>,
+}
+
+impl LimitAnswer {
+    /// Creates an answer that decides nothing, with the reason.
+    pub fn stalled(why: impl Into<String>) -> Self {
+        LimitAnswer::default().noting(why)
+    }
+
+    /// Creates the answer that the target of the stage is carried: a field at this factor.
+    pub fn stands(field_factor: f64, field: Vec<JointForce>) -> Self {
+        LimitAnswer { status: Status::Stands, field_factor, field: Some(field), ..LimitAnswer::default() }
+    }
+
+    /// Creates the answer that the structure collapses at a factor: a field at the factor, and a mechanism with
+    /// varying·q̇ = 1.
+    pub fn collapse(factor: f64, field: Vec<JointForce>, motion: Vec<Velocity>) -> Self {
+        let stands = LimitAnswer::stands(factor, field);
+        LimitAnswer { status: Status::Collapse, factor: Some(factor), motion: Some(motion), ..stands }
+    }
+
+    /// Creates the answer that the structure carries any factor: a field at one factor, and a ray of forces that
+    /// balances the varying load alone.
+    pub fn unbounded(field_factor: f64, field: Vec<JointForce>, ray: Vec<JointForce>) -> Self {
+        LimitAnswer { status: Status::Unbounded, ray: Some(ray), ..LimitAnswer::stands(field_factor, field) }
+    }
+
+    /// Creates the answer that the loads at the start of the stage are not carried: a motion on which they do more work
+    /// than is dissipated.
+    pub fn no_equilibrium(motion: Vec<Velocity>) -> Self {
+        LimitAnswer { status: Status::NoEquilibrium, motion: Some(motion), ..LimitAnswer::default() }
+    }
+
+    /// Adds a note for the user.
+    pub fn noting(mut self, note: impl Into<String>) -> Self {
+        self.notes.push(note.into());
+        self
+    }
 }
 
 /// Additional results if each joint has the flow of its own law. With non-associated flow the factor is not unique:

@@ -10,8 +10,9 @@ use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// The answer of a path solver.
-#[derive(Debug, Clone)]
+/// The answer of a path solver. Create it with a constructor, such as [`PathAnswer::stands`], and set the other fields
+/// afterwards: later versions may add fields.
+#[derive(Debug, Clone, Default)]
 pub struct PathAnswer {
     /// Status of the path.
     pub status: Status,
@@ -48,6 +49,51 @@ pub struct PathAnswer {
     pub outputs: BTreeMap<String, f64>,
     /// Notes for the user.
     pub notes: Vec<String>,
+}
+
+impl PathAnswer {
+    /// Creates an answer that decides nothing, with the reason.
+    pub fn stalled(why: impl Into<String>) -> Self {
+        PathAnswer::default().noting(why)
+    }
+
+    /// Creates an answer with a status and the state to which it refers.
+    fn at(status: Status, state: PathState) -> Self {
+        PathAnswer { status, load_step: state.load_step, factor: Some(state.factor), state, ..PathAnswer::default() }
+    }
+
+    /// Creates the answer that all load steps are carried; the state is that at the end of the last one.
+    pub fn stands(state: PathState) -> Self {
+        PathAnswer::at(Status::Stands, state)
+    }
+
+    /// Creates the answer that the structure collapses: the state, and the velocities of a mechanism with p·q̇ = 1.
+    pub fn collapse(state: PathState, motion: Vec<[f64; 3]>) -> Self {
+        PathAnswer { motion: Some(motion), ..PathAnswer::at(Status::Collapse, state) }
+    }
+
+    /// Creates the answer that the path ends at a limit point, with the proof that no rate has a factor that grows.
+    pub fn limit_point(state: PathState, proof: Witness) -> Self {
+        PathAnswer { witnesses: vec![proof], ..PathAnswer::at(Status::LimitPoint, state) }
+    }
+
+    /// Creates the answer that the structure carries any factor: the state, the rates of contact forces of a ray, and the
+    /// same rates as a proof.
+    pub fn unbounded(state: PathState, ray: Vec<[f64; 2]>, proof: Witness) -> Self {
+        PathAnswer { ray: Some(ray), witnesses: vec![proof], ..PathAnswer::at(Status::Unbounded, state) }
+    }
+
+    /// Creates the answer that the change of gravity at the start of a stage is not carried; the state is the last one that
+    /// is carried.
+    pub fn no_equilibrium(state: PathState) -> Self {
+        PathAnswer::at(Status::NoEquilibrium, state)
+    }
+
+    /// Adds a note for the user.
+    pub fn noting(mut self, note: impl Into<String>) -> Self {
+        self.notes.push(note.into());
+        self
+    }
 }
 
 /// The settings of a path solver.

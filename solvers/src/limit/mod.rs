@@ -1,20 +1,16 @@
 //! Limit analysis: the greatest factor at which rigid blocks can be in admissible equilibrium.
 //!
-//! `question` asks the sequence of questions that leads to every status; an engine solves the three kinds of single
-//! optimisation in it. The engines are [`chain`] and [`conic`]. [`sequential`] and [`nonassociated`] use the flow of
+//! [`answer_by`](voussoir_core::limit::answer_by) asks the sequence of questions that leads to every status; an engine
+//! solves the three kinds of single optimisation in it. The engines are [`chain`] and [`conic`]. [`sequential`] and [`nonassociated`] use the flow of
 //! the laws instead of associated flow.
 
 mod associated;
 mod block_program;
 pub mod chain;
 pub mod conic;
-mod engine;
 mod equilibrium;
-mod floating;
 pub mod nonassociated;
-mod question;
 mod recovery;
-mod scale;
 #[cfg(test)]
 mod scenes;
 pub mod sensitivity;
@@ -28,5 +24,4 @@ mod thrust_zone;
 #[cfg(test)]
 mod zone_tests;
 
-pub use self::engine::{Engine, Equilibrium, Greatest};
 pub use self::thrust_zone::{thrust_zone, zone_costs_little};

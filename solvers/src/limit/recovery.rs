@@ -1,14 +1,12 @@
 //! Fields and mechanisms to rounding from the known yielding and moving rows.
 
-use super::equilibrium::Row;
-use super::scale::with_unit_power;
 use super::systems::Systems;
 use crate::limit::settings::SETTINGS;
-use voussoir_core::limit::{JointForce, LimitProblem, Velocity};
+use voussoir_core::limit::{JointForce, LimitProblem, SparseRow, Velocity, with_unit_power};
 use voussoir_core::linear::{Entries, SparseLdlt};
 
 /// Returns the solution of J z = h nearest to `start`, and its greatest residual.
-fn nearest(rows: &[Row], right: &[f64], start: Vec<f64>) -> Option<(Vec<f64>, f64)> {
+fn nearest(rows: &[SparseRow], right: &[f64], start: Vec<f64>) -> Option<(Vec<f64>, f64)> {
     let (n, m) = (start.len(), rows.len());
     let mut entries: Entries = (0..n).map(|j| (j, j, 1.0)).collect();
     for (i, row) in rows.iter().enumerate() {
@@ -44,7 +42,7 @@ impl Systems {
     /// the greatest residual or violation of any pair.
     pub fn field(&self, yielding: &[usize], start: Vec<f64>) -> Option<(Vec<f64>, f64)> {
         let theta = self.forces;
-        let mut rows: Vec<Row> = self.equilibrium.clone();
+        let mut rows: Vec<SparseRow> = self.equilibrium.clone();
         rows.iter_mut().zip(&self.varying).for_each(|(row, &p)| row.push((theta, p)));
         let mut right: Vec<f64> = self.fixed.iter().map(|w| -w).collect();
         for &i in yielding {
@@ -58,7 +56,7 @@ impl Systems {
 
     /// Returns the force variables and θ in equilibrium with these slacks s_i, and the greatest residual or violation.
     pub fn field_with(&self, slacks: &[f64]) -> Option<(Vec<f64>, f64)> {
-        let mut rows: Vec<Row> = self.equilibrium.clone();
+        let mut rows: Vec<SparseRow> = self.equilibrium.clone();
         rows.iter_mut().zip(&self.varying).for_each(|(row, &p)| row.push((self.forces, p)));
         let mut right: Vec<f64> = self.fixed.iter().map(|w| -w).collect();
         for (pair, slack) in self.pairs.iter().zip(slacks) {
@@ -80,7 +78,7 @@ impl Systems {
     /// residual or violation of γ ≥ 0, relative to the greatest multiplier.
     pub fn motion(&self, problem: &LimitProblem, moving: &[(usize, f64)]) -> Option<(Vec<Velocity>, f64)> {
         let bodies = self.equilibrium.len();
-        let mut rows: Vec<Row> = vec![Vec::new(); self.forces + 1];
+        let mut rows: Vec<SparseRow> = vec![Vec::new(); self.forces + 1];
         for (i, entries) in self.equilibrium.iter().enumerate() {
             entries.iter().for_each(|&(j, v)| rows[j].push((i, v)));
             if self.varying[i] != 0.0 {
@@ -146,7 +144,7 @@ mod tests {
     /// The solution of x + y = 2 nearest to the origin is (1, 1); contradictory equations leave a residual.
     #[test]
     fn the_nearest_solution_is_found() {
-        let row: Row = vec![(0, 1.0), (1, 1.0)];
+        let row: SparseRow = vec![(0, 1.0), (1, 1.0)];
         let (z, worst) = nearest(std::slice::from_ref(&row), &[2.0], vec![0.0; 2]).expect("a solution");
         assert!(z.iter().all(|x| (x - 1.0).abs() < 1e-12) && worst < 1e-12, "{z:?}");
         let (z, worst) = nearest(std::slice::from_ref(&row), &[2.0], vec![3.0, 1.0]).expect("a solution");

@@ -3,17 +3,15 @@
 //! In units of the force scale F, the length L and the factor unit Λ (θ = λ/Λ): *statics* is E r + p θ = −w and s = b −
 //! A r ≥ 0, 0 ≤ θ ≤ t; *kinematics* is Eᵀ q̇ + Dᵀ γ = 0, p·q̇ = 1, γ ≥ 0. A pair i is a row of a joint: s_i γ_i = 0.
 
-use super::equilibrium::ForceVariables;
-use super::scale::{force_scale, force_unit};
 use crate::limit::settings::SETTINGS;
 use crate::optimise::dense_simplex::{Dictionary, Equations};
 use voussoir_core::law::FacetMode;
-use voussoir_core::limit::LimitProblem;
+use voussoir_core::limit::{ForceVariables, LimitProblem, force_scale, force_unit};
 use voussoir_core::model::Wrenches;
 
-/// Greatest number of entries of the equations for dense dictionaries.
+/// GreatestFactor number of entries of the equations for dense dictionaries.
 pub const LARGEST: usize = 1_500_000;
-/// Greatest number of pivots of a dense linear program.
+/// GreatestFactor number of pivots of a dense linear program.
 pub const PIVOTS: u64 = 20_000;
 
 /// One row of one joint.

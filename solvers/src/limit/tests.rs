@@ -1,16 +1,16 @@
 use super::chain::{ChainEngine, LimitChain};
 use super::conic::{LimitConic, engine};
-use super::engine::{Engine, Equilibrium, Greatest};
-use super::equilibrium::{ForceVariables, excess, field_error};
-use super::floating::loose_motion;
+use super::equilibrium::{excess, field_error};
 use super::nonassociated::LimitNonassociated;
-use super::scale::{combined, force_scale, force_unit, with_unit_power};
 use super::scenes::{Dry, STUCK, block, lintel};
 use super::sensitivity::{DataRate, OptimalFace, same_data};
 use super::sequential::LimitSequential;
 use super::systems::Systems;
 use voussoir_core::law::StressBlock;
-use voussoir_core::limit::{JointForce, LimitProblem, LimitQuestion, LimitSolver, Status};
+use voussoir_core::limit::{
+    Engine, Equilibrium, ForceVariables, GreatestFactor, JointForce, LimitProblem, LimitQuestion, LimitSolver, Status,
+    combined, force_scale, force_unit, loose_motion, with_unit_power,
+};
 use voussoir_core::model::Wrenches;
 
 const COLLAPSE: LimitQuestion = LimitQuestion::Collapse { start: 0.0, max: f64::INFINITY };
@@ -100,7 +100,7 @@ fn two_engines_agree() {
             [engine(&problem), Box::new(ChainEngine::new(&problem).expect("a chain"))];
         let found =
             engines.each_mut().map(|engine| match engine.greatest(&problem.fixed, &problem.varying, f64::INFINITY) {
-                Greatest::Collapse { factor, motion, .. } => {
+                GreatestFactor::Collapse { factor, motion, .. } => {
                     let power: f64 = (0..3).map(|i| problem.varying[0][i] * motion[0][i]).sum();
                     close(power, 1.0);
                     factor
@@ -116,7 +116,7 @@ fn two_engines_agree() {
 fn a_cap_below_the_collapse_load_is_reached() {
     for crushing in [None, Some(20.0)] {
         let problem = block(1.0, 2.0, Dry { crushing, ..STUCK });
-        let Greatest::Capped(field) = engine(&problem).greatest(&problem.fixed, &problem.varying, 0.25) else {
+        let GreatestFactor::Capped(field) = engine(&problem).greatest(&problem.fixed, &problem.varying, 0.25) else {
             panic!("not capped")
         };
         let loads = combined(&problem.fixed, &problem.varying, 0.25);
@@ -129,12 +129,13 @@ fn a_cap_below_the_collapse_load_is_reached() {
 fn a_load_that_presses_has_no_bound_but_the_strength() {
     let pressed: Wrenches = vec![[0.0, -1.0, 0.0]];
     let problem = block(1.0, 2.0, sliding(0.5));
-    let Greatest::Unbounded(ray) = engine(&problem).greatest(&problem.fixed, &pressed, f64::INFINITY) else {
+    let GreatestFactor::Unbounded(ray) = engine(&problem).greatest(&problem.fixed, &pressed, f64::INFINITY) else {
         panic!("bounded")
     };
     assert!(field_error(&problem, &pressed, &ray) <= 1e-10);
     let problem = block(1.0, 2.0, Dry { crushing: Some(7.0), ..sliding(0.5) });
-    let Greatest::Collapse { factor, .. } = engine(&problem).greatest(&problem.fixed, &pressed, f64::INFINITY) else {
+    let GreatestFactor::Collapse { factor, .. } = engine(&problem).greatest(&problem.fixed, &pressed, f64::INFINITY)
+    else {
         panic!("no collapse")
     };
     close(factor, 6.0);
@@ -145,7 +146,8 @@ fn a_load_that_presses_has_no_bound_but_the_strength() {
 fn shear_of_a_stuck_joint_that_crushes_is_a_ray() {
     let mut problem = block(1.0, 2.0, Dry { crushing: Some(7.0), ..STUCK });
     problem.varying = vec![[1.0, 0.0, 0.0]];
-    let Greatest::Unbounded(ray) = engine(&problem).greatest(&problem.fixed, &problem.varying, f64::INFINITY) else {
+    let GreatestFactor::Unbounded(ray) = engine(&problem).greatest(&problem.fixed, &problem.varying, f64::INFINITY)
+    else {
         panic!("bounded")
     };
     assert_eq!(ray[0].normal, [0.0; 2]);

@@ -6,9 +6,8 @@
 
 use super::chain::{self, ChainEngine};
 use super::conic;
-use super::engine::{Engine, Extreme};
 use crate::limit::settings::SETTINGS;
-use voussoir_core::limit::{JointForce, LimitJoint, LimitProblem};
+use voussoir_core::limit::{Engine, Extreme, JointForce, LimitJoint, LimitProblem};
 use voussoir_core::model::Wrenches;
 
 /// Returns true if the zone of a problem costs little: few joints close its bodies to rings.

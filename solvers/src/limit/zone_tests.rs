@@ -2,13 +2,11 @@
 
 use super::chain::{ChainEngine, LimitChain};
 use super::conic;
-use super::equilibrium::ForceVariables;
-use super::scale::combined;
 use super::scenes::{Dry, STUCK, block, lintel, ring};
 use super::thrust_zone::{thrust_zone, zone_by};
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
-use voussoir_core::limit::{LimitProblem, LimitQuestion, LimitSolver};
+use voussoir_core::limit::{Engine, ForceVariables, LimitProblem, LimitQuestion, LimitSolver, combined};
 use voussoir_core::model::Wrenches;
 
 const RUBBED: Dry = Dry { friction: Some(0.6), ..STUCK };
@@ -154,7 +152,7 @@ fn a_thrust_without_bound_has_a_zone() {
         joint.strength = block(1.0, 1.0, STUCK).joints[0].strength.clone();
     }
     let loads = combined(&problem.fixed, &problem.varying, 1.0);
-    let mut engines: Vec<Vec<Box<dyn super::Engine + '_>>> = vec![vec![conic::engine(&problem)]];
+    let mut engines: Vec<Vec<Box<dyn Engine + '_>>> = vec![vec![conic::engine(&problem)]];
     engines.push(vec![Box::new(ChainEngine::new(&problem).expect("a chain"))]);
     for engine in engines {
         for zone in zone_by(&problem, &loads, engine) {

@@ -2,10 +2,8 @@
 //! returned ([`self_check`](super::self_check)).
 
 use super::self_check::confirmed;
-use voussoir_core::limit::{Counters, Status};
-use voussoir_core::path::{
-    Branching, LimitPointEnd, PathAnswer, PathEvent, PathProblem, PathState, ProvenPeak, StageStability, Witness,
-};
+use voussoir_core::limit::Status;
+use voussoir_core::path::{LimitPointEnd, PathAnswer, PathProblem};
 
 /// A status with its claims.
 #[derive(Debug, Clone)]
@@ -20,23 +18,6 @@ pub(super) struct Outcome {
     pub unique: Option<bool>,
     /// The reason why the path ends at a limit point, if the question does not give it.
     pub limit_point_end: Option<LimitPointEnd>,
-}
-
-/// The record of a path, whatever its end.
-#[derive(Debug, Clone, Default)]
-pub(super) struct PathRecord {
-    pub load_step: usize,
-    /// The state of the status.
-    pub state: PathState,
-    /// The last state, if the path continued beyond it.
-    pub last: Option<PathState>,
-    pub events: Vec<PathEvent>,
-    pub limit_points: Vec<ProvenPeak>,
-    pub stability: Vec<StageStability>,
-    pub branchings: Vec<Branching>,
-    pub witnesses: Vec<Witness>,
-    pub counters: Counters,
-    pub notes: Vec<String>,
 }
 
 impl Outcome {
@@ -55,50 +36,14 @@ impl Outcome {
         Outcome { ray, ..self }
     }
 
-    /// Returns the answer after its claim is checked again; a stall if it is not confirmed.
-    pub fn answer(self, problem: &PathProblem, finite: bool, record: PathRecord) -> PathAnswer {
+    /// Returns the answer of a record of the path after its claim is checked again; a stall if it is not confirmed.
+    pub fn answer(self, problem: &PathProblem, finite: bool, record: PathAnswer) -> PathAnswer {
         confirmed(problem, finite, self.unconfirmed(record))
     }
 
     /// Returns the unchecked answer, for paths whose end cannot be checked without the earlier path.
-    pub fn unconfirmed(self, record: PathRecord) -> PathAnswer {
+    pub fn unconfirmed(self, record: PathAnswer) -> PathAnswer {
         let Outcome { status, factor, motion, ray, unique, limit_point_end } = self;
-        let PathRecord {
-            load_step,
-            state,
-            last,
-            events,
-            limit_points,
-            stability,
-            branchings,
-            witnesses,
-            counters,
-            notes,
-        } = record;
-        PathAnswer {
-            status,
-            load_step,
-            factor,
-            state,
-            last,
-            motion,
-            unique,
-            limit_points,
-            limit_point_end,
-            stability,
-            branchings,
-            ray,
-            events,
-            witnesses,
-            counters,
-            outputs: Default::default(),
-            notes,
-        }
+        PathAnswer { status, factor, motion, ray, unique, limit_point_end, ..record }
     }
-}
-
-/// Returns an answer with only the reason why there is no result.
-pub(super) fn stalled(problem: &PathProblem, why: String) -> PathAnswer {
-    let record = PathRecord { notes: vec![why], ..PathRecord::default() };
-    Outcome::at(Status::Stalled, None).answer(problem, false, record)
 }

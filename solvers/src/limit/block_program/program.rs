@@ -5,8 +5,7 @@
 //! of all bodies are then of similar size.
 
 use super::cone::{Cone, ROWS, dot};
-use crate::limit::scale::force_unit;
-use voussoir_core::limit::{JointForce, LimitProblem, Velocity};
+use voussoir_core::limit::{JointForce, LimitProblem, Velocity, force_unit};
 use voussoir_core::linear::elimination_order;
 use voussoir_core::model::Wrenches;
 use voussoir_core::model::geometry::{Vec2, cross, turned};
@@ -33,7 +32,7 @@ pub struct Loads<'a> {
     pub fixed: Option<&'a Wrenches>,
     /// Loads multiplied by the factor.
     pub varying: &'a Wrenches,
-    /// Greatest factor.
+    /// GreatestFactor factor.
     pub cap: f64,
     /// True with strengths; false for the recession cone.
     pub strengths: bool,

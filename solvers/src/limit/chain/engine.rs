@@ -3,10 +3,11 @@
 use super::layout::{Aim, Forms, Redundants, Trees, trees};
 use super::optimum::centre;
 use super::simplex::{Outcome, Program, Solved};
-use crate::limit::engine::{Engine, Equilibrium, Extreme, Greatest};
-use crate::limit::scale::{force_scale, force_unit, with_unit_power};
 use crate::limit::settings::SETTINGS;
-use voussoir_core::limit::{Counters, JointForce, LimitProblem};
+use voussoir_core::limit::{
+    Counters, Engine, Equilibrium, Extreme, GreatestFactor, JointForce, LimitProblem, force_scale, force_unit,
+    with_unit_power,
+};
 use voussoir_core::model::Wrenches;
 
 /// The three optimisations in terms of redundants.
@@ -77,29 +78,29 @@ impl Engine for ChainEngine<'_> {
         self.margin(fixed, Some(varying), false)
     }
 
-    fn greatest(&mut self, fixed: &Wrenches, varying: &Wrenches, cap: f64) -> Greatest {
+    fn greatest(&mut self, fixed: &Wrenches, varying: &Wrenches, cap: f64) -> GreatestFactor {
         let force = force_scale(self.problem, fixed, varying);
         let factor_unit = force / force_unit(self.problem, varying);
         let forms = self.forms((fixed, &[(varying, factor_unit)]), force);
         let program = Program::new(self.problem, &forms, force).with_cap(cap / factor_unit);
         match self.run(&program) {
             Outcome::Optimal(Solved { columns, capped: false, .. }) if columns.is_empty() => {
-                Greatest::Failed("the optimum of the simplex has no mechanism".into())
+                GreatestFactor::Failed("the optimum of the simplex has no mechanism".into())
             }
             Outcome::Optimal(Solved { value, point, columns, capped: false }) => {
                 let (columns, unique) = centre(&program, &point, columns);
                 let motion = program.motion(self.problem, &self.trees, &columns);
-                Greatest::Collapse {
+                GreatestFactor::Collapse {
                     factor: value * factor_unit,
                     field: program.forces(&point),
                     motion: with_unit_power(varying, motion),
                     unique: Some(unique),
                 }
             }
-            Outcome::Optimal(Solved { point, .. }) => Greatest::Capped(program.forces(&point)),
+            Outcome::Optimal(Solved { point, .. }) => GreatestFactor::Capped(program.forces(&point)),
             Outcome::Unbounded(direction) => {
                 let forces = program.directions(&direction);
-                Greatest::Unbounded(
+                GreatestFactor::Unbounded(
                     forces
                         .into_iter()
                         .map(|f| JointForce { normal: f.normal.map(|n| n / factor_unit), shear: f.shear / factor_unit })
@@ -107,9 +108,9 @@ impl Engine for ChainEngine<'_> {
                 )
             }
             Outcome::Infeasible(_) => {
-                Greatest::Failed("no admissible field: the start is on the verge of collapse".into())
+                GreatestFactor::Failed("no admissible field: the start is on the verge of collapse".into())
             }
-            Outcome::Failed(why) => Greatest::Failed(why),
+            Outcome::Failed(why) => GreatestFactor::Failed(why),
         }
     }
 

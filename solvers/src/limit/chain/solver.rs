@@ -3,10 +3,9 @@
 use super::engine::ChainEngine;
 use super::layout::trees;
 use crate::limit::conic::LimitConic;
-use crate::limit::question::answer_by;
 use crate::limit::settlement::settle;
 use voussoir_core::law::FlowRule;
-use voussoir_core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, SettlementAnswer};
+use voussoir_core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, SettlementAnswer, answer_by};
 use voussoir_core::model::Wrenches;
 use voussoir_core::plugin::{Capability, Card, Keys, PluginKind};
 

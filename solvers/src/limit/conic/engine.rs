@@ -6,11 +6,12 @@ use super::system::{Loads, System};
 use super::tangents::by_tangents;
 use crate::limit::block_program::{self, Program, Solution, Solved};
 use crate::limit::chain::ChainEngine;
-use crate::limit::engine::{Engine, Equilibrium, Extreme, Greatest};
 use crate::limit::equilibrium::{field_error, field_violation};
-use crate::limit::scale::{combined, force_scale, force_unit, with_unit_power};
 use crate::limit::settings::SETTINGS;
-use voussoir_core::limit::{Counters, JointForce, LimitJoint, LimitProblem};
+use voussoir_core::limit::{
+    Counters, Engine, Equilibrium, Extreme, GreatestFactor, JointForce, LimitJoint, LimitProblem, combined,
+    force_scale, force_unit, with_unit_power,
+};
 use voussoir_core::model::Wrenches;
 
 /// Solves single optimisations of a problem without envelopes.
@@ -40,9 +41,9 @@ enum Optimum {
 #[derive(Default)]
 struct Tried {
     /// The polished answer with the least error.
-    best: Option<(f64, Greatest)>,
+    best: Option<(f64, GreatestFactor)>,
     /// The first answer without a converged polish.
-    unsettled: Option<Greatest>,
+    unsettled: Option<GreatestFactor>,
     /// The reason if there is no answer.
     failed: String,
 }
@@ -178,36 +179,36 @@ impl<'a> ConicEngine<'a> {
     }
 
     /// Returns a finite optimum: capped or a collapse.
-    fn finite(&self, system: &System, pair: &Pair, unique: bool, varying: &Wrenches, unit: f64) -> Greatest {
+    fn finite(&self, system: &System, pair: &Pair, unique: bool, varying: &Wrenches, unit: f64) -> GreatestFactor {
         if system.cap.is_some_and(|row| pair.rows[row] > 1e-9) {
-            return Greatest::Capped(system.forces(&pair.x));
+            return GreatestFactor::Capped(system.forces(&pair.x));
         }
         let motion = with_unit_power(varying, system.motion(&pair.equations));
         let factor = pair.x[system.theta] * unit;
-        Greatest::Collapse { factor, field: system.forces(&pair.x), motion, unique: Some(unique) }
+        GreatestFactor::Collapse { factor, field: system.forces(&pair.x), motion, unique: Some(unique) }
     }
 
     /// Finds the greatest factor by exchanges of single rows in terms of the redundants, if few joints close the bodies
     /// to rings. Next to a hinge of N voussoirs slacks are 1/N² of the load, so an interior point does not show which
     /// of them carry.
-    fn by_redundants(&mut self, (fixed, varying, cap): (&Wrenches, &Wrenches, f64)) -> Option<Greatest> {
+    fn by_redundants(&mut self, (fixed, varying, cap): (&Wrenches, &Wrenches, f64)) -> Option<GreatestFactor> {
         let mut engine = ChainEngine::new(self.problem)?;
         let greatest = engine.greatest(fixed, varying, cap);
         engine.counters().iter().for_each(|(name, by)| self.count(name, *by));
         let right = match &greatest {
-            Greatest::Failed(_) => false,
-            Greatest::Collapse { factor, field, .. } => {
+            GreatestFactor::Failed(_) => false,
+            GreatestFactor::Collapse { factor, field, .. } => {
                 field_error(self.problem, &combined(fixed, varying, *factor), field) <= SETTINGS.admissible
             }
-            Greatest::Capped(_) | Greatest::Unbounded(_) => true,
+            GreatestFactor::Capped(_) | GreatestFactor::Unbounded(_) => true,
         };
         right.then_some(greatest)
     }
 
     /// Finds the greatest factor with tangents of the stress blocks, starting from the earlier result without them.
-    fn by_tangents(&mut self, question: (&Wrenches, &Wrenches, f64), tried: &Tried) -> Option<Greatest> {
+    fn by_tangents(&mut self, question: (&Wrenches, &Wrenches, f64), tried: &Tried) -> Option<GreatestFactor> {
         let start = tried.best.as_ref().map(|best| &best.1).or(tried.unsettled.as_ref());
-        let (Greatest::Collapse { field, .. } | Greatest::Capped(field)) = start? else { return None };
+        let (GreatestFactor::Collapse { field, .. } | GreatestFactor::Capped(field)) = start? else { return None };
         let solved = by_tangents(self.problem, question, field, SETTINGS.admissible);
         solved.iter().for_each(|solved| self.counted(solved));
         Some(greatest_of(solved.into_iter().last()?.solution?, question.1))
@@ -291,7 +292,7 @@ impl Engine for ConicEngine<'_> {
         self.share(fixed, Some(varying), true)
     }
 
-    fn greatest(&mut self, fixed: &Wrenches, varying: &Wrenches, cap: f64) -> Greatest {
+    fn greatest(&mut self, fixed: &Wrenches, varying: &Wrenches, cap: f64) -> GreatestFactor {
         let loads = block_program::Loads { fixed: Some(fixed), varying, cap, strengths: true };
         let again = self.unsolved.take_if(|(known, _)| known == fixed).is_some_and(|(_, known)| known == *varying);
         let solved = if again { None } else { self.by_blocks(loads, |program| block_program::solve(program, false)) };
@@ -324,8 +325,8 @@ impl Engine for ConicEngine<'_> {
         }
         // Unbounded or not solved: a ray decides. A pair without polish is the last resort.
         match self.share(varying, None, false) {
-            Equilibrium::Field(ray) => Greatest::Unbounded(ray),
-            _ => tried.unsettled.unwrap_or(Greatest::Failed(tried.failed)),
+            Equilibrium::Field(ray) => GreatestFactor::Unbounded(ray),
+            _ => tried.unsettled.unwrap_or(GreatestFactor::Failed(tried.failed)),
         }
     }
 
@@ -334,7 +335,7 @@ impl Engine for ConicEngine<'_> {
         fixed: &Wrenches,
         varying: &Wrenches,
         cap: f64,
-    ) -> Option<(Vec<JointForce>, Greatest)> {
+    ) -> Option<(Vec<JointForce>, GreatestFactor)> {
         let loads = block_program::Loads { fixed: Some(fixed), varying, cap, strengths: true };
         let solved = self.by_blocks(loads, |program| block_program::solve(program, true))?;
         let stands = solved.stands.filter(|field| self.carries(fixed, field))?;
@@ -359,10 +360,10 @@ impl Engine for ConicEngine<'_> {
 }
 
 /// Returns the greatest factor of a program that was solved by its blocks.
-fn greatest_of(solution: Solution, varying: &Wrenches) -> Greatest {
+fn greatest_of(solution: Solution, varying: &Wrenches) -> GreatestFactor {
     let Solution { factor, capped, forces, motion, unique } = solution;
     if capped {
-        return Greatest::Capped(forces);
+        return GreatestFactor::Capped(forces);
     }
-    Greatest::Collapse { factor, field: forces, motion: with_unit_power(varying, motion), unique: Some(unique) }
+    GreatestFactor::Collapse { factor, field: forces, motion: with_unit_power(varying, motion), unique: Some(unique) }
 }

@@ -7,13 +7,12 @@
 //! proves that the scene has none. The result is a field within all envelopes.
 
 use super::engine::ConicEngine;
-use crate::limit::engine::{Engine, Equilibrium, Extreme, Greatest};
 use crate::limit::settings::SETTINGS;
 use voussoir_core::law::ShearEnvelope;
-use voussoir_core::limit::{Counters, JointForce, LimitProblem};
+use voussoir_core::limit::{Counters, Engine, Equilibrium, Extreme, GreatestFactor, JointForce, LimitProblem};
 use voussoir_core::model::Wrenches;
 
-/// Greatest number of programs for one question.
+/// GreatestFactor number of programs for one question.
 const MAX_PROGRAMS: usize = 60;
 
 /// The conic engine over a problem with rows instead of envelopes.
@@ -115,29 +114,29 @@ impl Engine for EnvelopeEngine {
         self.equilibrium(|engine| engine.possible(fixed, varying))
     }
 
-    fn greatest(&mut self, fixed: &Wrenches, varying: &Wrenches, cap: f64) -> Greatest {
+    fn greatest(&mut self, fixed: &Wrenches, varying: &Wrenches, cap: f64) -> GreatestFactor {
         let ask = |engine: &mut ConicEngine<'_>| engine.greatest(fixed, varying, cap);
         let found = self.until_within(SETTINGS.admissible, ask, |answer| match answer {
-            Greatest::Collapse { field, .. } | Greatest::Capped(field) => Some(field.as_slice()),
-            Greatest::Unbounded(_) | Greatest::Failed(_) => None,
+            GreatestFactor::Collapse { field, .. } | GreatestFactor::Capped(field) => Some(field.as_slice()),
+            GreatestFactor::Unbounded(_) | GreatestFactor::Failed(_) => None,
         });
         match found {
             // The envelopes may have more mechanisms than the rows.
-            Some(Greatest::Collapse { factor, field, motion, .. }) => {
+            Some(GreatestFactor::Collapse { factor, field, motion, .. }) => {
                 let touching = self.touching(&field);
                 let last = ConicEngine::new(&touching).greatest(fixed, varying, cap);
                 let motion = match last {
-                    Greatest::Collapse { factor: other, motion, .. }
+                    GreatestFactor::Collapse { factor: other, motion, .. }
                         if (other - factor).abs() <= SETTINGS.active * factor.abs() =>
                     {
                         motion
                     }
                     _ => motion,
                 };
-                Greatest::Collapse { factor, field, motion, unique: None }
+                GreatestFactor::Collapse { factor, field, motion, unique: None }
             }
             Some(other) => other,
-            None => Greatest::Failed(UNSETTLED.into()),
+            None => GreatestFactor::Failed(UNSETTLED.into()),
         }
     }
 

@@ -8,8 +8,8 @@
 
 use super::interior_point::Pair;
 use super::system::System;
-use crate::limit::equilibrium::Row;
 use crate::limit::settings::SETTINGS;
+use voussoir_core::limit::SparseRow;
 use voussoir_core::linear::{Entries, SparseLdlt};
 
 /// Least factor, in its unit, to which a gap is related.
@@ -21,7 +21,7 @@ const MAX_STEPS_WITHOUT_GAIN: usize = 4;
 pub struct Polished {
     /// The pair.
     pub pair: Pair,
-    /// Greatest residual of the optimality system, violation and negative multiplier.
+    /// GreatestFactor residual of the optimality system, violation and negative multiplier.
     pub error: f64,
     /// True if the mechanism is the only one.
     pub unique: bool,
@@ -33,24 +33,24 @@ pub struct Polished {
 
 #[derive(Clone, Copy, PartialEq)]
 enum Item {
-    Row(usize),
+    SparseRow(usize),
     Block(usize),
 }
 
-fn dot(row: &Row, x: &[f64]) -> f64 {
+fn dot(row: &SparseRow, x: &[f64]) -> f64 {
     row.iter().map(|&(j, v)| v * x[j]).sum()
 }
 
 fn value(system: &System, item: Item, x: &[f64]) -> f64 {
     match item {
-        Item::Row(i) => dot(&system.rows[i], x) - system.bounds[i],
+        Item::SparseRow(i) => dot(&system.rows[i], x) - system.bounds[i],
         Item::Block(k) => system.blocks[k].value(x),
     }
 }
 
 fn multiplier(pair: &Pair, item: Item) -> f64 {
     match item {
-        Item::Row(i) => pair.rows[i],
+        Item::SparseRow(i) => pair.rows[i],
         Item::Block(k) => pair.blocks[k],
     }
 }
@@ -78,7 +78,7 @@ pub fn balanced(system: &System, approximate: &Pair) -> Option<Pair> {
 
 fn polish_with(system: &System, approximate: &Pair, delta: f64) -> Option<Polished> {
     let items: Vec<Item> =
-        (0..system.rows.len()).map(Item::Row).chain((0..system.blocks.len()).map(Item::Block)).collect();
+        (0..system.rows.len()).map(Item::SparseRow).chain((0..system.blocks.len()).map(Item::Block)).collect();
     let mut active: Vec<bool> =
         items.iter().map(|&item| multiplier(approximate, item) > -value(system, item, &approximate.x)).collect();
     let mut best: Option<Polished> = None;
@@ -122,7 +122,7 @@ fn polish_with(system: &System, approximate: &Pair, delta: f64) -> Option<Polish
 fn gap(system: &System, pair: &Pair) -> f64 {
     let equations = system.equations.iter().zip(&system.right).zip(&pair.equations);
     let left = equations.map(|((row, right), q)| (q * (dot(row, &pair.x) - right)).abs());
-    let rows = (0..system.rows.len()).map(|row| (pair.rows[row] * value(system, Item::Row(row), &pair.x)).abs());
+    let rows = (0..system.rows.len()).map(|row| (pair.rows[row] * value(system, Item::SparseRow(row), &pair.x)).abs());
     let blocks = (0..system.blocks.len()).map(|k| (pair.blocks[k] * system.blocks[k].value(&pair.x)).abs());
     left.chain(rows).chain(blocks).sum()
 }
@@ -136,7 +136,7 @@ fn clipped(pair: &Pair, items: &[Item], active: &[bool]) -> Pair {
     let mut pair = pair.clone();
     for (item, active) in items.iter().zip(active) {
         match item {
-            Item::Row(i) if !active => pair.rows[*i] = 0.0,
+            Item::SparseRow(i) if !active => pair.rows[*i] = 0.0,
             Item::Block(k) if !active => pair.blocks[*k] = 0.0,
             _ => {}
         }
@@ -152,12 +152,12 @@ struct Newton<'a> {
 }
 
 impl Newton<'_> {
-    fn gradients(&self) -> Vec<Row> {
+    fn gradients(&self) -> Vec<SparseRow> {
         gradients(self.system, self.active, &self.pair.x)
     }
 
     /// Returns the residual of the optimality system: stationarity, then equations, then active rows.
-    fn residual(&self, gradients: &[Row]) -> Vec<f64> {
+    fn residual(&self, gradients: &[SparseRow]) -> Vec<f64> {
         let system = self.system;
         let (n, e) = (system.variables, system.equations.len());
         let mut residual = vec![0.0; n + e + self.active.len()];
@@ -208,7 +208,7 @@ impl Newton<'_> {
             (0..e).for_each(|i| self.pair.equations[i] -= step[n + i]);
             for (k, item) in self.active.iter().enumerate() {
                 match item {
-                    Item::Row(i) => self.pair.rows[*i] -= step[n + e + k],
+                    Item::SparseRow(i) => self.pair.rows[*i] -= step[n + e + k],
                     Item::Block(b) => self.pair.blocks[*b] -= step[n + e + k],
                 }
             }
@@ -217,7 +217,7 @@ impl Newton<'_> {
         Some((factorisations, iterations, best.0))
     }
 
-    fn matrix(&self, gradients: &[Row]) -> Entries {
+    fn matrix(&self, gradients: &[SparseRow]) -> Entries {
         let mut entries = saddle(self.system, gradients, self.delta);
         for item in self.active {
             if let Item::Block(k) = item {
@@ -232,16 +232,16 @@ impl Newton<'_> {
     }
 }
 
-fn gradients(system: &System, active: &[Item], x: &[f64]) -> Vec<Row> {
+fn gradients(system: &System, active: &[Item], x: &[f64]) -> Vec<SparseRow> {
     let gradient = |item: &Item| match item {
-        Item::Row(i) => system.rows[*i].clone(),
+        Item::SparseRow(i) => system.rows[*i].clone(),
         Item::Block(k) => system.blocks[*k].gradient(x),
     };
     active.iter().map(gradient).collect()
 }
 
 /// Returns \[δ I, Jᵀ; J, −δ I\] with J the equations and the gradients.
-fn saddle(system: &System, gradients: &[Row], delta: f64) -> Entries {
+fn saddle(system: &System, gradients: &[SparseRow], delta: f64) -> Entries {
     let n = system.variables;
     let mut entries: Entries = (0..n).map(|j| (j, j, delta)).collect();
     for (i, row) in system.equations.iter().chain(gradients).enumerate() {

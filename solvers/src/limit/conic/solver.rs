@@ -2,11 +2,11 @@
 
 use super::engine::ConicEngine;
 use super::envelope::EnvelopeEngine;
-use crate::limit::engine::Engine;
-use crate::limit::question::answer_by;
 use crate::limit::settlement::settle;
 use voussoir_core::law::FlowRule;
-use voussoir_core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, SettlementAnswer};
+use voussoir_core::limit::{
+    Engine, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, SettlementAnswer, answer_by,
+};
 use voussoir_core::model::Wrenches;
 use voussoir_core::plugin::{Capability, Card, Keys, PluginKind};
 

@@ -1,8 +1,7 @@
 //! The program of one optimisation in scaled, sparse form.
 
-use crate::limit::equilibrium::{ForceVariables, Row};
 use voussoir_core::law::StressBlock;
-use voussoir_core::limit::{JointForce, LimitJoint, LimitProblem, Velocity};
+use voussoir_core::limit::{ForceVariables, JointForce, LimitJoint, LimitProblem, SparseRow, Velocity};
 use voussoir_core::model::Wrenches;
 
 /// A joint's stress block as a constraint φ = u²/F − w ≤ 0, u = N_0 + N_1 + F_t, w = 2 N_end + F_t.
@@ -30,7 +29,7 @@ impl Block {
     }
 
     /// Returns ∇φ at x.
-    pub fn gradient(&self, x: &[f64]) -> Row {
+    pub fn gradient(&self, x: &[f64]) -> SparseRow {
         let slope = 2.0 * self.state(x).0 / self.strength.total;
         (0..2).map(|i| (self.normal[i], slope - if i == self.end { 2.0 } else { 0.0 })).collect()
     }
@@ -43,11 +42,11 @@ pub struct System {
     /// Index of θ, the last variable.
     pub theta: usize,
     /// Equations of equilibrium, three per group.
-    pub equations: Vec<Row>,
+    pub equations: Vec<SparseRow>,
     /// Right-hand sides of the equations.
     pub right: Vec<f64>,
     /// Linear rows.
-    pub rows: Vec<Row>,
+    pub rows: Vec<SparseRow>,
     /// Bounds of the rows.
     pub bounds: Vec<f64>,
     /// Index of the row θ ≤ cap, if any.
@@ -81,13 +80,13 @@ fn strength_rows(
     joint: &LimitJoint,
     (first, own): (usize, usize),
     loads: &Loads,
-    (rows, bounds, blocks): (&mut Vec<Row>, &mut Vec<f64>, &mut Vec<Block>),
+    (rows, bounds, blocks): (&mut Vec<SparseRow>, &mut Vec<f64>, &mut Vec<Block>),
 ) {
     for row in &joint.strength.rows {
         let bound = if loads.strengths { row.bound / loads.force } else { 0.0 };
         // Bounds of the fill may be much greater than the loads: their rows are scaled to size one.
         let scale = if joint.fill.is_some() { 1.0 / bound.max(1.0) } else { 1.0 };
-        let entries: Row =
+        let entries: SparseRow =
             (0..own).filter(|&k| row.normal[k] != 0.0).map(|k| (first + k, row.normal[k] * scale)).collect();
         if !entries.is_empty() {
             rows.push(entries);
@@ -158,7 +157,7 @@ impl System {
     /// Makes θ the value of a form over (N_0, N_1, T) of a joint. The loads must not vary with θ.
     pub fn aim_at(&mut self, joint: usize, form: [f64; 3]) {
         let (first, own) = self.forces.joints[joint];
-        let mut row: Row = (0..own).filter(|&k| form[k] != 0.0).map(|k| (first + k, form[k])).collect();
+        let mut row: SparseRow = (0..own).filter(|&k| form[k] != 0.0).map(|k| (first + k, form[k])).collect();
         row.push((self.theta, -1.0));
         self.equations.push(row);
         self.right.push(0.0);

@@ -7,13 +7,12 @@
 
 use crate::limit::block_program::{Loads, Program, Solved, solve};
 use crate::limit::equilibrium::{excess, field_error};
-use crate::limit::scale::combined;
 use crate::limit::settings::SETTINGS;
 use voussoir_core::law::{FacetMode, ForceRow, StressBlock};
-use voussoir_core::limit::{JointForce, LimitProblem};
+use voussoir_core::limit::{JointForce, LimitProblem, combined};
 use voussoir_core::model::Wrenches;
 
-/// Greatest number of programs.
+/// GreatestFactor number of programs.
 const MAX_PROGRAMS: usize = 12;
 
 /// Returns the tangent of a stress block at one end for the normal force N̄ = `pressed`: 2 ū (N + F_t) − ū² ≤

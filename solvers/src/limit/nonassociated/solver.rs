@@ -6,7 +6,6 @@ use super::descent::{Descent, State};
 use super::products::{Bound, lower_bound};
 use super::splitting::split_bound;
 use crate::limit::associated::{NO_ENVELOPES, associated, associated_bound, settled_by_association};
-use crate::limit::scale::combined;
 use crate::limit::sequential::{FlowState, Sequence, sequence};
 use crate::limit::settings::SETTINGS;
 use crate::limit::settlement::settle;
@@ -15,13 +14,13 @@ use crate::optimise::dense_simplex::Feasibility;
 use voussoir_core::law::FlowRule;
 use voussoir_core::limit::{
     BracketWork, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, LowerProof, LowerProofKind, NonAssociated,
-    SettlementAnswer, Status,
+    SettlementAnswer, Status, combined,
 };
 use voussoir_core::model::Wrenches;
 use voussoir_core::plugin::{Capability, Card, Keys, PluginKind};
 use voussoir_core::random::Random;
 
-/// Greatest number of rows of products that are solved only to make the result of the search checkable.
+/// GreatestFactor number of rows of products that are solved only to make the result of the search checkable.
 const MAX_CHECKED_ROWS: usize = 5_000;
 /// Number of starts of the local search.
 const STARTS: usize = 24;

@@ -2,16 +2,15 @@
 
 use super::vertices::Vertices;
 use crate::limit::conic;
-use crate::limit::engine::Greatest;
 use crate::limit::settings::SETTINGS;
 use crate::limit::systems::{LARGEST, Systems, greatest_shares};
 use crate::optimise::dense_simplex::Feasibility;
-use voussoir_core::limit::{Counters, JointForce, LimitProblem, Velocity};
+use voussoir_core::limit::{Counters, GreatestFactor, JointForce, LimitProblem, Velocity};
 use voussoir_core::model::Wrenches;
 
 /// The first programs.
 const STRICT_PROGRAMS: usize = 36;
-/// Greatest number of programs.
+/// GreatestFactor number of programs.
 const MAX_PROGRAMS: usize = 120;
 /// Number of programs solved at vertices before fields in the middle of the optimal ones are used. If the field is not
 /// unique, vertices may jump, but the middle changes continuously with the bounds.
@@ -52,7 +51,7 @@ fn fictitious(problem: &LimitProblem, reference: &[JointForce]) -> LimitProblem 
 }
 
 /// Returns the greatest factor of associated flow by the conic engine, with a central optimal field.
-fn by_engine(problem: &LimitProblem, base: &Wrenches, counters: &mut Counters) -> Greatest {
+fn by_engine(problem: &LimitProblem, base: &Wrenches, counters: &mut Counters) -> GreatestFactor {
     let mut engine = conic::engine(problem);
     let greatest = engine.greatest(base, &problem.varying, f64::INFINITY);
     for (name, count) in engine.counters() {
@@ -76,8 +75,8 @@ pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], co
         let vertex = vertices.as_mut().and_then(|vertices| vertices.greatest(problem, &systems, &reference, counters));
         let greatest = vertex.unwrap_or_else(|| by_engine(&fictitious(problem, &reference), base, counters));
         let (factor, field, motion) = match greatest {
-            Greatest::Collapse { factor, field, motion, .. } => (factor, field, motion),
-            Greatest::Failed(why) => return Sequence::Open(format!("linear program {}: {why}", step + 1)),
+            GreatestFactor::Collapse { factor, field, motion, .. } => (factor, field, motion),
+            GreatestFactor::Failed(why) => return Sequence::Open(format!("linear program {}: {why}", step + 1)),
             _ => return Sequence::Open(format!("linear program {} has no bound", step + 1)),
         };
         let asked = if step < STRICT_PROGRAMS { SETTINGS.negligible } else { SETTINGS.closed };
@@ -215,7 +214,7 @@ fn field_yielding(
             pair += 1;
         }
     }
-    let Greatest::Collapse { factor, field, .. } = by_engine(&yielding, base, counters) else { return None };
+    let GreatestFactor::Collapse { factor, field, .. } = by_engine(&yielding, base, counters) else { return None };
     let mut z = systems.force_variables(&field);
     z.push(factor / systems.unit);
     let (z, violation) = systems.field(moving, z)?;

@@ -2,10 +2,9 @@
 
 use super::sequence::{Sequence, sequence};
 use crate::limit::associated::{NO_ENVELOPES, associated, associated_bound, settled_by_association};
-use crate::limit::scale::combined;
 use crate::limit::settlement::settle;
 use voussoir_core::law::FlowRule;
-use voussoir_core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, SettlementAnswer, Status};
+use voussoir_core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, SettlementAnswer, Status, combined};
 use voussoir_core::model::Wrenches;
 use voussoir_core::plugin::{Capability, Card, Keys, PluginKind};
 

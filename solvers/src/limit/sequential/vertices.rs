@@ -3,11 +3,10 @@
 //! The programs differ only in the bounds of rows: fictitious cohesion changes with the normal forces. An optimal basis
 //! stays dual feasible, and a few pivots of the dual simplex method lead to the next vertex.
 
-use crate::limit::engine::Greatest;
 use crate::limit::settings::SETTINGS;
 use crate::limit::systems::{LARGEST, PIVOTS, Systems, greatest_shares};
 use crate::optimise::dense_simplex::{Dictionary, Feasibility};
-use voussoir_core::limit::{Counters, JointForce, LimitJoint, LimitProblem};
+use voussoir_core::limit::{Counters, GreatestFactor, JointForce, LimitJoint, LimitProblem};
 
 /// Programs with associated rows that differ in their bounds.
 pub struct Vertices {
@@ -38,7 +37,7 @@ impl Vertices {
         own: &Systems,
         reference: &[JointForce],
         counters: &mut Counters,
-    ) -> Option<Greatest> {
+    ) -> Option<GreatestFactor> {
         let z = own.force_variables(reference);
         let along = |row: &[(usize, f64)]| -> f64 { row.iter().map(|&(j, v)| v * z[j]).sum() };
         let mut moved = Vec::new();
@@ -56,7 +55,7 @@ impl Vertices {
         greatest
     }
 
-    fn vertex(&mut self, problem: &LimitProblem) -> Option<Greatest> {
+    fn vertex(&mut self, problem: &LimitProblem) -> Option<GreatestFactor> {
         let (statics, systems) = (&mut self.statics, &self.systems);
         if statics.feasible() != Feasibility::Point {
             return None;
@@ -71,7 +70,7 @@ impl Vertices {
         let zero: Vec<usize> = (0..systems.pairs.len()).filter(|&i| statics.at_zero(i)).collect();
         let (z, violation) = systems.field(&zero, vec![0.0; systems.forces + 1])?;
         let (motion, wrong) = systems.motion(problem, &moving)?;
-        (violation <= SETTINGS.balanced && wrong <= SETTINGS.admissible).then(|| Greatest::Collapse {
+        (violation <= SETTINGS.balanced && wrong <= SETTINGS.admissible).then(|| GreatestFactor::Collapse {
             factor: z[systems.forces] * systems.unit,
             field: systems.joint_forces(&z),
             motion,

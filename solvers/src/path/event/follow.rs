@@ -8,7 +8,7 @@ use super::stability::stage_stability;
 use super::trace::Trace;
 use super::unique::unique;
 use super::witness::{none_continues, none_rises, rate_witness};
-use crate::path::outcome::{Outcome, PathRecord};
+use crate::path::outcome::Outcome;
 use crate::path::stability::regains_limit_point;
 use crate::path::system::Load;
 use crate::rate::proof::NoRate;
@@ -431,7 +431,18 @@ fn answer(follower: Follower, mut outcome: Outcome) -> PathAnswer {
     }
     let (load_step, limit_points) = (state.load_step, limits.proven);
     let (stability, branchings, events, notes) = (log.stability, log.branchings, log.events, log.notes);
-    let record =
-        PathRecord { load_step, state, last, limit_points, stability, branchings, events, witnesses, counters, notes };
+    let record = PathAnswer {
+        load_step,
+        state,
+        last,
+        limit_points,
+        stability,
+        branchings,
+        events,
+        witnesses,
+        counters,
+        notes,
+        ..PathAnswer::default()
+    };
     outcome.unconfirmed(record)
 }

@@ -8,10 +8,11 @@ use crate::path::newton::model::loads::StagedLoads;
 use crate::path::newton::model::system::StepSystem;
 use crate::path::newton::quantities::monitors::resolve;
 use crate::path::newton::quantities::recorded::{recorded, work_state};
+use crate::path::newton::quantities::response::at_once;
 use crate::path::newton::solve::second_order::{StateStability, second_order_work, stability};
 use crate::path::newton::tracing::stable_branch::{Departure, leave_unstable};
 use crate::path::newton::tracing::tracer::{Ending, InForce, LimitPoint, LoadStepEnding, Record, Tracer, end_path};
-use crate::path::outcome::{Outcome, PathRecord, stalled};
+use crate::path::outcome::Outcome;
 use std::sync::Arc;
 use voussoir_core::limit::Status;
 use voussoir_core::path::{LoadStep, LoadStepEnd, PathAnswer, PathObserver, PathProblem, PathSettings, StageStability};
@@ -20,7 +21,7 @@ use voussoir_core::path::{LoadStep, LoadStepEnd, PathAnswer, PathObserver, PathP
 pub(super) fn trace(problem: &PathProblem, settings: &PathSettings, observer: &mut dyn PathObserver) -> PathAnswer {
     let mut system = match StepSystem::new(problem, settings.finite) {
         Ok(system) => system,
-        Err(why) => return stalled(problem, why),
+        Err(why) => return PathAnswer::stalled(why),
     };
     system.tolerance = settings.tolerance;
     let state = system.undeformed();
@@ -64,7 +65,7 @@ fn run<'a>(tracer: &mut Tracer<'a, '_>, problem: &'a PathProblem) {
         tracer.system.monitors = resolve(problem, &tracer.in_force.strategy.monitors()).unwrap_or_default();
         tracer.system.load(index, StagedLoads::new(earlier.clone(), &load_step.loading, load_step.start));
         if index > 0 && problem.load_steps[index - 1].period.passes() {
-            at_once(tracer);
+            at_once(&tracer.system, &mut tracer.state);
         }
         let gradient = tracer.system.gradient(&tracer.state);
         tracer.record.work = work_state(&tracer.system, &tracer.state, &gradient);
@@ -97,17 +98,6 @@ fn run<'a>(tracer: &mut Tracer<'a, '_>, problem: &'a PathProblem) {
         }
     }
     tracer.ending.status = if tracer.limit.peak.is_some() { Status::LimitPoint } else { Status::Stands };
-}
-
-/// Gives the laws of the present state the tangents of a load that acts at once, after a load step in time.
-fn at_once(tracer: &mut Tracer) {
-    let updates = {
-        let (system, state) = (&tracer.system, &tracer.state);
-        system.laws.responses.update(&state.gap, &state.updates.memory, &system.instant(state))
-    };
-    if let Ok(updates) = updates {
-        tracer.state.updates = updates;
-    }
 }
 
 /// Examines the stability of the state at the end of a stage. From an unstable state damped descent leads to a stable
@@ -194,7 +184,7 @@ fn answer(mut tracer: Tracer) -> PathAnswer {
             (tracer.record.state, None, factor, tracer.ending.motion)
         }
     };
-    let record = PathRecord {
+    let record = PathAnswer {
         load_step: tracer.in_force.load_step,
         state,
         last,
@@ -205,6 +195,7 @@ fn answer(mut tracer: Tracer) -> PathAnswer {
         witnesses: tracer.record.witnesses,
         counters,
         notes,
+        ..PathAnswer::default()
     };
     let outcome =
         Outcome { limit_point_end: tracer.ending.limit_point_end, ..Outcome::at(tracer.ending.status, factor) };

@@ -7,11 +7,13 @@ mod model;
 mod pieces;
 mod quantities;
 mod solve;
+mod step_equations;
 mod time_steps;
 mod tracing;
 
+pub use self::step_equations::{PathPoint, StepEquations, Trial};
+
 use super::event::{self, is_piecewise_linear};
-use super::outcome::stalled;
 use crate::path::newton::quantities::monitors::resolve;
 use voussoir_core::path::{PathAnswer, PathObserver, PathProblem, PathSettings, PathSolver};
 use voussoir_core::plugin::{Capability, Card, Keys, PluginKind};
@@ -24,7 +26,7 @@ pub struct NewtonPath {}
 impl PathSolver for NewtonPath {
     fn trace(&self, problem: &PathProblem, settings: &PathSettings, observer: &mut dyn PathObserver) -> PathAnswer {
         if let Some(why) = self.refuses(problem, settings) {
-            return stalled(problem, why);
+            return PathAnswer::stalled(why);
         }
         if is_piecewise_linear(problem, settings) {
             return event::follow(problem, settings, observer);

@@ -2,7 +2,6 @@
 
 use crate::results::stored_path::{StoredClaim, StoredNode, StoredPath, StoredState, StoredWitness};
 use voussoir_core::certificate::{PathChain, in_range};
-use voussoir_core::limit::Counters;
 use voussoir_core::path::{ModeTree, NoneContinues, PathAnswer, PathState, RateClaim, Witness};
 
 /// Greatest depth of a tree of decisions.
@@ -125,19 +124,10 @@ pub(super) fn answer(path: &StoredPath, states: &[PathState]) -> Result<PathAnsw
         load_step: state.load_step,
         factor: Some(state.factor),
         state,
-        last: None,
         motion: path.motion.clone(),
-        unique: None,
-        limit_points: Vec::new(),
-        limit_point_end: None,
-        stability: Vec::new(),
-        branchings: Vec::new(),
         ray: path.ray.clone(),
-        events: Vec::new(),
         witnesses: path.witnesses.iter().map(witness).collect::<Result<_, _>>()?,
-        counters: Counters::new(),
-        outputs: Default::default(),
-        notes: Vec::new(),
+        ..PathAnswer::default()
     })
 }
 

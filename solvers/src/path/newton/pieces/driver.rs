@@ -641,7 +641,7 @@ impl<'d> Run<'d> {
     /// Returns the ending if a contact point leaves the face that it slides on.
     fn lose_joint(&mut self, tracer: &mut Tracer, contact: usize) -> LoadStepEnding {
         let slip = tracer.state.gap[contact][1];
-        let (apart, why) = lost_joint(tracer, &tracer.system.problem.contacts[contact], slip);
+        let (apart, why) = lost_joint(&tracer.system.problem.contacts[contact], slip, tracer.state.factor);
         end_at_lost_joint(tracer, apart, Some(&self.piece.tangent), why)
     }
 

@@ -15,6 +15,13 @@ pub fn update_tractions(system: &mut StepSystem, start: &State, state: &mut Stat
     Ok(())
 }
 
+/// Gives the laws of a state the tangents of a load that acts at once, after a load step in time.
+pub fn at_once(system: &StepSystem, state: &mut State) {
+    if let Ok(updates) = system.laws.responses.update(&state.gap, &state.updates.memory, &system.instant(state)) {
+        state.updates = updates;
+    }
+}
+
 /// Returns the scale and the scaled stiffness of a point's rows: σ F and σ U K.
 pub fn traction_row(system: &StepSystem, state: &State, contact: usize) -> ([f64; 2], [[f64; 2]; 2]) {
     let u = system.units();

@@ -150,14 +150,8 @@ fn rows_of_point(system: &StepSystem, state: &State, c: usize) -> PointRows {
     Equations::point_rows(system.law(c), state.mode[c])
 }
 
-/// Assembles the same equations row by row, for any arrangement of bodies.
-fn by_rows(
-    system: &mut StepSystem,
-    state: &State,
-    equations: &Equations,
-    row: &[f64],
-    damping: f64,
-) -> Option<BorderedFactors<ModeEquations>> {
+/// Assembles the equations row by row, for any arrangement of bodies, and the added terms.
+pub fn assembled(system: &StepSystem, state: &State, equations: &Equations, damping: f64) -> [CsrMatrix; 2] {
     let capacity = equations.bodies.entries() + 8 * system.size();
     let (mut rows, mut shifts) = (CsrMatrix::with_capacity(capacity), CsrMatrix::with_capacity(8 * system.size()));
     for c in 0..state.mode.len() {
@@ -169,6 +163,18 @@ fn by_rows(
         }
     }
     equations.bodies(&mut rows, &mut shifts, damping);
+    [rows, shifts]
+}
+
+/// Factorises the assembled equations with the row of the control.
+fn by_rows(
+    system: &mut StepSystem,
+    state: &State,
+    equations: &Equations,
+    row: &[f64],
+    damping: f64,
+) -> Option<BorderedFactors<ModeEquations>> {
+    let [rows, mut shifts] = assembled(system, state, equations, damping);
     shifts.end_row();
     let elimination = &mut system.cache.factors.elimination;
     BorderedFactors::new(state.mode.len(), row, |last| {

@@ -3,6 +3,7 @@
 use super::peak::note_peak;
 use super::tracer::{LoadStepEnding, Tracer, direction, end_path, foreseen, is_above};
 use crate::path::newton::model::state::{State, Tangent};
+use crate::path::newton::model::system::StepSystem;
 use crate::path::newton::quantities::events::events;
 use crate::path::newton::quantities::recorded::recorded;
 use crate::path::newton::solve::second_order::stability;
@@ -27,7 +28,7 @@ pub fn commit(tracer: &mut Tracer, mut next: State) -> bool {
     }
     tracer.system.drop_rounding(&mut next);
     // A point that closes beyond its face has no contact: the path ends at the state before.
-    if let Some((apart, why)) = left_its_pairing(tracer, &next, SETTINGS.admissible) {
+    if let Some((apart, why)) = left_its_pairing(&tracer.system, &next, SETTINGS.admissible) {
         end_at_lost_joint(tracer, apart, None, why);
         return false;
     }
@@ -52,7 +53,7 @@ pub fn commit(tracer: &mut Tracer, mut next: State) -> bool {
         end_path(tracer, Status::Stalled, "stopped by the observer".into());
         return false;
     }
-    if let Some((apart, why)) = left_its_pairing(tracer, &tracer.state, 0.0) {
+    if let Some((apart, why)) = left_its_pairing(&tracer.system, &tracer.state, 0.0) {
         end_at_lost_joint(tracer, apart, None, why);
         return false;
     }
@@ -79,21 +80,21 @@ pub fn end_at_lost_joint(tracer: &mut Tracer, apart: bool, rate: Option<&Tangent
 
 /// Checks closed points with finite displacements that have slipped beyond the limit of their pairing by more than a
 /// share `beyond` of the size. Returns true if the blocks have come apart, and a note.
-fn left_its_pairing(tracer: &Tracer, state: &State, beyond: f64) -> Option<(bool, String)> {
-    if !tracer.system.finite() {
+pub fn left_its_pairing(system: &StepSystem, state: &State, beyond: f64) -> Option<(bool, String)> {
+    if !system.finite() {
         return None;
     }
     let largest = state.force.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max);
-    let points = tracer.system.problem.contacts.iter().zip(&state.force).zip(&state.gap);
+    let points = system.problem.contacts.iter().zip(&state.force).zip(&state.gap);
     let mut pressed = points.filter(|((_, force), _)| force[0] > 1e-9 * largest);
-    let margin = beyond * tracer.system.units().length;
+    let margin = beyond * system.units().length;
     let leaves = |c: &Contact, slip: f64| slip < c.sliding.slip[0] - margin || slip > c.sliding.slip[1] + margin;
     let ((c, _), gap) = pressed.find(|((c, _), gap)| leaves(c, gap[1]))?;
-    Some(lost_joint(tracer, c, gap[1]))
+    Some(lost_joint(c, gap[1], state.factor))
 }
 
 /// Returns true, with a note, if the blocks have come apart at a point at the limit of its pairing.
-pub fn lost_joint(tracer: &Tracer, contact: &Contact, slip: f64) -> (bool, String) {
+pub fn lost_joint(contact: &Contact, slip: f64, factor: f64) -> (bool, String) {
     let (apart, why) = match contact.sliding.corners {
         [low, high] if low != high => (true, "it has lost half of its height"),
         [0.5, 0.5] if contact.sliding.passing == 0.0 => {
@@ -102,6 +103,6 @@ pub fn lost_joint(tracer: &Tracer, contact: &Contact, slip: f64) -> (bool, Strin
         [0.5, 0.5] => (true, "it has lost half of its height"),
         _ => (true, "its contact point leaves the face that it slides on"),
     };
-    let (joint, factor) = (contact.joint, tracer.state.factor);
+    let joint = contact.joint;
     (apart, format!("joint {joint} has slipped by {:.4e} m at factor {factor}: {why}", slip.abs()))
 }

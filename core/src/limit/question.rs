@@ -1,11 +1,14 @@
 //! The sequence of questions that leads to every status of limit analysis with associated flow.
 
-use super::engine::{Engine, Equilibrium, Greatest};
+use super::engine::{Engine, Equilibrium, GreatestFactor};
 use super::floating::loose_motion;
+use super::problem::{JointForce, LimitProblem};
 use super::scale::combined;
-use crate::limit::settings::SETTINGS;
-use voussoir_core::limit::{Counters, JointForce, LimitAnswer, LimitProblem, LimitQuestion, Status};
-use voussoir_core::model::Wrenches;
+use super::solver::{LimitAnswer, LimitQuestion, Status};
+use crate::model::Wrenches;
+
+/// Factor, in the unit in which both loads have the same size, below which it is rounding of zero.
+const ZERO: f64 = 1e-15;
 
 const IMPOSSIBLE: &str = "no factor of the last stage's loads makes equilibrium possible";
 
@@ -15,27 +18,10 @@ pub fn answer_by(problem: &LimitProblem, question: LimitQuestion, engine: &mut d
         LimitQuestion::Admissible(factor) => (factor, factor),
         LimitQuestion::Collapse { start, max } => (start, max),
     };
-    let mut answer = LimitAnswer {
-        status: Status::Stalled,
-        factor: None,
-        field_factor: start,
-        field: None,
-        start_field: None,
-        motion: None,
-        unique: None,
-        ray: None,
-        feasible_interval: None,
-        non_associated: None,
-        counters: Counters::new(),
-        outputs: Default::default(),
-        notes: Vec::new(),
-    };
+    let mut answer = LimitAnswer { field_factor: start, ..LimitAnswer::default() };
     let base = combined(&problem.fixed, &problem.varying, start);
     if let Some(motion) = loose_motion(problem, &base, &problem.varying) {
-        answer.status = Status::NoEquilibrium;
-        answer.motion = Some(motion);
-        answer.notes.push(IMPOSSIBLE.into());
-        return answer;
+        return LimitAnswer { field_factor: start, ..LimitAnswer::no_equilibrium(motion).noting(IMPOSSIBLE) };
     }
     let grows = matches!(question, LimitQuestion::Collapse { .. }) && problem.magnitude(&problem.varying) > 0.0;
     let at_once = if grows { engine.greatest_if_carried(&base, &problem.varying, max - start) } else { None };
@@ -101,17 +87,17 @@ fn collapse(
 /// Returns the answer for the greatest factor from a base load that is carried.
 fn carried(
     problem: &LimitProblem,
-    greatest: Greatest,
+    greatest: GreatestFactor,
     base: &Wrenches,
     (start, max): (f64, f64),
     answer: &mut LimitAnswer,
 ) {
     match greatest {
-        Greatest::Collapse { factor, field, motion, unique } => {
+        GreatestFactor::Collapse { factor, field, motion, unique } => {
             // A factor within rounding of zero is zero.
             let dead = problem.magnitude(base);
             let unit = if dead > 0.0 { dead / problem.magnitude(&problem.varying) } else { 1.0 };
-            let factor = if factor.abs() < SETTINGS.zero * unit { 0.0 } else { factor };
+            let factor = if factor.abs() < ZERO * unit { 0.0 } else { factor };
             answer.status = Status::Collapse;
             answer.factor = Some(start + factor);
             answer.field_factor = start + factor;
@@ -119,15 +105,15 @@ fn carried(
             answer.motion = Some(motion);
             answer.unique = unique;
         }
-        Greatest::Capped(field) => {
+        GreatestFactor::Capped(field) => {
             answer.field_factor = max;
             answer.field = Some(field);
         }
-        Greatest::Unbounded(ray) => {
+        GreatestFactor::Unbounded(ray) => {
             answer.status = Status::Unbounded;
             answer.ray = Some(ray);
         }
-        Greatest::Failed(why) => {
+        GreatestFactor::Failed(why) => {
             answer.status = Status::Stalled;
             answer.notes.push(why);
         }
@@ -151,9 +137,9 @@ fn refuted(problem: &LimitProblem, engine: &mut dyn Engine, base: &Wrenches, sta
     let opposite: Wrenches = problem.varying.iter().map(|w| w.map(|x| -x)).collect();
     let upper = engine.greatest(base, &problem.varying, f64::INFINITY);
     let lower = engine.greatest(base, &opposite, f64::INFINITY);
-    let end = |greatest: &Greatest| match greatest {
-        Greatest::Collapse { factor, .. } => Some(*factor),
-        Greatest::Unbounded(_) => Some(f64::INFINITY),
+    let end = |greatest: &GreatestFactor| match greatest {
+        GreatestFactor::Collapse { factor, .. } => Some(*factor),
+        GreatestFactor::Unbounded(_) => Some(f64::INFINITY),
         _ => None,
     };
     let (Some(high), Some(low)) = (end(&upper), end(&lower)) else {
@@ -167,7 +153,7 @@ fn refuted(problem: &LimitProblem, engine: &mut dyn Engine, base: &Wrenches, sta
     ));
     // The motion at the near end of the interval also refutes the base load, and is the most useful one to show.
     let near = if interval[0] > start { lower } else { upper };
-    if let Greatest::Collapse { motion, unique, .. } = near {
+    if let GreatestFactor::Collapse { motion, unique, .. } = near {
         answer.motion = Some(motion);
         answer.unique = unique;
     }

@@ -1,7 +1,7 @@
 //! Scales of loads and motions.
 
-use voussoir_core::limit::{LimitProblem, Velocity};
-use voussoir_core::model::Wrenches;
+use super::problem::{LimitProblem, Velocity};
+use crate::model::Wrenches;
 
 /// Returns the force that scales wrenches to size one; 1 N if all wrenches are zero.
 pub fn force_unit(problem: &LimitProblem, wrenches: &Wrenches) -> f64 {

@@ -1,7 +1,8 @@
 //! The interface of engines of limit analysis: the three single optimisations that answer every question.
 
-use voussoir_core::limit::{Counters, JointForce, Velocity};
-use voussoir_core::model::Wrenches;
+use super::problem::{JointForce, Velocity};
+use super::solver::Counters;
+use crate::model::Wrenches;
 
 /// The result for a fixed load.
 #[derive(Debug, Clone)]
@@ -16,7 +17,7 @@ pub enum Equilibrium {
 
 /// The greatest factor of a varying load.
 #[derive(Debug, Clone)]
-pub enum Greatest {
+pub enum GreatestFactor {
     /// A finite factor; both bounds are equal.
     Collapse {
         /// The factor.
@@ -60,7 +61,9 @@ impl Extreme<Vec<JointForce>> {
     }
 }
 
-/// An engine that solves single optimisations over the joints of one problem.
+/// An engine that solves single optimisations over the joints of one problem. [`answer_by`](super::answer_by) answers
+/// every question with it. A solver of linear programs needs no engine: see
+/// [`answer_by_programs`](super::answer_by_programs).
 pub trait Engine {
     /// Can these loads be carried?
     fn admissible(&mut self, loads: &Wrenches) -> Equilibrium;
@@ -74,18 +77,22 @@ pub trait Engine {
     fn possible(&mut self, fixed: &Wrenches, varying: &Wrenches) -> Equilibrium;
 
     /// The greatest λ ≤ `cap` (may be ∞) for which `fixed + λ varying` can be carried, if some λ can.
-    fn greatest(&mut self, fixed: &Wrenches, varying: &Wrenches, cap: f64) -> Greatest;
+    fn greatest(&mut self, fixed: &Wrenches, varying: &Wrenches, cap: f64) -> GreatestFactor;
 
     /// Returns the greatest factor and a field of the fixed loads if they are carried. `None` if they are not, or if
     /// the engine does not support this.
-    fn greatest_if_carried(&mut self, _: &Wrenches, _: &Wrenches, _: f64) -> Option<(Vec<JointForce>, Greatest)> {
+    fn greatest_if_carried(&mut self, _: &Wrenches, _: &Wrenches, _: f64) -> Option<(Vec<JointForce>, GreatestFactor)> {
         None
     }
 
     /// Returns the greatest value of `form` over (N_0, N_1, T) of a joint, over all fields that carry these loads. At
-    /// least one such field must exist.
-    fn extreme(&mut self, loads: &Wrenches, joint: usize, form: [f64; 3]) -> Extreme;
+    /// least one such field must exist. Only the zone of thrust needs it.
+    fn extreme(&mut self, _: &Wrenches, _joint: usize, _form: [f64; 3]) -> Extreme {
+        Extreme::Failed
+    }
 
     /// Work done so far.
-    fn counters(&self) -> Counters;
+    fn counters(&self) -> Counters {
+        Counters::new()
+    }
 }

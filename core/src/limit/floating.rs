@@ -1,9 +1,14 @@
 //! Groups of blocks without a chain of joints to the ground. They cannot carry loads with a resultant.
 
-use crate::limit::settings::SETTINGS;
-use crate::linear::inner;
-use voussoir_core::limit::{LimitProblem, Velocity};
-use voussoir_core::model::{Wrenches, root};
+use super::problem::{LimitProblem, Velocity};
+use crate::model::{Wrenches, root};
+
+/// Share of a sum of loads that is rounding of its terms.
+const BALANCED: f64 = 1e-12;
+
+fn inner(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
 
 /// Returns a rigid motion of a floating group on which the fixed loads do work and the varying loads do none. `None` if
 /// there is no such group. Loads of all connected floating groups are added; moments are divided by the scene's length.
@@ -27,9 +32,9 @@ pub fn loose_motion(problem: &LimitProblem, fixed: &Wrenches, varying: &Wrenches
     };
     floats.iter().filter(|&&group| roots[group] == group).find_map(|&of| {
         let ((w, most), (p, live)) = (sum(fixed, of), sum(varying, of));
-        let along = if inner(&p, &p).sqrt() > SETTINGS.balanced * live { inner(&w, &p) / inner(&p, &p) } else { 0.0 };
+        let along = if inner(&p, &p).sqrt() > BALANCED * live { inner(&w, &p) / inner(&p, &p) } else { 0.0 };
         let left: [f64; 3] = std::array::from_fn(|i| w[i] - along * p[i]);
-        (inner(&left, &left).sqrt() > SETTINGS.balanced * most).then(|| {
+        (inner(&left, &left).sqrt() > BALANCED * most).then(|| {
             let velocity = [left[0], left[1], left[2] / problem.length];
             (0..ground).map(|group| if roots[group] == of { velocity } else { [0.0; 3] }).collect()
         })
