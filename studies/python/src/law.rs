@@ -194,11 +194,11 @@ fn branch_of(gap: [f64; 2], traction: [f64; 2], dissipated: f64) -> UpdateBranch
     }
 }
 
-fn bytes_of(numbers: &[f64]) -> Vec<u8> {
+pub(crate) fn bytes_of(numbers: &[f64]) -> Vec<u8> {
     numbers.iter().flat_map(|x| x.to_ne_bytes()).collect()
 }
 
-fn numbers_of(bytes: &[u8]) -> Vec<f64> {
+pub(crate) fn numbers_of(bytes: &[u8]) -> Vec<f64> {
     bytes.chunks_exact(8).filter_map(|eight| Some(f64::from_ne_bytes(eight.try_into().ok()?))).collect()
 }
 

@@ -5,6 +5,7 @@ mod blocks;
 mod conform;
 mod interrupted;
 mod law;
+mod solver;
 mod source;
 mod sweep;
 

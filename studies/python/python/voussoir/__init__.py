@@ -6,7 +6,7 @@
 
 `run` solves all cases of a study and returns the results with their proofs. `load` reads the results of a folder. `sweep`
 solves many cases, on this machine or on a cluster, and returns columns. `law` registers a class as a joint law, and
-`conform` checks it.
+`limit_solver` registers one as a limit solver. `conform` checks a law or another plug-in.
 """
 
 from __future__ import annotations
@@ -24,13 +24,14 @@ from ._conform import Finding, Report, conform
 from ._folder import load
 from ._laws import Context, Facet, law
 from ._results import Block, Case, Figure, Results
+from ._solvers import LinearProgram, limit_solver
 from ._study import Study
 from ._sweep import Table, sweep
 from ._voussoir import StudyError, __version__
 
 __all__ = [
-    "Block", "Case", "Context", "Facet", "Figure", "Finding", "Report", "Results", "Study", "StudyError", "Table", "__version__",
-    "check", "conform", "law", "load", "plugins", "run", "schema", "sweep", "verify",
+    "Block", "Case", "Context", "Facet", "Figure", "Finding", "LinearProgram", "Report", "Results", "Study", "StudyError",
+    "Table", "__version__", "check", "conform", "law", "limit_solver", "load", "plugins", "run", "schema", "sweep", "verify",
 ]  # fmt: skip
 
 
