@@ -33,6 +33,7 @@ const PARTS: [(&str, &[(&str, &str)]); 6] = [
             ("how_to/walls.md", "Describe a wall"),
             ("how_to/drawings.md", "Use a drawing as scene"),
             ("how_to/one_point.md", "Test a law at one point"),
+            ("how_to/own_solver.md", "Write a solver"),
             ("how_to/clusters.md", "Run a sweep on a cluster"),
             ("how_to/pandas.md", "Read results with pandas"),
             ("how_to/compare_runs.md", "Compare two runs"),
