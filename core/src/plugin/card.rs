@@ -142,7 +142,7 @@ pub struct Card {
     pub requires: &'static [Requirement],
     /// Properties that a law claims.
     pub claims: &'static [Property],
-    /// For laws, scenes, loads and study kinds: samples for the conformance tests.
+    /// For laws, scenes, loads and study kinds: samples for the conformance tests. A strategy needs one if it has required keys.
     pub samples: &'static [Sample],
     /// For laws: paths with known results. A law with state needs one that unloads after an irreversible change.
     pub known_paths: &'static [KnownPath],

@@ -11,7 +11,7 @@ use voussoir::core::plugin::{
 /// A report: tag, kind, text, passed, (check, times), checks that were left out, (check, finding, study).
 type Told = (String, String, String, bool, Vec<(String, usize)>, Vec<String>, Vec<(String, String, Option<String>)>);
 
-/// Checks all plug-ins with a tag; an empty list if there is none.
+/// Checks all plug-ins with a tag. The list is empty if no plug-in has this tag.
 #[pyfunction]
 pub fn conform_tag(py: Python<'_>, tag: &str) -> Vec<Told> {
     let own = cards().iter().filter(|card| card.tag == tag);

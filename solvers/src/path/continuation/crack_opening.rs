@@ -4,7 +4,7 @@
 use super::StepKeys;
 use super::arc_length::sphere;
 use voussoir_core::path::{Constraint, Continuation, Increment, MOST_MONITORS, Monitor};
-use voussoir_core::plugin::{Card, Keys, PluginKind};
+use voussoir_core::plugin::{Card, Keys, PluginKind, Sample};
 
 /// c = Δg_n of the joint where it opened enough in the last step, else the arc length.
 #[derive(Debug, Clone, Keys)]
@@ -70,6 +70,7 @@ voussoir_core::inventory::submit! {
         tag: "crack_opening",
         summary: "steps of the opening of one joint; passes limit points and snap-back while that joint opens",
         sources: &["de Borst 1987, Computers & Structures 25, 211-224", "Rots & de Borst 1987, J. Engng Mech. 113, 1739-1758"],
+        samples: &[Sample::keys("joint = 0\nswitch = 0.2")],
         file: file!(),
         package: voussoir_core::package!(),
         page: include_str!("crack_opening.md"),

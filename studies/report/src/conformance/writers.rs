@@ -1,4 +1,4 @@
-//! Writers: the same results give the same bytes, in files whose names nobody else uses.
+//! Writers: the same results give the same bytes, and no other file has the name of one of their files.
 
 use super::standard::for_writers;
 use crate::kinds::read_study;

@@ -1,5 +1,5 @@
-//! Keys: each key changes what a plug-in does, and a table that the card accepts gives a law with correct signs, or a scene or
-//! load without mistakes.
+//! Keys: each key changes the behaviour of a plug-in, and a table that the card accepts gives a law with correct signs, or a
+//! scene or load without mistakes.
 
 use super::findings::Recorder;
 use super::options::Options;
@@ -56,7 +56,7 @@ pub(super) fn check(recorder: &mut Recorder, card: &Card, _: &Options) {
     }
 }
 
-/// Returns what the check of keys compares.
+/// Returns the names of the quantities that the check of keys compares.
 fn observed(kind: PluginKind) -> &'static str {
     match kind {
         PluginKind::Scene => "block or joint",

@@ -28,6 +28,7 @@ mod scene;
 mod sign;
 mod site;
 mod softening;
+mod strategy;
 mod subject;
 mod units;
 mod walk;
@@ -48,13 +49,14 @@ pub fn conform(card: &Card, options: &Options) -> Report {
     let mut recorder = Recorder::new(card);
     // A plug-in that panics fails; the other plug-ins are still checked.
     let solver = |recorder: &mut Recorder, card: &Card, _: &Options| lies::check(recorder, card);
-    let checks: [fn(&mut Recorder, &Card, &Options); 8] = [
+    let checks: [fn(&mut Recorder, &Card, &Options); 9] = [
         samples::check,
         keys::check,
         joint::check,
         material::check,
         scene::check,
         load::check,
+        strategy::check,
         known_path::check,
         solver,
     ];

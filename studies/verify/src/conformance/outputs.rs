@@ -3,8 +3,8 @@
 use super::findings::Recorder;
 use super::point::Point;
 use super::random::random_step;
-use super::subject::Subject;
 use super::scaled::{LENGTH, scale_of};
+use super::subject::Subject;
 use voussoir_core::law::{PointContext, UpdateContext, UpdateFailure};
 use voussoir_core::random::Random;
 
