@@ -186,6 +186,10 @@ pub const FIXED_COLUMNS: &[&str] = &[
     "displacement",
     "stress",
     "deformable",
+    "output",
+    "unit",
+    "of",
+    "value",
 ];
 
 /// Units of outputs and of states of laws, as powers of m, Pa, s and K.
