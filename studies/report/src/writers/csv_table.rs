@@ -14,9 +14,9 @@ pub fn csv_row(cells: impl Iterator<Item = String>) -> Vec<u8> {
 }
 
 /// A cell that is text or a number. If a spreadsheet would read it as a formula, it begins with an apostrophe, which
-/// spreadsheets do not show.
+/// spreadsheets do not show. A hyphen alone is the unit of a pure number.
 fn plain(cell: String) -> String {
-    let formula = cell.starts_with(['=', '+', '-', '@', '\t', '\r']) && cell.parse::<f64>().is_err();
+    let formula = cell.starts_with(['=', '+', '-', '@', '\t', '\r']) && cell != "-" && cell.parse::<f64>().is_err();
     if formula { format!("'{cell}") } else { cell }
 }
 
@@ -26,8 +26,8 @@ mod tests {
 
     #[test]
     fn numbers_stay_and_formulas_become_text() {
-        let row = ["-1.5", "=1+1", "@x", "+2", "-a", "a=b", ""].map(String::from).to_vec();
+        let row = ["-1.5", "=1+1", "@x", "+2", "-a", "a=b", "-"].map(String::from).to_vec();
         let header = (0..7).map(|i| format!("c{i}")).collect();
-        assert_eq!(csv_table(header, [row].into_iter()), "c0,c1,c2,c3,c4,c5,c6\n-1.5,'=1+1,'@x,+2,'-a,a=b,\n");
+        assert_eq!(csv_table(header, [row].into_iter()), "c0,c1,c2,c3,c4,c5,c6\n-1.5,'=1+1,'@x,+2,'-a,a=b,-\n");
     }
 }
