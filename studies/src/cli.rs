@@ -162,7 +162,7 @@ enum Command {
     },
     /// Check that a plug-in keeps the promises of its card and its trait
     Conform {
-        /// Tags of laws, solvers or strategies; without tags all laws
+        /// Tags of plug-ins; without tags all but solvers and strategies
         tags: Vec<String>,
         /// Folder for studies that reproduce the findings
         #[arg(long)]

@@ -7,6 +7,7 @@
 
 use super::force_variables::{ForceVariables, SparseRow};
 use super::problem::{JointForce, LimitProblem, Velocity};
+use super::scale::force_scale;
 use crate::model::Wrenches;
 
 /// The force of one column.
@@ -64,7 +65,6 @@ impl LimitProblem {
                 }
             }
         }
-        let fixed_or_varying = if self.magnitude(&self.fixed) > 0.0 { &self.fixed } else { &self.varying };
         let mut matrices = LimitMatrices {
             columns,
             equilibrium: variables.equilibrium(self),
@@ -74,7 +74,7 @@ impl LimitProblem {
             bounds,
             joint_of_row,
             length: self.length,
-            force_unit: super::scale::force_unit(self, fixed_or_varying),
+            force_unit: force_scale(self, &self.fixed, &self.varying),
             left_out: self.beyond_rows(),
             variables,
         };

@@ -13,7 +13,7 @@ use super::force_variables::SparseRow;
 use super::matrices::LimitMatrices;
 use super::problem::LimitProblem;
 use super::question::answer_by;
-use super::scale::{force_unit, with_unit_power};
+use super::scale::{force_scale, force_unit, with_unit_power};
 use super::solver::{Counters, LimitAnswer, LimitQuestion};
 use crate::model::Wrenches;
 
@@ -92,8 +92,7 @@ impl Programs<'_, '_> {
     /// Returns a program in the unit of force, and the factor of the varying load for θ = 1.
     fn program(&self, loads: &Loads) -> (LinearProgram, f64, f64) {
         let matrices = &self.matrices;
-        let force =
-            force_unit(self.problem, loads.fixed.filter(|w| self.problem.magnitude(w) > 0.0).unwrap_or(loads.varying));
+        let force = force_scale(self.problem, loads.fixed.unwrap_or(loads.varying), loads.varying);
         let unit = force / force_unit(self.problem, loads.varying);
         let mut rows = matrices.equilibrium.clone();
         let forces = matrices.columns.len();

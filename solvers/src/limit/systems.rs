@@ -9,9 +9,9 @@ use voussoir_core::law::FacetMode;
 use voussoir_core::limit::{ForceVariables, LimitProblem, force_scale, force_unit};
 use voussoir_core::model::Wrenches;
 
-/// GreatestFactor number of entries of the equations for dense dictionaries.
+/// Greatest number of entries of the equations for dense dictionaries.
 pub const LARGEST: usize = 1_500_000;
-/// GreatestFactor number of pivots of a dense linear program.
+/// Greatest number of pivots of a dense linear program.
 pub const PIVOTS: u64 = 20_000;
 
 /// One row of one joint.

@@ -439,6 +439,8 @@ def test_conformance_of_laws_in_python():
     assert 'law = "python_response"' in study
     assert voussoir.conform(Friction, friction=0.6).findings[0].check == "card"  # it names no source
     assert voussoir.conform("coulomb").passed
+    both = voussoir.conform("point")  # a load and a study kind
+    assert both.passed and both.kind == "load kind, study kind" and both.done["verify"] == 1, both
     with pytest.raises(ValueError, match="no plug-in has the tag"):
         voussoir.conform("coulom")
     with pytest.raises(ValueError, match='gives no unit for "friction"'):

@@ -39,6 +39,9 @@ pub struct BenchArguments {
 
 /// Measures the variants of each study, or all solvers that support it, and compares them.
 pub fn measure(paths: &[PathBuf], arguments: &BenchArguments) -> Outcome {
+    if paths.len() > 1 && !arguments.sweep.is_empty() {
+        return Err(CliError::wrong_input("--sweep measures one study; give one study file"));
+    }
     let (mut found, mut title) = (Bench::default(), "bench".to_string());
     for path in paths {
         let loaded = files::study(path, &files::overrides(&arguments.set)?)?;
@@ -59,9 +62,6 @@ pub fn measure(paths: &[PathBuf], arguments: &BenchArguments) -> Outcome {
         match paths {
             [_] if !arguments.sweep.is_empty() => return ladders(study, arguments, &options),
             [_] => (found, title) = (bench(study, &options), study.name.clone()),
-            _ if !arguments.sweep.is_empty() => {
-                return Err(CliError::wrong_input("--sweep measures one study; give one study file"));
-            }
             _ => found.join(&study.name, bench(study, &options)),
         }
     }

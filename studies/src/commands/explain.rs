@@ -4,7 +4,7 @@ use super::error::{CliError, Outcome, Verdict};
 use super::print::{print, say, say_data};
 use super::{files, topics};
 use std::path::Path;
-use voussoir_core::plugin::{Card, Output, PluginKind, cards, cards_of, describe};
+use voussoir_core::plugin::{Card, Output, OutputOf, PluginKind, cards, cards_of, describe};
 use voussoir_report::kinds::json_schema::json_schema;
 use voussoir_study::config::synonyms::nearest_name;
 use voussoir_study::results::RESULTS_SCHEMA;
@@ -120,7 +120,8 @@ fn print_card(card: &Card) {
     }
     for output in card.outputs {
         let Output { name, unit, doc, of, .. } = output;
-        say(format!("  {name} [{unit}], of each {}: {doc}", of.word()).replace("of each case", "of the case"));
+        let each = if *of == OutputOf::Case { "the" } else { "each" };
+        say(format!("  {name} [{unit}], of {each} {}: {doc}", of.word()));
     }
     if let Some(sample) = card.samples.first() {
         let (place, head) = place_of_sample(card);

@@ -32,7 +32,7 @@ pub struct Loads<'a> {
     pub fixed: Option<&'a Wrenches>,
     /// Loads multiplied by the factor.
     pub varying: &'a Wrenches,
-    /// GreatestFactor factor.
+    /// Greatest factor.
     pub cap: f64,
     /// True with strengths; false for the recession cone.
     pub strengths: bool,

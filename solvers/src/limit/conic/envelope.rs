@@ -12,7 +12,7 @@ use voussoir_core::law::ShearEnvelope;
 use voussoir_core::limit::{Counters, Engine, Equilibrium, Extreme, GreatestFactor, JointForce, LimitProblem};
 use voussoir_core::model::Wrenches;
 
-/// GreatestFactor number of programs for one question.
+/// Greatest number of programs for one question.
 const MAX_PROGRAMS: usize = 60;
 
 /// The conic engine over a problem with rows instead of envelopes.

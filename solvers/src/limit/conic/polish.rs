@@ -21,7 +21,7 @@ const MAX_STEPS_WITHOUT_GAIN: usize = 4;
 pub struct Polished {
     /// The pair.
     pub pair: Pair,
-    /// GreatestFactor residual of the optimality system, violation and negative multiplier.
+    /// Greatest residual of the optimality system, violation and negative multiplier.
     pub error: f64,
     /// True if the mechanism is the only one.
     pub unique: bool,

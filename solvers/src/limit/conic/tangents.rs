@@ -12,7 +12,7 @@ use voussoir_core::law::{FacetMode, ForceRow, StressBlock};
 use voussoir_core::limit::{JointForce, LimitProblem, combined};
 use voussoir_core::model::Wrenches;
 
-/// GreatestFactor number of programs.
+/// Greatest number of programs.
 const MAX_PROGRAMS: usize = 12;
 
 /// Returns the tangent of a stress block at one end for the normal force N̄ = `pressed`: 2 ū (N + F_t) − ū² ≤

@@ -20,7 +20,7 @@ use voussoir_core::model::Wrenches;
 use voussoir_core::plugin::{Capability, Card, Keys, PluginKind};
 use voussoir_core::random::Random;
 
-/// GreatestFactor number of rows of products that are solved only to make the result of the search checkable.
+/// Greatest number of rows of products that are solved only to make the result of the search checkable.
 const MAX_CHECKED_ROWS: usize = 5_000;
 /// Number of starts of the local search.
 const STARTS: usize = 24;

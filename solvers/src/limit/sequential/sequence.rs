@@ -10,7 +10,7 @@ use voussoir_core::model::Wrenches;
 
 /// The first programs.
 const STRICT_PROGRAMS: usize = 36;
-/// GreatestFactor number of programs.
+/// Greatest number of programs.
 const MAX_PROGRAMS: usize = 120;
 /// Number of programs solved at vertices before fields in the middle of the optimal ones are used. If the field is not
 /// unique, vertices may jump, but the middle changes continuously with the bounds.

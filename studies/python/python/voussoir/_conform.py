@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import json
+from collections import Counter
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,7 +22,8 @@ class Finding:
 
 @dataclass(frozen=True)
 class Report:
-    """The checks of one plug-in: how often each was made, the checks that were left out, and the findings."""
+    """The checks of one plug-in: the number of times that each was made, the checks that were left out, and the findings. If
+    plug-ins of several kinds have the tag, the report is about all of them."""
 
     tag: str
     kind: str
@@ -57,19 +59,31 @@ def conform(plug_in: type[Any] | str, **parameters: Any) -> Report:
         told = _voussoir.conform_tag(plug_in)
         if not told:
             raise ValueError(f"no plug-in has the tag {plug_in!r}; voussoir.plugins(kind) lists them")
-        return _report(told[0])
-    return _report(_voussoir.conform_law(json.dumps(_described(plug_in, parameters))))
+        return _report(told)
+    return _report([_voussoir.conform_law(json.dumps(_described(plug_in, parameters)))])
 
 
-def _report(told: Any) -> Report:
-    tag, kind, text, passed, done, left_out, findings = told
-    return Report(tag, kind, text, passed, dict(done), list(left_out), [Finding(*own) for own in findings])
+def _report(told: list[Any]) -> Report:
+    tags, kinds, texts, passed, done, left_out, findings = zip(*told)
+    times: Counter[str] = Counter()
+    for own in done:
+        times.update(dict(own))
+    return Report(
+        tag=tags[0],
+        kind=", ".join(kinds),
+        text="".join(texts),
+        passed=all(passed),
+        done=dict(times),
+        left_out=[why for own in left_out for why in own],
+        findings=[Finding(*finding) for own in findings for finding in own],
+    )
 
 
 def _described(cls: type[Any], parameters: dict[str, Any]) -> dict[str, Any]:
     name = next((name for name, own in _laws._CLASSES.items() if own is cls), None)
     if name is None:
-        name = cls.__name__
+        # No class that a study names has this name.
+        name = f"{cls.__module__}.{cls.__qualname__}"
         _laws.law(name)(cls)
     form = "facets" if hasattr(cls, "facets") else "response"
     mistake = _laws.check(name, json.dumps(parameters), form)

@@ -29,38 +29,10 @@ until = "collapse"
 loads = [{ kind = "point", span_fraction = 0.25, force = [0.0, -1000.0] }]
 "#;
 
-/// The same arch of elastic stone, with a stiff joint and all outputs of a path.
+/// Tables of a path with all its outputs.
 const PATH: &str = r#"
-name = "path"
-
-[scene]
-scene = "arch"
-profile = { shape = "segmental", span = 4.0, rise = 1.0 }
-thickness = 0.4
-width = 1.0
-voussoirs = 5
-material = "stone"
-joint = "dry"
-mesh = { elements = [1, 2] }
-
-[materials.stone]
-law = "elastic"
-young_modulus = 5e9
-poisson_ratio = 0.2
-density = 2200.0
-
-[joints.dry]
-law = "coulomb_associated"
-friction = 0.7
-
-[[stages]]
-name = "dead"
-gravity = 9.81
-
-[[stages]]
-name = "live"
-until = "collapse"
-loads = [{ kind = "point", span_fraction = 0.25, force = [0.0, -1000.0] }]
+[scene.mesh]
+elements = [1, 2]
 
 [solver]
 solver = "event_path"
@@ -76,16 +48,14 @@ pub(super) fn arch(name: &str, kind: &str, tables: &str) -> String {
     format!("name = \"{name}\"\nkind = \"{kind}\"\n{ARCH}\n{tables}\n")
 }
 
-/// Returns the standard studies for writers: limit analysis with a sweep, a comparison, and a path.
+/// Returns the standard studies for writers: limit analysis with a sweep, a comparison, and a path of elastic stone.
 pub(super) fn for_writers() -> [String; 3] {
+    let elastic = "law = \"elastic\"\nyoung_modulus = 5e9\npoisson_ratio = 0.2";
+    let sweep = "[output]\nsensitivities = true\n\n[sweep]\n\"joints.dry.friction\" = { list = [0.5, 0.7] }\n";
     let variants = "[[variants]]\nname = \"as it is\"\n\n[[variants]]\nname = \"smooth\"\nset = { \"joints.dry.friction\" = 0.45 }\n";
     [
-        arch(
-            "limit",
-            "run",
-            "[output]\nsensitivities = true\n\n[sweep]\n\"joints.dry.friction\" = { list = [0.5, 0.7] }\n",
-        ),
+        arch("limit", "run", sweep),
         arch("comparison", "compare", variants),
-        PATH.into(),
+        arch("path", "run", PATH).replace("law = \"rigid\"", elastic),
     ]
 }

@@ -6,6 +6,7 @@ use super::plug_in::PlugIn;
 use super::point::Point;
 use super::random::random_step;
 use super::samples::samples_of;
+use super::scaled::LENGTH;
 use super::subject::Subject;
 use super::walk;
 use super::{energy, outputs, sign, units};
@@ -63,18 +64,17 @@ fn check_sample(
     energy::check(recorder, &subject);
     axes(recorder, &subject);
     planar(recorder, &subject, options);
-    if let Some(PlugIn::Material(other)) = other
-        && let Some(other) = other.stress_update()
-    {
-        let mut there = Point::material(other);
-        if let (Point::Material(_, length), Point::Material(_, here)) = (&mut there, &subject.point) {
-            *length = here * super::scaled::LENGTH;
-        }
-        units::check(recorder, &subject, &there);
-        outputs::check(recorder, &subject, Some(&there));
-    } else {
-        outputs::check(recorder, &subject, None);
+    let mut there = match other {
+        Some(PlugIn::Material(other)) => other.stress_update().map(Point::material),
+        _ => None,
+    };
+    if let (Some(Point::Material(_, length)), Point::Material(_, here)) = (&mut there, &subject.point) {
+        *length = here * LENGTH;
     }
+    if let Some(there) = &there {
+        units::check(recorder, &subject, there);
+    }
+    outputs::check(recorder, &subject, there.as_ref());
 }
 
 /// As long as nothing has changed the material, an elastic step has the tangent of `elasticity()`, because solvers compute the body

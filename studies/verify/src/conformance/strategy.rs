@@ -1,4 +1,4 @@
-//! Continuation strategies: the derivatives of a constraint are those of its value.
+//! Continuation strategies: the derivatives of a constraint agree with differences of its value.
 
 use super::findings::Recorder;
 use super::options::Options;
