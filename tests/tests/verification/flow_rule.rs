@@ -126,6 +126,38 @@ fn twenty_by_twenty_in_sequence() {
     assert!(result.counters["linear_programs"] >= 1);
 }
 
+/// The programs of a wall of twelve by twelve cubes wander between 0.279537 and 0.279624. The result is open. Its upper end is a
+/// certified state below the associated load, for `limit_sequential` and for `limit_least`, whose search is too small for this wall.
+#[test]
+fn a_sequence_that_wanders_has_a_certified_upper_end() {
+    for solver in ["limit_sequential", "limit_least"] {
+        let cubes = Wall { brick: [1.0, 1.0], ..Wall::in_bond(12, 12) };
+        let result = answered(&wall(cubes, "law = \"coulomb\"\nfriction = 0.7", &format!("solver = \"{solver}\"")));
+        assert_eq!(result.status, Status::Open, "{:?}", result.notes);
+        let [lower, upper] = result.bounds.expect("an upper end");
+        let associated = result.non_associated.associated_load_factor.expect("an upper bound");
+        assert_close(associated, 0.337289824, 1e-8);
+        assert_eq!((lower, upper), (None, result.load_factor));
+        assert!(upper.is_some_and(|upper| upper > 0.27 && upper < 0.2943), "{upper:?}");
+        let residuals = &result.certificate.residuals;
+        assert!(residuals["complementarity"] < 1e-6 && residuals["flow"] < 1e-6, "{residuals:?}");
+        assert!(result.notes.iter().any(|note| note.contains("wander between")), "{:?}", result.notes);
+    }
+}
+
+/// A state whose bracket stays open is a local minimum: no exchange of one mode lowers its load.
+#[test]
+fn an_open_bracket_is_a_local_minimum() {
+    let cubes = Wall { brick: [1.0, 1.0], ..Wall::in_bond(6, 7) };
+    let result = answered(&wall(cubes, "law = \"coulomb\"\nfriction = 0.7", "solver = \"limit_least\""));
+    assert!(
+        result.load_factor.is_some_and(|factor| (factor - 0.28688524590163).abs() < 1e-10),
+        "{:?}",
+        result.load_factor
+    );
+    assert!(result.notes.iter().any(|note| note.contains("the load found is a local minimum")), "{:?}", result.notes);
+}
+
 /// Dilatancy equal to the friction angle is associated flow; for smaller dilatancy the least load is not above it.
 #[test]
 fn dilatancy_equal_to_friction_is_associated() {

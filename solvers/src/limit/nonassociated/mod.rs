@@ -5,6 +5,7 @@ mod bracket;
 mod conflict_search;
 mod curve;
 mod descent;
+mod exchange;
 mod products;
 mod solver;
 mod splitting;

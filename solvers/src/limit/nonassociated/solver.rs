@@ -3,6 +3,7 @@
 use super::bracket::{Proof, Work, at_once, dissipations, in_parts, state_at};
 use super::curve::Curve;
 use super::descent::{Descent, State};
+use super::exchange::{Exchanges, exchanges};
 use super::products::{Bound, lower_bound};
 use super::splitting::split_bound;
 use crate::limit::associated::{NO_ENVELOPES, associated, associated_bound, settled_by_association};
@@ -81,6 +82,10 @@ struct Least<'a> {
     problem: &'a LimitProblem,
     systems: Systems,
     work: Work,
+    /// The last exchanges.
+    exchanges: Exchanges,
+    /// θ of the best state of the local search, the start that led to it, and the number of starts.
+    local: (f64, [usize; 2]),
 }
 
 impl Least<'_> {
@@ -154,7 +159,7 @@ impl Least<'_> {
         let mut random = Random::new(1);
         let mut present = most;
         let starts = first.into_iter().map(Some).chain((0..STARTS).map(|_| None));
-        for start in starts {
+        for (index, start) in starts.enumerate() {
             let start = start.unwrap_or_else(|| (0..pairs).map(|_| random.unit().powi(4)).collect());
             let mut descent =
                 Descent { statics: &mut statics, kinematics: &mut kinematics, pairs, theta, excluded: &excluded };
@@ -172,7 +177,9 @@ impl Least<'_> {
                     present = next;
                 }
                 best = Some(state);
+                self.local.1[0] = index + 1;
             }
+            self.local.1[1] = index + 1;
         }
         self.work.pivots += statics.pivots + kinematics.pivots;
         best
@@ -195,7 +202,13 @@ impl LimitSolver for LimitNonassociated {
             return answer;
         }
         let base: Wrenches = combined(&problem.fixed, &problem.varying, start);
-        let mut least = Least { problem, systems: Systems::new(problem, &base), work: Work::default() };
+        let mut least = Least {
+            problem,
+            systems: Systems::new(problem, &base),
+            work: Work::default(),
+            exchanges: Exchanges::default(),
+            local: (f64::NAN, [0; 2]),
+        };
         let unit = least.systems.unit;
         // The greatest θ of interest: the result of associated flow or of the search.
         let associated_theta = own.associated_factor.map(|factor| (factor - start) / unit);
@@ -209,7 +222,9 @@ impl LimitSolver for LimitNonassociated {
                 if most > 0.0 {
                     let from = answer.motion.as_ref().map(|motion| least.systems.multipliers(problem, motion));
                     let found = least.local(most, from);
-                    least.take(found.map(|state| state.moving), &mut best);
+                    if least.take(found.map(|state| state.moving), &mut best) {
+                        least.local.0 = best.as_ref().map_or(f64::NAN, |b| b.0);
+                    }
                     best.iter().for_each(|b| least.work.curve.known(b.0));
                 }
                 lower = least.prove(self, most, &mut best);
@@ -218,15 +233,23 @@ impl LimitSolver for LimitNonassociated {
         // If a lower state is not excluded, the sequence of linear programs may find it.
         if best.as_ref().is_none_or(|b| lower.theta < b.0 * (1.0 - SETTINGS.closed)) {
             let from = answer.field.clone().unwrap_or_default();
-            match sequence(problem, &base, &from, &mut answer.counters) {
-                Sequence::Converged(state) if best.as_ref().is_none_or(|b| state.factor < b.1.factor) => {
-                    least.work.curve.found(BracketWork::Sequence, 0.0, state.factor / unit);
-                    best = Some((state.factor / unit, state));
-                }
-                Sequence::Converged(_) => {}
-                Sequence::Open(why) => answer.notes.push(format!("sequential programs: {why}")),
+            let (state, why) = match sequence(problem, &base, &from, &mut answer.counters) {
+                Sequence::Converged(state) => (Some(state), None),
+                Sequence::Open(why, state) => (state, Some(why)),
+            };
+            if let Some(state) = state.filter(|state| best.as_ref().is_none_or(|b| state.factor < b.1.factor)) {
+                least.work.curve.found(BracketWork::Sequence, 0.0, state.factor / unit);
+                best = Some((state.factor / unit, state));
             }
+            answer.notes.extend(why.map(|why| format!("sequential programs: {why}")));
         }
+        if least.searchable().is_ok() && least.lowered_by_exchange(self.search_limit, &mut best, &lower) {
+            // A search excludes loads below any state; products are proved again for the lower state.
+            let searched = lower.searched;
+            lower = least.prove(self, most, &mut best);
+            lower.search(best.as_ref().map_or(searched, |b| b.0.min(searched)));
+        }
+        answer.notes.extend(best.as_ref().and_then(|b| least.local_minimum(b.0, lower.theta)));
         if best.is_none() && least.searchable().is_ok() && least.moves_already(&base, self.search_limit) {
             answer.notes.push(MOVES_ALREADY.into());
         }
@@ -284,6 +307,44 @@ impl Least<'_> {
             *best = Some(found);
         }
         better
+    }
+
+    /// Exchanges one mode after the other while this lowers the best state, unless its bracket is closed. Returns true if it
+    /// was lowered. At the end the state is a local minimum, if the work suffices.
+    fn lowered_by_exchange(&mut self, limit: f64, best: &mut Option<(f64, FlowState)>, lower: &Lower) -> bool {
+        let mut most = (limit * 1e9 / 10.0).min(1e18) as u64;
+        let (mut lowered, mut last) = (false, Exchanges::default());
+        while let Some((theta, state)) =
+            best.as_ref().filter(|b| b.0 > 0.0 && lower.theta < b.0 * (1.0 - SETTINGS.closed))
+        {
+            let moving = greatest_shares(&self.systems.multipliers(self.problem, &state.motion));
+            let Some(found) = exchanges(&self.systems, &moving, *theta, most, &mut self.work) else { break };
+            most = most.saturating_sub(found.entries);
+            last = Exchanges { lower: None, ..found };
+            if found.lower.is_none() || !self.take(found.lower, best) {
+                break;
+            }
+            lowered = true;
+            best.iter().for_each(|b| self.work.curve.known(b.0));
+        }
+        self.exchanges = last;
+        lowered
+    }
+
+    /// States how far the best state is known to be a local minimum, unless its bracket is closed.
+    fn local_minimum(&self, theta: f64, lower: f64) -> Option<String> {
+        let Exchanges { tried, complete, .. } = self.exchanges;
+        if tried == 0 || lower >= theta * (1.0 - SETTINGS.closed) {
+            return None;
+        }
+        let what = if complete { "the load found is a local minimum: none" } else { "as far as it was tried, none" };
+        let (found, [start, starts]) = self.local;
+        let from = if found == theta {
+            format!("; start {start} of {starts} of the local search led to it, and no later one to a lower load")
+        } else {
+            String::new()
+        };
+        Some(format!("{what} of {tried} exchanges of one mode lowers it{from}"))
     }
 
     /// Raises the lower bound as far as the limits of work allow, and keeps lower states found on the way.

@@ -3,8 +3,8 @@
 use super::vertices::Vertices;
 use crate::limit::conic;
 use crate::limit::settings::SETTINGS;
-use crate::limit::systems::{LARGEST, Systems, greatest_shares};
-use crate::optimise::dense_simplex::Feasibility;
+use crate::limit::systems::{LARGEST, PIVOTS, Systems, greatest_shares};
+use crate::optimise::dense_simplex::{Dictionary, Feasibility};
 use voussoir_core::limit::{Counters, GreatestFactor, JointForce, LimitProblem, Velocity};
 use voussoir_core::model::Wrenches;
 
@@ -31,8 +31,9 @@ pub struct FlowState {
 pub enum Sequence {
     /// A state.
     Converged(FlowState),
-    /// No state, with the reason.
-    Open(String),
+    /// The programs do not converge, with the reason, and the state of the least factor among the mechanisms of the last
+    /// programs.
+    Open(String, Option<FlowState>),
 }
 
 /// Returns the problem with each non-associated row replaced by an associated row with its flow, through the yield
@@ -67,6 +68,7 @@ pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], co
     let mut vertices = Vertices::new(problem, &systems);
     let mut last = f64::NAN;
     let mut course = Course::default();
+    let mut last_motions: Vec<(Vec<usize>, Vec<Velocity>)> = Vec::new();
     for step in 0..MAX_PROGRAMS {
         *counters.entry("linear_programs".into()).or_default() += 1;
         if step == VERTEX_PROGRAMS {
@@ -76,8 +78,8 @@ pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], co
         let greatest = vertex.unwrap_or_else(|| by_engine(&fictitious(problem, &reference), base, counters));
         let (factor, field, motion) = match greatest {
             GreatestFactor::Collapse { factor, field, motion, .. } => (factor, field, motion),
-            GreatestFactor::Failed(why) => return Sequence::Open(format!("linear program {}: {why}", step + 1)),
-            _ => return Sequence::Open(format!("linear program {} has no bound", step + 1)),
+            GreatestFactor::Failed(why) => return Sequence::Open(format!("linear program {}: {why}", step + 1), None),
+            _ => return Sequence::Open(format!("linear program {} has no bound", step + 1), None),
         };
         let asked = if step < STRICT_PROGRAMS { SETTINGS.negligible } else { SETTINGS.closed };
         let steady = (factor - last).abs() <= asked * factor.abs().max(SETTINGS.closed * systems.unit);
@@ -88,6 +90,9 @@ pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], co
         let moving = greatest_shares(&gamma);
         let idle = moving.iter().map(|&i| systems.slack(i, &z)).fold(0.0, f64::max);
         course.take(factor, worst, idle);
+        if step + REPORTED_PROGRAMS >= MAX_PROGRAMS && last_motions.iter().all(|(known, _)| *known != moving) {
+            last_motions.push((moving.clone(), motion.clone()));
+        }
         if worst.max(idle) <= asked
             && let Some(state) = settled(&systems, (z, factor), motion.clone(), &moving)
         {
@@ -109,7 +114,12 @@ pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], co
             old.shear += share * (new.shear - old.shear);
         }
     }
-    Sequence::Open(course.verdict())
+    let states = last_motions.into_iter().filter_map(|(moving, motion)| {
+        let (field, factor) = least_field(&systems, problem, &moving)
+            .or_else(|| field_yielding(&systems, problem, base, &moving, counters))?;
+        Some(FlowState { factor, field, motion })
+    });
+    Sequence::Open(course.verdict(), states.min_by(|a, b| a.factor.total_cmp(&b.factor)))
 }
 
 /// Returns the step length from a reference to the field of its program: half if full steps have not converged, then a
@@ -167,25 +177,40 @@ fn field_at(
     factor: f64,
     moving: &[usize],
 ) -> Option<(Vec<JointForce>, f64)> {
+    let theta = factor / systems.unit;
+    let near = |found: f64, share: f64| (found - theta).abs() <= share * SETTINGS.closed * theta.abs();
+    let greatest = yielding(systems, problem, Some(theta), moving)?;
+    let z = near(greatest.value(systems.theta()), 1.0).then(|| field_of(systems, &greatest, moving)).flatten()?;
+    near(z[systems.forces], 2.0).then(|| (systems.joint_forces(&z), z[systems.forces] * systems.unit))
+}
+
+/// Returns the field with the least factor at or above zero in which all moving pairs yield.
+fn least_field(systems: &Systems, problem: &LimitProblem, moving: &[usize]) -> Option<(Vec<JointForce>, f64)> {
+    let z = field_of(systems, &yielding(systems, problem, None, moving)?, moving)?;
+    (z[systems.forces] >= 0.0).then(|| (systems.joint_forces(&z), z[systems.forces] * systems.unit))
+}
+
+/// Solves statics with equality in the moving pairs: the greatest θ up to `most`, or the least one if there is no `most`.
+fn yielding(systems: &Systems, problem: &LimitProblem, most: Option<f64>, moving: &[usize]) -> Option<Dictionary> {
     if systems.entries() > LARGEST || problem.joints.iter().any(|joint| joint.strength.block.is_some()) {
         return None;
     }
-    let theta = factor / systems.unit;
-    let mut statics = systems.statics(Some(theta))?;
+    let mut statics = systems.statics(most)?;
     moving.iter().for_each(|&i| statics.fix(i, true));
     if statics.feasible() != Feasibility::Point {
         return None;
     }
-    let (_, true) = statics.minimise(&[(systems.theta(), -1.0)], 20_000)? else { return None };
-    if statics.value(systems.theta()) < theta - SETTINGS.closed * theta.abs() {
-        return None;
-    }
+    let cost = if most.is_some() { -1.0 } else { 1.0 };
+    let (_, true) = statics.minimise(&[(systems.theta(), cost)], PIVOTS)? else { return None };
+    Some(statics)
+}
+
+/// Returns the force variables and θ of a solution of statics, if they keep all rows and the moving pairs yield.
+fn field_of(systems: &Systems, statics: &Dictionary, moving: &[usize]) -> Option<Vec<f64>> {
     let slacks: Vec<f64> = (0..systems.pairs.len()).map(|i| statics.value(i).max(0.0)).collect();
     let (z, violation) = systems.field_with(&slacks)?;
     let idle = moving.iter().map(|&i| systems.slack(i, &z).abs()).fold(0.0, f64::max);
-    let near = violation.max(idle) <= SETTINGS.balanced
-        && (z[systems.forces] - theta).abs() <= 2.0 * SETTINGS.closed * theta.abs();
-    near.then(|| (systems.joint_forces(&z), z[systems.forces] * systems.unit))
+    (violation.max(idle) <= SETTINGS.balanced).then_some(z)
 }
 
 /// Returns such a field in scenes too large for the simplex method: the greatest factor with equality in the moving

@@ -4,7 +4,10 @@ use super::sequence::{Sequence, sequence};
 use crate::limit::associated::{NO_ENVELOPES, associated, associated_bound, settled_by_association};
 use crate::limit::settlement::settle;
 use voussoir_core::law::FlowRule;
-use voussoir_core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, SettlementAnswer, Status, combined};
+use voussoir_core::limit::{
+    LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, LowerProof, LowerProofKind, SettlementAnswer, Status,
+    combined,
+};
 use voussoir_core::model::Wrenches;
 use voussoir_core::plugin::{Capability, Card, Keys, PluginKind};
 
@@ -38,30 +41,31 @@ impl LimitSolver for LimitSequential {
         let LimitQuestion::Collapse { start, max } = question else { return answer };
         let base = combined(&problem.fixed, &problem.varying, start);
         let from = answer.field.clone().unwrap_or_default();
-        match sequence(problem, &base, &from, &mut answer.counters) {
-            Sequence::Converged(state) if start + state.factor <= max => {
-                answer.status = Status::Collapse;
-                answer.factor = Some(start + state.factor);
-                answer.field_factor = start + state.factor;
-                answer.field = Some(state.field);
-                answer.motion = Some(state.motion);
-                answer.unique = None;
-                answer.ray = None;
+        let state = match sequence(problem, &base, &from, &mut answer.counters) {
+            Sequence::Converged(state) => Some(state),
+            Sequence::Open(why, state) => {
+                answer.notes.push(why);
+                // With a lower end at the start, which proves nothing, the result is open and the state is its upper end.
+                if let Some(own) = answer.non_associated.as_mut().filter(|_| state.is_some()) {
+                    own.proved_lower = Some(start);
+                    own.lower_proof = Some(LowerProof::by(LowerProofKind::Start));
+                }
+                if state.is_none() {
+                    answer.notes.push(admissible_up_to(&answer));
+                    answer.status = Status::Stalled;
+                    answer.factor = None;
+                }
+                state
             }
-            Sequence::Converged(_) => {}
-            Sequence::Open(why) => {
-                let admissible = if answer.factor.is_some() {
-                    format!(
-                        "an admissible field is known up to the associated load factor {:.9}: no collapse load lies above",
-                        answer.field_factor
-                    )
-                } else {
-                    format!("an admissible field is known at the factor {:.9}", answer.field_factor)
-                };
-                answer.status = Status::Stalled;
-                answer.factor = None;
-                answer.notes.extend([why, admissible]);
-            }
+        };
+        if let Some(state) = state.filter(|state| start + state.factor <= max) {
+            answer.status = Status::Collapse;
+            answer.factor = Some(start + state.factor);
+            answer.field_factor = start + state.factor;
+            answer.field = Some(state.field);
+            answer.motion = Some(state.motion);
+            answer.unique = None;
+            answer.ray = None;
         }
         answer
     }
@@ -72,5 +76,15 @@ impl LimitSolver for LimitSequential {
 
     fn refuses(&self, problem: &LimitProblem) -> Option<String> {
         problem.has_envelopes().then(|| NO_ENVELOPES.into())
+    }
+}
+
+/// Returns up to which factor an associated answer has an admissible field.
+fn admissible_up_to(answer: &LimitAnswer) -> String {
+    let at = answer.field_factor;
+    if answer.factor.is_some() {
+        format!("an admissible field is known up to the associated load factor {at:.9}: no collapse load lies above")
+    } else {
+        format!("an admissible field is known at the factor {at:.9}")
     }
 }
