@@ -96,6 +96,24 @@ fn with_peaks() -> Vec<Scene> {
     .collect()
 }
 
+/// Elastic voussoirs with crushing joints and finite displacements, and the ring of `found3/bench1` with friction.
+fn that_crush_and_move() -> Vec<Scene> {
+    let rings = [(6, 2.29, 0.65), (8, 3.09, 0.6), (7, 1.99, 0.6), (9, 3.1, 0.72)];
+    let scene = |(voussoirs, rise, thickness), elements: [usize; 2], joint: &str| Scene {
+        name: format!(
+            "finite, {voussoirs} voussoirs, rise {rise}, thickness {thickness}, {elements:?}, {}",
+            &joint[7..20]
+        ),
+        arch: arch(voussoirs, rise, thickness, &elastic(5e9, 0.3), joint),
+        elements,
+        solver: FINITE,
+    };
+    let meshes = [[1, 2], [2, 4]];
+    let crush = rings.into_iter().flat_map(|ring| meshes.map(|mesh| scene(ring, mesh, &crushing(0.6, 1e7))));
+    let slide = "law = \"coulomb\"\nfriction = 0.45";
+    crush.chain(meshes.map(|mesh| scene((9, 3.1, 0.72), mesh, slide))).collect()
+}
+
 /// Rigid voussoirs on compliant joints with finite displacements, and bonds that break.
 fn on_compliant_joints() -> Vec<Scene> {
     let dry = compliant(&friction(0.6), 2e10, 8e9);
@@ -123,20 +141,27 @@ fn on_compliant_joints() -> Vec<Scene> {
         .collect()
 }
 
-/// Returns the number of scenes with an estimate, and the number of estimates that cover the true error.
-fn covered(scenes: &[Scene], reference: fn(&Scene) -> f64) -> [usize; 2] {
-    let mut count = [0, 0];
+/// Returns estimate over true error of each scene with an estimate, in ascending order.
+fn ratios(scenes: &[Scene], reference: fn(&Scene) -> f64) -> Vec<f64> {
+    let mut ratios = Vec::new();
     for scene in scenes {
         match scene.errors(reference) {
             Ok([factor, estimate, error]) => {
                 println!("{}: {factor:.6}, estimate {estimate:.2e}, error {error:.2e}", scene.name);
-                count[0] += 1;
-                count[1] += usize::from(error <= estimate);
+                ratios.push(estimate / error);
             }
             Err(why) => println!("{}: no estimate: {why}", scene.name),
         }
     }
-    count
+    ratios.sort_by(f64::total_cmp);
+    ratios
+}
+
+/// Returns true if nine of ten estimates cover the true error, and the median is at most twice the true error.
+fn cover(ratios: &[f64]) -> bool {
+    let covering = ratios.iter().filter(|ratio| **ratio >= 1.0).count();
+    println!("{covering} of {} cover, median {:.2}: {ratios:.2?}", ratios.len(), ratios[ratios.len() / 2]);
+    10 * covering >= 9 * ratios.len() && ratios[ratios.len() / 2] <= 2.0
 }
 
 /// A mesh that misses the toes of hinges is detected: its load and that of the next mesh are 6 % off, and limit
@@ -164,15 +189,16 @@ fn the_error_of_a_peak_is_covered() {
     assert!(found.discretisation.is_none() && found.path.is_none() && found.total() < 1e-6, "{found:?}");
 }
 
-/// On thirty scenes the estimate covers the true error in nine of ten, also among the scenes alone whose reference it
-/// does not know.
+/// On more than thirty scenes the estimate covers the true error in nine of ten, and its median is at most twice the true error.
+/// The same holds for the scenes alone whose load limit analysis does not give.
 #[test]
 #[ignore = "minutes: cargo test --release -p voussoir-tests --test verification accuracy -- --ignored --nocapture"]
 fn estimates_cover_true_errors() {
-    let crushing = covered(&that_crush(), limit);
-    let [peaks, rigid] = [covered(&with_peaks(), graded), covered(&on_compliant_joints(), finer)];
-    let others = [peaks[0] + rigid[0], peaks[1] + rigid[1]];
-    println!("{crushing:?} {others:?}");
-    assert!(crushing[0] == 10 && others[0] >= 20, "{crushing:?} {others:?}");
-    assert!(10 * crushing[1] >= 9 * crushing[0] && 10 * others[1] >= 9 * others[0], "{crushing:?} {others:?}");
+    let crushing = ratios(&that_crush(), limit);
+    let mut others = ratios(&with_peaks(), graded);
+    others.extend(ratios(&that_crush_and_move(), graded));
+    others.extend(ratios(&on_compliant_joints(), finer));
+    others.sort_by(f64::total_cmp);
+    assert!(crushing.len() == 10 && others.len() >= 30, "{} and {}", crushing.len(), others.len());
+    assert!(cover(&crushing) && cover(&others));
 }

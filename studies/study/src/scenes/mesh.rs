@@ -32,7 +32,8 @@ pub enum Grading {
 }
 
 impl Grading {
-    fn pair(self) -> [f64; 2] {
+    /// Returns the gradings along and across.
+    pub fn pair(self) -> [f64; 2] {
         match self {
             Grading::Both(grading) => [grading; 2],
             Grading::Each(grading) => grading,

@@ -2,10 +2,12 @@
 
 use crate::config::common_keys::tag_of;
 use crate::config::default_table::default_table;
-use crate::scenes::mesh::Mesh;
+use crate::scenes::mesh::{Grading, Mesh};
 use crate::study::{Case, stage_tables};
 use serde::Deserialize;
 use serde_json::{Map, Value as Json, json};
+use voussoir_core::elastic::edge_breaks;
+use voussoir_core::model::geometry::Vec2;
 use voussoir_core::plugin::{Capability, Card, PluginKind, card};
 use voussoir_solvers::path::continuation::LARGEST_FINITE_STEP;
 
@@ -30,6 +32,46 @@ pub fn finer_mesh(case: &Case, times: f64) -> Sets {
         ("scene.mesh".to_string(), json!(Mesh { elements, ..mesh }))
     });
     finer.into_iter().collect()
+}
+
+/// Elements that a mesh has at least if it is to resolve the hinges: the default.
+const RESOLVED_ELEMENTS: [usize; 2] = [4, 6];
+/// Grading that a mesh has at least if it is to resolve the hinges at the joints' ends.
+const RESOLVED_GRADING: f64 = 10.0;
+/// Elements of rigid blocks, which have no grading, divided by those of the case.
+const RESOLVED_RIGID: usize = 4;
+
+/// Refines the mesh most at the joints' ends, where hinges form, with `times` as many elements as an estimate needs. Also
+/// returns the greatest size of an element there divided by the size in the case. `None` if the scene has no mesh.
+pub fn mesh_at_hinges(case: &Case, times: f64) -> Option<(Sets, f64)> {
+    let own = mesh_of(case)?;
+    let assembly = &case.assembly;
+    let multiplied = |elements: usize| (times * elements as f64).round() as usize;
+    let (fine, share) = if (0..assembly.bodies.len()).any(|body| assembly.is_deformable(body)) {
+        let grading = Grading::Each(own.grading.pair().map(|own| own.max(RESOLVED_GRADING)));
+        let elements = [0, 1].map(|i| multiplied(RESOLVED_ELEMENTS[i].max(2 * own.elements[i])));
+        let fine = Mesh { elements, grading, ..own };
+        let shares = [0, 1].map(|i| end_size(fine, i) / end_size(own, i));
+        (fine, shares[0].max(shares[1]))
+    } else {
+        let elements = own.elements.map(|n| multiplied(RESOLVED_RIGID * n));
+        (Mesh { elements, ..own }, 1.0 / (times * RESOLVED_RIGID as f64))
+    };
+    Some((vec![("scene.mesh".to_string(), json!(fine))], share))
+}
+
+/// Returns the size of the first element along an edge of a quadrilateral, as a fraction of the edge.
+fn end_size(mesh: Mesh, edge: usize) -> f64 {
+    let unit = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[x, y]| Vec2::new(x, y));
+    edge_breaks(&unit, &mesh.into(), edge)[1]
+}
+
+/// Sets another grading of both directions; empty if the scene has no mesh of deformable blocks or already has this grading.
+pub fn other_grading(case: &Case, grading: f64) -> Sets {
+    let deformable = (0..case.assembly.bodies.len()).any(|body| case.assembly.is_deformable(body));
+    let other = mesh_of(case).filter(|mesh| deformable && mesh.grading.pair() != [grading; 2]);
+    let set = |mesh| ("scene.mesh".to_string(), json!(Mesh { grading: Grading::Both(grading), ..mesh }));
+    other.map(set).into_iter().collect()
 }
 
 /// Sets elements of another order; empty if the scene has no mesh or already has this order.

@@ -225,7 +225,7 @@ pub struct OutputKeys {
     /// derivatives of the load factor of limit analysis with respect to every number, on both sides
     #[key(default = false)]
     pub sensitivities: bool,
-    /// "estimate": estimated error of the load factor, by solving again on a mesh twice as fine and with half the step
+    /// "estimate": estimated error of the load factor, by solving again on a mesh finer at the joints' ends and with half the step
     #[key(optional = "errors are not estimated")]
     pub accuracy: Option<Accuracy>,
     /// for an envelope: figures/moving-load.svg, the moving load with the mechanism at each position
