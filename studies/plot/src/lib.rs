@@ -6,6 +6,7 @@ pub mod chart;
 pub mod colours;
 pub mod contour;
 pub mod number;
+pub mod panels;
 pub mod series;
 pub mod svg;
 pub mod text;

@@ -1,6 +1,6 @@
 //! One measurement of a bench, and the options of all.
 
-use super::measured::Measurement;
+use super::measured::{Measurement, Refinement};
 use voussoir_study::cases::solve_case;
 use voussoir_study::study::Case;
 
@@ -37,7 +37,12 @@ pub(super) fn name_of(case: &Case) -> String {
 }
 
 /// Solves a case and measures the time.
-pub(super) fn measure(problem: usize, contestant: String, case: &Case, options: &BenchOptions) -> Measurement {
+pub(super) fn measure(
+    problem: usize,
+    (contestant, rung): (String, Option<Refinement>),
+    case: &Case,
+    options: &BenchOptions,
+) -> Measurement {
     let result = solve_case(case);
     // The resolution of clocks is a few milliseconds: short work is repeated until the clock shows it.
     let (mut seconds, mut often) = (f64::INFINITY, 1u32);
@@ -53,5 +58,5 @@ pub(super) fn measure(problem: usize, contestant: String, case: &Case, options: 
         seconds = seconds.min(spent / f64::from(often));
         left -= 1;
     }
-    Measurement { problem, contestant, error: None, seconds, result }
+    Measurement { problem, contestant, rung, error: None, seconds, result }
 }

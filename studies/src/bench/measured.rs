@@ -1,6 +1,23 @@
 //! Measured data of a bench: problems, results and errors of the contestants.
 
+use std::fmt;
 use voussoir_study::results::CaseResult;
+
+/// A setting that differs from the study: one rung of a ladder.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Refinement {
+    /// `mesh`, `order`, `grading` or `steps`.
+    pub ladder: &'static str,
+    /// Order or grading; number of elements or length of steps divided by those of the study.
+    pub value: f64,
+}
+
+impl fmt::Display for Refinement {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let by = if matches!(self.ladder, "mesh" | "steps") { "× " } else { "" };
+        write!(f, "{} {by}{}", self.ladder, self.value)
+    }
+}
 
 /// The measurement of one contestant for one problem.
 #[derive(Debug, Clone)]
@@ -9,6 +26,8 @@ pub struct Measurement {
     pub problem: usize,
     /// Name of the contestant.
     pub contestant: String,
+    /// The setting that differs from the study, if one does.
+    pub rung: Option<Refinement>,
     /// Relative error of the load factor. `None` if the contestant has failed or is the reference, or if there is no reference.
     pub error: Option<f64>,
     /// Least time of all runs \[s\].
@@ -29,8 +48,19 @@ impl Measurement {
 pub struct Problem {
     /// Scene and swept values.
     pub name: String,
-    /// Reference factor λ* and its source.
-    pub reference: Option<(f64, String)>,
+    /// Reference of the errors.
+    pub reference: Option<Source>,
+}
+
+/// The load factor from which errors are measured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Source {
+    /// λ*.
+    pub factor: f64,
+    /// Where it comes from.
+    pub from: String,
+    /// Greatest relative error of λ* if it is estimated.
+    pub band: Option<f64>,
 }
 
 /// All measurements of a bench.

@@ -7,18 +7,22 @@ mod contestants;
 mod measure;
 mod measured;
 mod output;
+mod panels;
+mod reference;
 mod sweep;
 
 pub use measure::{BenchOptions, Reference};
-pub use measured::{Bench, Measurement, Problem};
-pub use output::{csv, error_chart, profile_chart, table};
+pub use measured::{Bench, Measurement, Problem, Refinement, Source};
+pub use output::{csv, profile_chart, table};
+pub use panels::error_chart;
 pub use sweep::{PARAMETERS, Rung, Sweep, sweep, sweep_csv, sweep_table};
 
 use contestants::{Contestant, contestants, of_variants};
 use measure::{measure, name_of};
+use reference::extrapolated;
 use voussoir_core::plugin::{PluginKind, card};
 use voussoir_study::solve::accuracy::ends_at_limit_load;
-use voussoir_study::study::Study;
+use voussoir_study::study::{Case, Study};
 
 /// Measures the variants of a study. If a study has no variants, every compatible solver is measured.
 pub fn bench(study: &Study, options: &BenchOptions) -> Bench {
@@ -33,10 +37,10 @@ pub fn bench(study: &Study, options: &BenchOptions) -> Bench {
         } else {
             contestants(first)
         };
-        for Contestant { name, case } in entered {
+        for Contestant { name, rung, case } in entered {
             match case {
                 Ok(case) => {
-                    let measured = measure(problem, name, &case, options);
+                    let measured = measure(problem, (name, rung), &case, options);
                     let go_on = (options.told)(&measured);
                     bench.measurements.push(measured);
                     if !go_on {
@@ -48,7 +52,7 @@ pub fn bench(study: &Study, options: &BenchOptions) -> Bench {
             }
         }
         let named = study.outline.table.get("reference").and_then(|name| name.as_str());
-        refer(&mut bench, problem, (options.reference.as_ref(), named), ends_at_limit_load(first));
+        refer(&mut bench, problem, (options.reference.as_ref(), named), first);
         if bench.cut_short {
             break;
         }
@@ -67,24 +71,26 @@ pub fn names(study: &Study) -> Vec<String> {
 }
 
 /// Sets the errors of a problem's measurements. The reference is, in this order: the requested one; the variant that the
-/// study names; limit analysis, if it answers the `same` question; the last contestant with a load factor, usually the finest
-/// mesh of a path solver.
-fn refer(bench: &mut Bench, problem: usize, (asked, named): (Option<&Reference>, Option<&str>), same: bool) {
+/// study names; limit analysis, if it has the same collapse load; a value extrapolated from two meshes that are finer than all
+/// contestants at the joints' ends; the last contestant with a load factor.
+fn refer(bench: &mut Bench, problem: usize, (asked, named): (Option<&Reference>, Option<&str>), case: &Case) {
     let own = || bench.measurements.iter().filter(|own| own.problem == problem);
-    let of = |found: Option<&Measurement>| found.and_then(|own| Some((own.factor()?, own.contestant.clone())));
+    let of = |found: Option<&Measurement>| {
+        found.and_then(|own| Some(Source { factor: own.factor()?, from: own.contestant.clone(), band: None }))
+    };
     let by_name = |name: &str| of(own().find(|own| own.contestant == name));
     let limit = |own: &&Measurement| card(PluginKind::LimitSolver, &own.result.solver).is_some();
     let found = match (asked, named) {
-        (Some(Reference::Known(factor)), _) => Some((*factor, "given".to_string())),
+        (Some(Reference::Known(factor)), _) => Some(Source { factor: *factor, from: "given".into(), band: None }),
         (Some(Reference::Named(name)), _) => by_name(name),
         (None, Some(name)) => by_name(name),
-        (None, None) => {
-            of(own().filter(|_| same).find(limit)).or_else(|| of(own().rfind(|own| own.factor().is_some())))
-        }
+        (None, None) => of(own().filter(|_| ends_at_limit_load(case)).find(limit))
+            .or_else(|| extrapolated(case, own()))
+            .or_else(|| of(own().rfind(|own| own.factor().is_some()))),
     };
-    let Some((factor, from)) = found else { return };
+    let Some(Source { factor, from, .. }) = found.clone() else { return };
     for own in bench.measurements.iter_mut().filter(|own| own.problem == problem && own.contestant != from) {
         own.error = own.factor().map(|own| if factor == 0.0 { own.abs() } else { (own / factor - 1.0).abs() });
     }
-    bench.problems[problem].reference = Some((factor, from));
+    bench.problems[problem].reference = found;
 }

@@ -1,4 +1,4 @@
-//! Output of a bench: a table, a CSV file and two charts.
+//! Output of a bench: a table, a CSV file and the performance profile.
 
 use super::measured::{Bench, Measurement};
 use comfy_table::{ContentArrangement, Table, presets};
@@ -6,9 +6,6 @@ use voussoir_plot::chart::chart;
 use voussoir_plot::series::{ChartStyle, Series};
 use voussoir_report::writers::csv_table::csv_table;
 use voussoir_study::results::format::{format_number, format_short, status_word};
-
-/// Smaller errors are drawn as this value: they are rounding errors.
-const NO_ERROR: f64 = 1e-16;
 
 fn text<T>(value: Option<T>, written: impl Fn(T) -> String) -> String {
     value.map_or(String::new(), written)
@@ -26,7 +23,7 @@ pub fn table(bench: &Bench) -> String {
     header.splice(0..0, several.then_some("problem"));
     table.load_style(presets::NOTHING).set_content_arrangement(ContentArrangement::Disabled).set_header(header);
     for own in &bench.measurements {
-        let from = bench.problems[own.problem].reference.as_ref().is_some_and(|(_, from)| *from == own.contestant);
+        let from = bench.problems[own.problem].reference.as_ref().is_some_and(|source| source.from == own.contestant);
         let error = if from { "reference".into() } else { text(own.error, |error| format_short(error, 2)) };
         let certified = if own.result.certificate.passed { "" } else { ", not certified" };
         let mut row = vec![
@@ -59,6 +56,7 @@ pub fn csv(bench: &Bench) -> String {
         "load_factor [-]",
         "reference [-]",
         "reference_from",
+        "reference_band [-]",
         "error [-]",
         "seconds [s]",
         "counters",
@@ -73,8 +71,9 @@ pub fn csv(bench: &Bench) -> String {
             status_word(own.result.status).to_string(),
             own.result.certificate.passed.to_string(),
             text(own.result.load_factor, number),
-            text(problem.reference.as_ref(), |(factor, _)| number(*factor)),
-            text(problem.reference.as_ref(), |(_, from)| from.clone()),
+            text(problem.reference.as_ref(), |source| number(source.factor)),
+            text(problem.reference.as_ref(), |source| source.from.clone()),
+            text(problem.reference.as_ref().and_then(|source| source.band), number),
             text(own.error, number),
             number(own.seconds),
             counters(own),
@@ -84,7 +83,7 @@ pub fn csv(bench: &Bench) -> String {
 }
 
 /// Returns the names of the contestants in order of appearance.
-fn names(bench: &Bench) -> Vec<&str> {
+pub(super) fn names(bench: &Bench) -> Vec<&str> {
     let mut names: Vec<&str> = Vec::new();
     for own in &bench.measurements {
         if !names.contains(&own.contestant.as_str()) {
@@ -92,26 +91,6 @@ fn names(bench: &Bench) -> Vec<&str> {
         }
     }
     names
-}
-
-/// Draws error over time, with a mark for each contestant and problem. Returns `None` if no measurement has an error.
-pub fn error_chart(title: &str, bench: &Bench) -> Option<String> {
-    let series: Vec<Series> = names(bench)
-        .into_iter()
-        .map(|name| {
-            let own = bench.measurements.iter().filter(|own| own.contestant == name);
-            let points = own.filter_map(|own| Some((own.seconds, own.error?.max(NO_ERROR)))).collect();
-            Series { name: name.into(), points, unjoined: true, ..Series::default() }
-        })
-        .filter(|series| !series.points.is_empty())
-        .collect();
-    let from: Vec<&str> = bench.problems.iter().filter_map(|own| Some(own.reference.as_ref()?.1.as_str())).collect();
-    let from = from.iter().enumerate().filter(|(i, name)| !from[..*i].contains(name)).map(|(_, name)| *name);
-    let note =
-        format!("Errors are measured from: {}. No error is drawn at 1e-16.", from.collect::<Vec<_>>().join("; "));
-    let style = ChartStyle { log: [true, true] };
-    (!series.is_empty())
-        .then(|| chart(title, "processor time [s]", "relative error of the load factor [-]", &series, &[note], &style))
 }
 
 /// Draws a performance profile: the share of problems that a contestant solves within an error, over its time divided by
@@ -122,7 +101,7 @@ pub fn profile_chart(title: &str, bench: &Bench, within: f64) -> Option<String> 
         return None;
     }
     let reference = |own: &Measurement| {
-        bench.problems[own.problem].reference.as_ref().is_some_and(|(_, from)| *from == own.contestant)
+        bench.problems[own.problem].reference.as_ref().is_some_and(|source| source.from == own.contestant)
     };
     let solved = |own: &&Measurement| reference(own) || own.error.is_some_and(|error| error <= within);
     let of = |problem: usize| bench.measurements.iter().filter(move |own| own.problem == problem).filter(solved);

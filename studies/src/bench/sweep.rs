@@ -143,7 +143,7 @@ fn climb(
         let solver = solver.map(|card| ("solver.solver".to_string(), json!(card.tag)));
         match restated(case, solver.into_iter().chain(sets)) {
             Ok(case) => {
-                let measured = measure(index, format!("{parameter} {text}"), &case, options);
+                let measured = measure(index, (format!("{parameter} {text}"), None), &case, options);
                 found.cut_short = !(options.told)(&measured);
                 let rung =
                     Rung { case: name.into(), parameter, value: text, size, measured, difference: None, order: None };

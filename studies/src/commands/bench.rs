@@ -144,8 +144,11 @@ fn references(found: &Bench) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for problem in &found.problems {
         let line = match &problem.reference {
-            Some((_, from)) if from == "given" => "errors from the load factor that was given".to_string(),
-            Some((_, from)) => format!("errors from {from}"),
+            Some(source) if source.from == "given" => "errors from the load factor that was given".to_string(),
+            Some(source) => {
+                let band = source.band.map(|band| format!(" (within {})", format_short(band, 2)));
+                format!("errors from {}{}", source.from, band.unwrap_or_default())
+            }
             None => "no errors: nothing to measure them from".into(),
         };
         if !lines.contains(&line) {
