@@ -52,7 +52,7 @@ pub enum Verdict {
     Refuted,
     /// Some tests hold.
     DependsOn,
-    /// A number that a test needs is missing.
+    /// A number that a test needs is missing, or a test holds with some settings only.
     Undecided,
 }
 
@@ -71,9 +71,11 @@ impl Verdict {
 /// The result of a test.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tested {
-    /// The number of the test.
+    /// The number of the test, with the finest settings.
     pub value: Value,
-    /// True if the test holds; `None` if a number is missing.
+    /// The numbers with coarser settings, from coarse to fine, if one differs.
+    pub coarser: Vec<Value>,
+    /// True if the test holds; `None` if a number is missing, or if the test holds with some settings only.
     pub holds: Option<bool>,
 }
 
@@ -89,9 +91,9 @@ pub struct Answer<'a> {
 }
 
 impl Claim {
-    /// Returns the verdict of the claim; `series` returns a series by its name.
-    pub fn answer(&self, series: &dyn Fn(&str) -> Option<Value>) -> Answer<'_> {
-        let tests: Vec<Tested> = self.tests.iter().map(|test| test.run(series)).collect();
+    /// Returns the verdict of the claim. Each of `levels` returns a series by its name, with finer settings than the one before.
+    pub fn answer(&self, levels: &[&dyn Fn(&str) -> Option<Value>]) -> Answer<'_> {
+        let tests: Vec<Tested> = self.tests.iter().map(|test| test.at_levels(levels)).collect();
         let all = |holds: bool| tests.iter().all(|test| test.holds == Some(holds));
         let verdict = match () {
             () if tests.iter().any(|test| test.holds.is_none()) => Verdict::Undecided,
@@ -104,7 +106,17 @@ impl Claim {
 }
 
 impl Test {
-    fn run(&self, series: &dyn Fn(&str) -> Option<Value>) -> Tested {
+    /// Runs the test with coarse and fine settings. It is decided only if all agree.
+    fn at_levels(&self, levels: &[&dyn Fn(&str) -> Option<Value>]) -> Tested {
+        let mut results: Vec<(Value, Option<bool>)> = levels.iter().map(|series| self.run(series)).collect();
+        let (value, holds) = results.pop().unwrap_or_else(|| (Value::unknown("there are no results"), None));
+        let agree = results.iter().all(|(_, coarse)| *coarse == holds);
+        let coarser: Vec<Value> = results.into_iter().map(|(value, _)| value).collect();
+        let coarser = if coarser.iter().any(|coarse| *coarse != value) { coarser } else { Vec::new() };
+        Tested { value, coarser, holds: holds.filter(|_| agree) }
+    }
+
+    fn run(&self, series: &dyn Fn(&str) -> Option<Value>) -> (Value, Option<bool>) {
         let value = match Expression::parse(&self.value) {
             Ok(expression) => evaluate(&expression, series),
             Err(why) => Value::unknown(why),
@@ -115,7 +127,7 @@ impl Test {
             Ok(Value::Truth(truth)) => Some(truth),
             _ => None,
         };
-        Tested { value, holds }
+        (value, holds)
     }
 }
 
@@ -131,13 +143,17 @@ impl Answer<'_> {
     /// Returns the entry for results.json.
     pub fn entry(&self) -> Json {
         let test = |(test, tested): (&Test, &Tested)| {
-            let value = match &tested.value {
+            let plain = |value: &Value| match value {
                 Value::Number(x) if x.is_finite() => json!(x),
                 Value::Truth(truth) => json!(truth),
                 other => json!(other.describe()),
             };
-            json!({ "of": test.of, "value": value, "unit": test.unit, "expression": test.value, "condition": test.holds,
-                    "holds": tested.holds })
+            let mut entry = json!({ "of": test.of, "value": plain(&tested.value), "unit": test.unit, "expression": test.value,
+                                    "condition": test.holds, "holds": tested.holds });
+            if !tested.coarser.is_empty() {
+                entry["coarser"] = tested.coarser.iter().map(plain).collect();
+            }
+            entry
         };
         json!({
             "id": self.claim.id,
@@ -169,7 +185,29 @@ mod tests {
             remark: String::new(),
             tests: conditions.iter().map(test).collect(),
         };
-        claim.answer(&|name| (name == "a").then_some(Value::Number(3.0))).verdict
+        claim.answer(&[&|name| (name == "a").then_some(Value::Number(3.0))]).verdict
+    }
+
+    /// A claim that holds on a coarse mesh only is undecided; if all meshes agree, the number is that of the finest.
+    #[test]
+    fn a_claim_holds_only_if_it_holds_on_all_meshes() {
+        let [coarse, fine] = [3.0, 3.5].map(|number| move |name: &str| (name == "a").then_some(Value::Number(number)));
+        for (condition, verdict) in [("value < 7.5", Verdict::Reproduced), ("value < 6.5", Verdict::Undecided)] {
+            let test = Test { of: String::new(), value: "2 * a".into(), unit: String::new(), holds: condition.into() };
+            let claim = Claim {
+                id: "1".into(),
+                claim: String::new(),
+                source: String::new(),
+                depends_on: None,
+                remark: String::new(),
+                tests: vec![test],
+            };
+            let answer = claim.answer(&[&coarse, &fine]);
+            assert_eq!(answer.verdict, verdict);
+            let entry = &answer.entry()["tests"][0];
+            assert_eq!((&entry["value"], &entry["coarser"]), (&json!(7.0), &json!([6.0])));
+            assert!(claim.answer(&[&fine, &fine]).entry()["tests"][0].get("coarser").is_none());
+        }
     }
 
     #[test]

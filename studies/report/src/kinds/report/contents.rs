@@ -8,6 +8,7 @@ use super::series::Selection;
 use super::types::Type;
 use super::typing::type_of;
 use crate::writers::markdown::images;
+use serde_json::{Map, Value as Json};
 use std::collections::BTreeMap;
 use voussoir_core::plugin::Keys;
 use voussoir_study::config::diagnostic::suggest;
@@ -23,6 +24,10 @@ pub struct Contents {
     /// study files, relative to this one
     #[key(len = ">= 1, <= 200")]
     pub studies: Vec<String>,
+    /// \[\[report.finer\]\]: studies that are solved again with finer numerical settings. A claim holds only if it holds with all of
+    /// them
+    #[key(len = "<= 200", default = [])]
+    pub finer: Vec<Finer>,
     /// Markdown before each study; one more text is at the end
     #[key(len = "<= 201", default = [])]
     pub text: Vec<String>,
@@ -44,6 +49,18 @@ pub struct Contents {
 }
 
 impl Contents {
+    /// Returns the greatest number of finer settings of one study.
+    pub fn finer_levels(&self) -> usize {
+        let of = |study: &str| self.finer.iter().filter(|own| own.study == study).count();
+        self.finer.iter().map(|own| of(&own.study)).max().unwrap_or(0)
+    }
+
+    /// Returns the name of a study with its finer settings of a level; of the last level if it has fewer, its own at level 0.
+    pub fn at_level<'a>(&'a self, study: &'a str, level: usize) -> &'a str {
+        let own = self.finer.iter().filter(|own| own.study == study).take(level).last();
+        own.map_or(study, |own| &own.name)
+    }
+
     /// Adds the mistakes in the content of the report.
     pub fn check(&self, diagnostics: &mut DiagnosticList<'_>, parts: &[Part]) {
         let studies: Vec<&str> = parts.iter().map(|part| part.folder.as_str()).collect();
@@ -190,6 +207,17 @@ fn check_names(diagnostics: &mut DiagnosticList<'_>, key: &str, expression: &Exp
         },
         None => {}
     });
+}
+
+/// A study that is solved again with finer numerical settings, such as another mesh.
+#[derive(Debug, Clone, Keys)]
+pub struct Finer {
+    /// name of the study
+    pub study: String,
+    /// its name with these settings, which is also its folder
+    pub name: String,
+    /// dotted keys in quotes, with the values they take
+    pub set: Map<String, Json>,
 }
 
 /// The value of `kind` of such a study.

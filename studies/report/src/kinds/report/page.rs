@@ -4,6 +4,7 @@ use super::claims::{Answer, Verdict};
 use super::contents::Contents;
 use super::figures::Image;
 use super::parts::Parts;
+use super::value::Value;
 use crate::writers::markdown::markdown;
 use crate::writers::page;
 use crate::writers::title_block::{ReportOrigin, title_block};
@@ -29,13 +30,13 @@ pub fn results_page(
             image(contents, parts, place).map(|image| own_ids(&image, &format!("drawn-{}", drawn.get())))
         })
     };
-    let last = contents.text.get(parts.list().len());
+    let last = contents.text.get(contents.studies.len());
     let body = html! {
         h1 { (title) }
         (title_block(name, record, origin))
         (text(&contents.introduction))
         (claims(answers, &text))
-        @for (place, part) in parts.list().iter().enumerate() {
+        @for (place, part) in parts.list().iter().enumerate().take(contents.studies.len()) {
             @let words = contents.text.get(place).map_or("", |words| words.trim());
             section id=(part.folder) {
                 (heading(words, &part.folder))
@@ -89,6 +90,12 @@ fn claims(answers: &[Answer], text: &dyn Fn(&str) -> Markup) -> Markup {
     }
 }
 
+/// The numbers with coarser settings, in words.
+fn coarser(values: &[Value]) -> String {
+    let words: Vec<String> = values.iter().map(Value::describe).collect();
+    if words.is_empty() { String::new() } else { format!(" (coarser: {})", words.join("; ")) }
+}
+
 fn claim(answer: &Answer, text: &dyn Fn(&str) -> Markup) -> Markup {
     let claim = answer.claim;
     let class = match answer.verdict {
@@ -111,7 +118,7 @@ fn claim(answer: &Answer, text: &dyn Fn(&str) -> Markup) -> Markup {
         };
         vec![
             test.of.clone(),
-            format!("{}{unit}", tested.value.describe()),
+            format!("{}{unit}{}", tested.value.describe(), coarser(&tested.coarser)),
             holds.into(),
             format!("{} with value = {}", test.holds, test.value),
         ]

@@ -19,7 +19,7 @@ use voussoir_study::cases::Observer;
 use voussoir_study::caught::caught;
 use voussoir_study::checks::Agreement;
 use voussoir_study::config::check::Checker;
-use voussoir_study::config::diagnostic::{LocatedDiagnostic, sort};
+use voussoir_study::config::diagnostic::{LocatedDiagnostic, sort, suggest};
 use voussoir_study::config::document::Node;
 use voussoir_study::config::origin::Origin;
 use voussoir_study::kind::StoredResults;
@@ -61,7 +61,8 @@ impl ReportStudy {
             return Err(diagnostics.found.into());
         }
         let mut resolved = root.to_toml();
-        let own = parts.iter().map(|part| toml::Value::from(format!("{}/resolved.toml", part.folder)));
+        let named = &parts[..contents.studies.len().min(parts.len())];
+        let own = named.iter().map(|part| toml::Value::from(format!("{}/resolved.toml", part.folder)));
         if let Some(report) = resolved.get_mut("report").and_then(toml::Value::as_table_mut) {
             // In the results folder, the file of each part is in its own folder.
             report.insert("studies".into(), own.collect::<Vec<_>>().into());
@@ -73,13 +74,13 @@ impl ReportStudy {
     /// Returns the page and all other output made from the results of the parts.
     fn output(&self, results: &[String], version: &str, date: Option<&str>) -> RunOutput {
         let parts = Parts::new(&self.parts, results, self.figures);
-        let series: BTreeMap<&str, Value> = self
-            .contents
-            .series
-            .iter()
-            .map(|(name, own)| (name.as_str(), own.value(&|study| parts.json(study))))
-            .collect();
-        let named = |name: &str| series.get(name).cloned();
+        let series = |level: usize| -> BTreeMap<&str, Value> {
+            let results = |study: &str| parts.json(self.contents.at_level(study, level));
+            self.contents.series.iter().map(|(name, own)| (name.as_str(), own.value(&results))).collect()
+        };
+        let levels: Vec<_> = (0..=self.contents.finer_levels()).map(series).collect();
+        let named: Vec<_> = levels.iter().map(|series| |name: &str| series.get(name).cloned()).collect();
+        let named: Vec<&dyn Fn(&str) -> Option<Value>> = named.iter().map(|own| own as _).collect();
         let answers: Vec<Answer> = self.contents.claims.iter().map(|claim| claim.answer(&named)).collect();
         let mut files = Vec::new();
         if self.figures {
@@ -118,31 +119,58 @@ fn read_parts(diagnostics: &mut DiagnosticList<'_>, contents: &Contents, root: &
         _ => PathBuf::new(),
     };
     let mut parts: Vec<Part> = Vec::new();
+    let mut texts: Vec<(String, String, String)> = Vec::new();
     for (index, name) in contents.studies.iter().enumerate() {
         let key = format!("report.studies.{index}");
-        let text = match read(name) {
-            Ok(text) => text,
+        match read(name) {
+            Ok(text) => {
+                let file = own.join(name).display().to_string();
+                read_part(diagnostics, &key, (name, &file, &text, &[]), read, &mut parts);
+                let read = parts.last().filter(|part| part.file == file).map(|part| part.folder.clone());
+                texts.extend(read.map(|folder| (folder, name.clone(), text)));
+            }
             Err(why) => {
-                diagnostics.wrong(&key, format!("{name} cannot be read: {why}"), "paths are relative to this file");
-                continue;
+                diagnostics.wrong(&key, format!("{name} cannot be read: {why}"), "paths are relative to this file")
             }
-        };
-        let file = own.join(name).display().to_string();
-        // Files that a part names are in the folder of the part.
-        let beside = |inner: &str| read(&Path::new(name).with_file_name(inner).display().to_string());
-        match StudySource::parse_with(&text, &file, &[], &beside).and_then(read_source) {
-            Ok(study) if !study.parts().is_empty() => {
-                diagnostics.wrong(&key, "is a report itself", "name the studies that it reports on");
-            }
-            Ok(study) if parts.iter().any(|part| part.folder.eq_ignore_ascii_case(study.name())) => {
-                let message = format!("this study is called \"{}\", as an earlier one", study.name());
-                diagnostics.wrong(&key, message, "each study has a folder of its name: give one another name");
-            }
-            Ok(study) => parts.push(Part { folder: study.name().to_string(), file, study }),
-            Err(wrong) => diagnostics.found.extend_from_slice(wrong.mistakes()),
         }
     }
+    for (index, finer) in contents.finer.iter().enumerate() {
+        let key = format!("report.finer.{index}");
+        let Some((_, name, text)) = texts.iter().find(|(folder, ..)| *folder == finer.study) else {
+            let known: Vec<&str> = texts.iter().map(|(folder, ..)| folder.as_str()).collect();
+            let help = suggest(&finer.study, &known, "studies");
+            diagnostics.wrong(&format!("{key}.study"), format!("there is no study \"{}\" here", finer.study), help);
+            continue;
+        };
+        let sets = finer.set.iter().map(|(key, value)| (key.clone(), value.to_string()));
+        let sets: Vec<_> = sets.chain([("name".to_string(), finer.name.clone())]).collect();
+        let file = own.join(name).display().to_string();
+        read_part(diagnostics, &key, (name, &file, text, &sets), read, &mut parts);
+    }
     parts
+}
+
+/// Reads one study of a report, with overrides, and adds it to the parts.
+fn read_part(
+    diagnostics: &mut DiagnosticList<'_>,
+    key: &str,
+    (name, file, text, sets): (&str, &str, &str, &[(String, String)]),
+    read: ReadFile,
+    parts: &mut Vec<Part>,
+) {
+    // Files that a part names are in the folder of the part.
+    let beside = |inner: &str| read(&Path::new(name).with_file_name(inner).display().to_string());
+    match StudySource::parse_with(text, file, sets, &beside).and_then(read_source) {
+        Ok(study) if !study.parts().is_empty() => {
+            diagnostics.wrong(key, "is a report itself", "name the studies that it reports on");
+        }
+        Ok(study) if parts.iter().any(|part| part.folder.eq_ignore_ascii_case(study.name())) => {
+            let message = format!("this study is called \"{}\", as an earlier one", study.name());
+            diagnostics.wrong(key, message, "each study has a folder of its name: give one another name");
+        }
+        Ok(study) => parts.push(Part { folder: study.name().to_string(), file: file.to_string(), study }),
+        Err(wrong) => diagnostics.found.extend_from_slice(wrong.mistakes()),
+    }
 }
 
 /// Returns the table for the terminal: verdicts, then the time of each part.

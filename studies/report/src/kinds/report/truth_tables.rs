@@ -654,7 +654,7 @@ fn verdicts_of_claims() {
             "tests": [test(conditions[0]), test(conditions[1])],
         }))
         .expect("a claim");
-        let answer = claim.answer(&named);
+        let answer = claim.answer(&[&named]);
         assert_eq!(answer.words(), words, "{conditions:?}");
         let entry = answer.entry();
         let depends_on = if verdict == "depends_on" { json!("the strength") } else { json!(null) };
@@ -681,7 +681,7 @@ fn verdicts_of_claims() {
             "tests": [{ "of": "", "value": value, "unit": "", "holds": "no" }],
         }))
         .expect("a claim");
-        let answer = claim.answer(&named);
+        let answer = claim.answer(&[&named]);
         assert_eq!(answer.entry()["tests"][0]["value"], entry, "{value}");
         assert_eq!(
             (answer.entry()["tests"][0]["holds"].clone(), answer.words()),
