@@ -10,7 +10,7 @@ use voussoir::cli::processor_time;
 use voussoir_tests::study;
 
 /// The folder of the scenes: arches (shallow, deep, strong, many voussoirs), a wall, elastic, crushing, compliant, finite
-/// displacements. `voussoir bench benches/scenes/*.toml` measures the same.
+/// displacements, softening, a wall without dilatancy. `voussoir bench benches/scenes/*.toml` measures the same.
 const SCENES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes");
 
 /// Returns the studies in alphabetical order.
