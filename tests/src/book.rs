@@ -31,6 +31,7 @@ const PARTS: [(&str, &[(&str, &str)]); 6] = [
             ("how_to/surveyed_bridge.md", "Assess a surveyed bridge"),
             ("how_to/settlements.md", "Move supports"),
             ("how_to/walls.md", "Describe a wall"),
+            ("how_to/seismic.md", "Check a mechanism under earthquakes"),
             ("how_to/drawings.md", "Use a drawing as scene"),
             ("how_to/one_point.md", "Test a law at one point"),
             ("how_to/own_solver.md", "Write a solver"),

@@ -72,6 +72,17 @@ STUDIES = {
         with_(kind="optimise", optimise={"parameter": "scene.profile.rise", "from": 1.0, "to": 4.0, "scan": 5}),
         "optima",
     ),
+    "a kinematic analysis": (
+        with_(
+            kind="seismic",
+            seismic={"ground_acceleration": "0.2 g", "periods": [0.15, 0.5, 2.0]},
+            stages=[
+                {"name": "dead", "gravity": 9.81},
+                {"name": "push", "until": "collapse", "loads": [{"kind": "body", "acceleration": [9.81, 0.0]}]},
+            ],
+        ),
+        "seismic",
+    ),
 }
 
 

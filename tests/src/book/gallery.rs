@@ -18,7 +18,7 @@ const fn exhibit(study: &'static str, figure: &'static str, alternative: &'stati
 }
 
 /// Headings and their studies. Studies of more than ten seconds have stored figures.
-const EXHIBITS: [(&str, &[Exhibit]); 5] = [
+const EXHIBITS: [(&str, &[Exhibit]); 6] = [
     (
         "Bridges",
         &[
@@ -60,6 +60,14 @@ const EXHIBITS: [(&str, &[Exhibit]); 5] = [
             exhibit("cohesive_arch", "curve.svg", "Load over displacement with several bonds"),
             exhibit("strathmashie_cap", "figures/crushing_mechanism.svg", "Elements that have yielded"),
             exhibit("softening_arch", "figures/softening_stone.svg", "Load over displacement, softening stone"),
+        ],
+    ),
+    (
+        "Earthquakes",
+        &[
+            exhibit("seismic_facade", "seismic.svg", "Capacity curve of a facade that overturns"),
+            exhibit("seismic_portal", "figures/seismic_portal.svg", "Capacity curve of a portal"),
+            exhibit("seismic_arch", "seismic.svg", "Capacity curve of an arch on two piers"),
         ],
     ),
     (

@@ -31,6 +31,7 @@ mod paths_read;
 mod peaks;
 mod plastic;
 mod residuals;
+mod seismic;
 mod semicircle;
 mod sensitivities;
 mod settled;

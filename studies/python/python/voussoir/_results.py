@@ -237,7 +237,7 @@ class Results(Sequence[Case]):
     def worst(self) -> Case | None:
         """The critical case: the case that a search has found, otherwise the case with the least load factor. None if no case
         has a load factor, or the study compares scenes."""
-        ids = [entry["case"] for name in ("worsts", "optima") for entry in self.raw.get(name, [])]
+        ids = [entry["case"] for name in ("worsts", "optima", "seismic") for entry in self.raw.get(name, [])]
         if "comparison" in self.raw:
             return None
         cases = [case for case in self if not ids or case.raw["id"] in ids]

@@ -15,6 +15,7 @@ pub mod map;
 pub mod mechanism;
 pub mod moving_load;
 pub mod scene_canvas;
+pub mod seismic;
 pub mod sweep;
 pub mod symbols;
 pub mod thrust;

@@ -13,6 +13,7 @@ pub mod report;
 pub mod run;
 mod same_bytes;
 mod search;
+pub mod seismic;
 mod stored_cases;
 mod stored_results;
 mod verify_study;

@@ -6,6 +6,7 @@ use crate::writers::files::Files;
 use crate::writers::path_proofs::PathProofs;
 use crate::writers::results_json::add_cases;
 use crate::writers::results_text::{ResultsHead, ResultsText};
+use crate::writers::seismic::seismic_sentence;
 use crate::writers::table::results_table;
 use crate::writers::{tables, written};
 use std::borrow::Cow;
@@ -41,7 +42,7 @@ fn gathered(study: &Study, finished: &(impl FinishedCases + ?Sized)) -> io::Resu
     let adds = study.kind != "run";
     finished.each(&mut |cases| {
         cases.iter().for_each(|case| totals.add(case));
-        brief.extend(cases.iter().filter(|_| adds).map(CaseResult::brief));
+        brief.extend(cases.iter().filter(|_| adds).map(|case| study.needed(case)));
         Ok(())
     })?;
     let own = study.own_results(&brief);
@@ -158,7 +159,8 @@ fn write_shown(
 
 /// Returns the table for the terminal, with the additions of the study's kind.
 fn table(output: &StudyOutput) -> String {
-    let mut table = results_table(output);
+    let mut table = seismic_sentence(output).map_or(String::new(), |sentence| format!("{sentence}\n\n"));
+    table += &results_table(output);
     if let Some(comparison) = &output.results.comparison {
         table += "\n";
         table += &comparison_table(comparison, &output.keys);

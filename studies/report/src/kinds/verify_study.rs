@@ -125,7 +125,7 @@ impl Check<'_> {
         self.found.cases += results.len();
         self.found.stalled += results.iter().filter(|case| case.status == Status::Stalled).count();
         if self.study.kind != "run" {
-            self.brief.extend(results.iter().map(CaseResult::brief));
+            self.brief.extend(results.iter().map(|result| self.study.needed(result)));
         }
         Ok(())
     }

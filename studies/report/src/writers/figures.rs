@@ -4,6 +4,7 @@ use super::register::register;
 use super::writer::Writer;
 use crate::figures::envelope::envelope_chart;
 use crate::figures::moving_load::moving_load_svg;
+use crate::figures::seismic::capacity_charts;
 use crate::figures::sweep::{output_charts, study_chart};
 use crate::figures::{curve_charts, curve_svg, mechanism_svg, scene_svg};
 use crate::output::StudyOutput;
@@ -25,6 +26,7 @@ impl Writer for Figures {
             study_chart(study).map(|svg| ("figures/sweep.svg".to_string(), svg)).into_iter().collect();
         files.extend(output_charts(study).into_iter().map(|(name, svg)| (format!("figures/sweep-{name}.svg"), svg)));
         files.extend(envelope_chart(study).map(|svg| ("figures/envelope.svg".to_string(), svg)));
+        files.extend(capacity_charts(study).into_iter().map(|(name, svg)| (format!("figures/{name}.svg"), svg)));
         files.extend(moving_load_svg(study).map(|svg| ("figures/moving-load.svg".to_string(), svg)));
         files.extend(curve_charts(study).into_iter().map(|(name, svg)| (format!("figures/{name}.svg"), svg)));
         let drawn: Vec<_> =

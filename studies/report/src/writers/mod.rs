@@ -31,6 +31,7 @@ pub mod report;
 pub mod results_json;
 pub mod results_parquet;
 pub mod results_text;
+pub mod seismic;
 pub mod sensitivities_csv;
 pub mod table;
 pub(crate) mod title_block;

@@ -11,6 +11,7 @@ use super::live::case_data;
 use super::page::{self, figure};
 use super::record::record;
 use super::register::register;
+use super::seismic;
 use super::title_block::{ReportOrigin, title_block};
 use super::writer::Writer;
 use super::{joints_csv, outputs_csv, sensitivities_csv};
@@ -62,6 +63,7 @@ pub fn report_html(study: &StudyOutput, drawn: usize) -> String {
             @if figures && drawn > 0 && let Some(place) = worst { (pictures::of_case(study, place)) }
             (answer::critical_numbers(study))
         }
+        (seismic::section(study))
         @if figures { (charts(study)) }
         (comparison(study))
         h2 { "Cases" }

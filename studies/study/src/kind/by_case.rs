@@ -21,6 +21,11 @@ impl Study {
         kind(&self.kind).is_some_and(|kind| kind.makes_cases())
     }
 
+    /// Returns the parts of a result that the study's kind needs for its additions.
+    pub fn needed(&self, result: &CaseResult) -> CaseResult {
+        kind(&self.kind).map_or_else(|| result.brief(), |kind| kind.needed(result))
+    }
+
     /// Returns the part, from 0, of `count` parts of the study in which a case is solved. It depends only on the hash of the
     /// resolved case.
     pub fn part(&self, id: usize, count: usize) -> Option<usize> {

@@ -51,6 +51,11 @@ pub trait StudyKind: Sync {
         study.case(label.id)
     }
 
+    /// Returns the parts of a result that [`StudyKind::own_results`] reads.
+    fn needed(&self, result: &CaseResult) -> CaseResult {
+        result.brief()
+    }
+
     /// Returns the additions of this kind to the results of the cases. It is a pure function of its arguments, so that `verify`
     /// can repeat it.
     fn own_results(&self, study: &Study, cases: &[CaseResult]) -> OwnResults {

@@ -1,5 +1,7 @@
-//! The entries that study kinds add to results.json: `worsts` and `curve` of an envelope, `optima` of an optimisation.
+//! The entries that study kinds add to results.json: `worsts` and `curve` of an envelope, `optima` of an optimisation, `seismic` of a
+//! kinematic analysis.
 
+use super::seismic_entry::SeismicEntry;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
 use voussoir_core::limit::Status;
@@ -16,6 +18,9 @@ pub struct KindEntries {
     /// The best value for each case of the study.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub optima: Option<Vec<OptimumEntry>>,
+    /// The kinematic analysis of each case of the study and each direction.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seismic: Option<Vec<SeismicEntry>>,
     /// Entries of other kinds, by name.
     #[serde(flatten)]
     pub other: Map<String, Json>,

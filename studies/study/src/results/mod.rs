@@ -17,6 +17,7 @@ mod output_entry;
 pub mod path_state;
 mod rank;
 pub mod sealed_line;
+mod seismic_entry;
 mod sensitivity;
 pub mod stage_start;
 mod stored_entry;
@@ -40,6 +41,9 @@ pub use load_factor_error::LoadFactorError;
 pub use origin::{Build, FORMAT, HEAD, Origin, PluginCrate, head, this_program, without_origin, words};
 pub use output_entry::{OutputColumn, OutputEntry, kind_name};
 pub use rank::{least_of, load_rank};
+pub use seismic_entry::{
+    CheckedQuantity, DisplacementCapacity, Oscillator, PushDirection, SeismicCheck, SeismicEntry, governing,
+};
 pub use sensitivity::SensitivityEntry;
 pub use stored_entry::{StoredEntry, StoredOutline};
 pub use study_results::StudyResults;

@@ -5,6 +5,7 @@ use crate::figures::envelope::place_name;
 use crate::output::StudyOutput;
 use crate::writers::joints_csv::carried_sentences;
 use crate::writers::record::section;
+use crate::writers::seismic::seismic_sentence;
 use crate::writers::table::id_list;
 use maud::{Markup, html};
 use voussoir_core::limit::Status;
@@ -13,7 +14,7 @@ use voussoir_study::results::format::{
     capitalised, certificate_verdict, format_force, format_number, format_short, headline, kind_words, open_bounds,
     proved_interval, status_meaning, status_word, unit_load,
 };
-use voussoir_study::results::{CaseResult, Comparison, WorstEntry, least_of};
+use voussoir_study::results::{CaseResult, Comparison, WorstEntry, governing, least_of};
 
 /// Order of statuses in the sentence.
 const STATUSES: [Status; 7] = [
@@ -36,6 +37,9 @@ pub(super) fn worst(study: &StudyOutput) -> Option<usize> {
     }
     if study.results.comparison.is_some() {
         return None;
+    }
+    if let Some(entry) = study.results.own.seismic.as_deref().and_then(governing) {
+        return place(entry.case);
     }
     let found: Vec<usize> = match (&study.results.own.worsts, &study.results.own.optima) {
         (Some(worsts), _) if !worsts.is_empty() => worsts.iter().map(|worst| worst.place.case).collect(),
@@ -61,6 +65,9 @@ fn sentence(study: &StudyOutput) -> String {
     let cases = &study.results.cases;
     if let Some(comparison) = &study.results.comparison {
         return compared(comparison);
+    }
+    if let Some(sentence) = seismic_sentence(study) {
+        return sentence;
     }
     let Some(place) = worst(study) else { return "No case has a load factor.".into() };
     let case = &cases[place];
