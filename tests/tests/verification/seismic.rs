@@ -72,8 +72,8 @@ fn stacks_follow_the_closed_form_of_their_capacity_curve() {
     }
 }
 
-/// Of three blocks only the two narrow ones turn. The block at rest has no part in e* and d*, so the curve is that of the part
-/// that turns.
+/// Two narrow blocks turn on a block at rest. The block at rest does not change e* and d*, so the curve is the closed form for
+/// the two narrow blocks.
 #[test]
 fn a_block_at_rest_does_not_change_the_curve_of_the_others() {
     let of = |stiffness: f64| seismic(&stack(&[[3.0, 1.0], [0.5, 1.0], [0.5, 1.0]], stiffness)).0;

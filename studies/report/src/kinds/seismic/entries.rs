@@ -3,6 +3,7 @@
 use super::conversion::{MovingBlock, Participation, displacement_capacity};
 use super::request::Request;
 use super::{Push, checks, made_id};
+use std::collections::BTreeMap;
 use voussoir_core::limit::Status;
 use voussoir_study::results::{CaseResult, KindEntries, PushDirection, SeismicEntry};
 use voussoir_study::study::{Case, Study};
@@ -23,7 +24,7 @@ pub(super) fn entries(study: &Study, request: &Request, cases: &[CaseResult]) ->
     KindEntries { seismic: Some(entries), ..KindEntries::default() }
 }
 
-/// Returns the proved load factor: that of the mechanism, or the proved lower bound of a case that is open.
+/// Returns the proved load factor, or the proved lower bound of a case that is open.
 fn proved_factor(result: &CaseResult) -> Option<f64> {
     let lower = || result.bounds.and_then(|[lower, _]| lower).filter(|_| result.status == Status::Open);
     result.collapse_load().or_else(lower).filter(|factor| factor.is_finite())
@@ -71,11 +72,13 @@ fn entry(
 /// Returns the participation of the masses in the mechanism of a result.
 fn participation(base: &Case, limit: &CaseResult) -> Option<Participation> {
     let (motion, assembly) = (limit.proof.motion.as_ref()?, &base.assembly);
+    let velocities: BTreeMap<&str, [f64; 3]> =
+        motion.iter().map(|entry| (entry.body.as_str(), entry.velocity)).collect();
     let block = |index: usize| {
         let body = &assembly.bodies[index];
-        let entry = motion.iter().find(|entry| entry.body == body.name)?;
+        let velocity = *velocities.get(body.name.as_str())?;
         let own = assembly.inertia(index);
-        Some(MovingBlock { mass: own.mass, centroid: own.centroid.into(), velocity: entry.velocity })
+        Some(MovingBlock { mass: own.mass, centroid: own.centroid.into(), velocity })
     };
     let free = (0..assembly.bodies.len()).filter(|index| !assembly.bodies[*index].fixed);
     Participation::of(&free.map(block).collect::<Option<Vec<_>>>()?, assembly.size())
