@@ -41,14 +41,18 @@ fn number(value: &Value) -> f64 {
 }
 
 /// Returns the greatest difference of α on the falling branch from tan(β − θ), for a part of `width` and `height` that turns by θ
-/// about its lower corner. Its centroid moves by d* = R (sin β − sin(β − θ)).
-fn error(entry: &Value, [width, height]: [f64; 2]) -> f64 {
+/// about its lower corner. Its centroid moves by R (sin β − sin(β − θ)).
+fn error(entry: &Value, part: [f64; 2]) -> f64 {
+    error_of(entry, part, 1.2, 1.0)
+}
+
+/// As [`error`], with α = a* `divisor`/g, if the centroid moves by d* `share`.
+fn error_of(entry: &Value, [width, height]: [f64; 2], divisor: f64, share: f64) -> f64 {
     let (radius, sine) = (width.hypot(height) / 2.0, width / width.hypot(height));
     let curve: Vec<[f64; 2]> = serde_json::from_value(entry["curve"].clone()).expect("a curve");
     let peak = (0..curve.len()).max_by(|a, b| curve[*a][1].total_cmp(&curve[*b][1])).expect("a peak");
     assert!(curve.len() > peak + 20, "{} points", curve.len());
-    let multiplier = |a: f64| a * 1.2 / GRAVITY;
-    let off = |&[d, a]: &[f64; 2]| (multiplier(a) - (sine - d / radius).asin().tan()).abs();
+    let off = |&[d, a]: &[f64; 2]| (a * divisor / GRAVITY - (sine - d * share / radius).asin().tan()).abs();
     curve[peak + 1..].iter().map(off).fold(0.0, f64::max)
 }
 
@@ -83,6 +87,27 @@ fn a_block_at_rest_does_not_change_the_curve_of_the_others() {
         assert_close(number(&stiff["oscillator"]["mass_fraction"]), 1.0, 1e-12);
         let [soft, fine] = [soft, stiff].map(|entry| error(entry, [0.5, 2.0]));
         assert!(fine < 1e-6 && (8.0..12.0).contains(&(soft / fine)), "{soft} {fine}");
+    }
+}
+
+/// Two piers of 0.6 m × 2.4 m turn by θ, and the lintel of 3.2 m × 0.5 m moves twice as far as their centroids without turning.
+/// By virtual work α = tan(β − θ) with tan β = 0.6/2.4. With masses in proportion to the areas
+/// e* = (2 · 1.44 · 1 + 1.6 · 2)²/((2 · 1.44 · 1 + 1.6 · 4) · 4.48).
+#[test]
+fn the_portal_follows_the_closed_form_of_its_capacity_curve() {
+    let text = include_str!("../../../studies/cases/seismic_portal.toml");
+    let (mass, first, second) = (4.48, 2.88 + 3.2, 2.88 + 6.4);
+    let effective = first * first / second;
+    let of = |normal: &str, shear: &str| {
+        seismic(&changed(&changed(text, "1e10 Pa/m", normal), "4e9 Pa/m", shear)).0.into_iter().map(|entry| {
+            assert_close(number(&entry["activation_multiplier"]), 0.25, 1e-12);
+            assert_close(number(&entry["oscillator"]["mass_fraction"]), effective / mass, 1e-12);
+            // d* of the centroid of a pier is d* Σ m δ/Σ m δ² for δ = 1.
+            error_of(&entry, [0.6, 2.4], effective / mass * 1.35, first / second)
+        })
+    };
+    for (soft, fine) in of("1e11 Pa/m", "4e10 Pa/m").zip(of("1e12 Pa/m", "4e11 Pa/m")) {
+        assert!(fine < 1e-5 && (8.0..12.0).contains(&(soft / fine)), "{soft} {fine}");
     }
 }
 
