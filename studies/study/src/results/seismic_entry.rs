@@ -121,8 +121,12 @@ impl SeismicEntry {
     }
 }
 
-/// Returns the entry that governs: one that has no check, otherwise the one with the least deciding ratio.
+/// Ratios with a smaller relative difference are equal: a symmetric mechanism has equal ratios in both directions.
+const EQUAL: f64 = 1e-6;
+
+/// Returns the entry that governs: the first one without a check, otherwise the first one with the least deciding ratio.
 pub fn governing(entries: &[SeismicEntry]) -> Option<&SeismicEntry> {
     let ratio = |entry: &SeismicEntry| entry.deciding().map_or(f64::NEG_INFINITY, |check| check.ratio);
-    entries.iter().min_by(|a, b| ratio(a).total_cmp(&ratio(b)))
+    let least = entries.iter().map(ratio).fold(f64::INFINITY, f64::min);
+    entries.iter().find(|entry| ratio(entry) <= least * (1.0 + EQUAL))
 }
