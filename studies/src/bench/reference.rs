@@ -16,7 +16,7 @@ const MESHES: [f64; 2] = [1.0, 1.5];
 /// Length of the steps, divided by those of the study.
 const STEPS: f64 = 0.25;
 
-/// Extrapolates the load factor of the fastest path solver that answers the case as it is.
+/// Extrapolates the load factor of the fastest path solver that has a certified result for the unchanged case.
 pub(super) fn extrapolated<'a>(case: &Case, measured: impl Iterator<Item = &'a Measurement>) -> Option<Source> {
     let whole = measured.filter(|own| own.rung.is_none() && own.factor().is_some());
     let paths = whole.filter_map(|own| Some((own, card(PluginKind::PathSolver, &own.result.solver)?)));
