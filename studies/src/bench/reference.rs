@@ -1,4 +1,4 @@
-//! A reference that is none of the contestants: extrapolated from two meshes that are fine at the joints' ends.
+//! A reference that no contestant computes: extrapolated from two meshes that are fine at the joints' ends.
 //!
 //! λ₁ and λ₂ are the load factors on meshes whose elements at the joints' ends have the sizes h₁ > h₂ = ρ h₁. An error of order p
 //! gives λ = λ₂ + (λ₂ − λ₁) ρ^p/(1 − ρ^p). The observed order is between 1 and 2, so the reference takes p = 3/2, and its band
