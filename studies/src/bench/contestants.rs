@@ -15,13 +15,13 @@ pub(super) struct Contestant {
     pub case: Result<Case, String>,
 }
 
-/// Numbers of elements of the ladder of meshes, divided by those of the study.
+/// Numbers of elements of the ladder of meshes, divided by the numbers in the study.
 const MESHES: [f64; 4] = [0.5, 1.5, 2.0, 3.0];
 /// Orders of the elements.
 const ORDERS: [usize; 3] = [1, 2, 3];
 /// Gradings of the elements towards the ends of joints.
 const GRADINGS: [f64; 5] = [1.0, 3.0, 6.0, 10.0, 20.0];
-/// Lengths of the steps, divided by those of the study.
+/// Lengths of the steps, divided by the lengths in the study.
 const STEPS: [f64; 4] = [0.5, 0.25, 0.125, 0.0625];
 
 /// Returns the variants of a study.

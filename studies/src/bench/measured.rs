@@ -8,7 +8,7 @@ use voussoir_study::results::CaseResult;
 pub struct Refinement {
     /// `mesh`, `order`, `grading` or `steps`.
     pub ladder: &'static str,
-    /// Order or grading; number of elements or length of steps divided by those of the study.
+    /// Order or grading; number of elements or length of steps, divided by the value in the study.
     pub value: f64,
 }
 
@@ -57,7 +57,7 @@ pub struct Problem {
 pub struct Source {
     /// λ*.
     pub factor: f64,
-    /// Where it comes from.
+    /// Its origin: a contestant, `given`, or an extrapolation.
     pub from: String,
     /// Greatest relative error of λ* if it is estimated.
     pub band: Option<f64>,

@@ -11,9 +11,9 @@ use voussoir_study::cases::solve_case;
 use voussoir_study::solve::knobs::{mesh_at_hinges, smaller_steps};
 use voussoir_study::study::Case;
 
-/// Elements of the two meshes, divided by those of an error estimate.
+/// Elements of the two meshes, divided by the numbers in the mesh of an error estimate.
 const MESHES: [f64; 2] = [1.0, 1.5];
-/// Length of the steps, divided by those of the study.
+/// Length of the steps, divided by the length in the study.
 const STEPS: f64 = 0.25;
 
 /// Extrapolates the load factor of the fastest path solver that has a certified result for the unchanged case.

@@ -38,7 +38,7 @@ pub fn finer_mesh(case: &Case, times: f64) -> Sets {
 const RESOLVED_ELEMENTS: [usize; 2] = [4, 6];
 /// Grading that a mesh has at least if it is to resolve the hinges at the joints' ends.
 const RESOLVED_GRADING: f64 = 10.0;
-/// Elements of rigid blocks, which have no grading, divided by those of the case.
+/// Elements of rigid blocks, which have no grading, divided by the numbers in the case.
 const RESOLVED_RIGID: usize = 4;
 
 /// Refines the mesh most at the joints' ends, where hinges form, with `times` as many elements as an estimate needs. Also

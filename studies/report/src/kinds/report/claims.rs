@@ -188,7 +188,7 @@ mod tests {
         claim.answer(&[&|name| (name == "a").then_some(Value::Number(3.0))]).verdict
     }
 
-    /// A claim that holds on a coarse mesh only is undecided; if all meshes agree, the number is that of the finest.
+    /// A claim that holds on a coarse mesh only is undecided; if all meshes agree, the number comes from the finest.
     #[test]
     fn a_claim_holds_only_if_it_holds_on_all_meshes() {
         let [coarse, fine] = [3.0, 3.5].map(|number| move |name: &str| (name == "a").then_some(Value::Number(number)));
