@@ -246,7 +246,8 @@ pub fn mechanism_of_deforming(
             let touching = gives_way.filter(|_| !crushable).unwrap_or(usize::from(nearer));
             let toward = joint.ends[1 - touching] - joint.ends[touching];
             let point = joint.ends[touching] + toward * crushed;
-            let side = assembly.arch.as_ref().map(|_| [Side::Intrados, Side::Extrados][touching]);
+            let arch = assembly.arch.as_ref().filter(|arch| arch.crosses_ring(index));
+            let side = arch.map(|_| [Side::Intrados, Side::Extrados][touching]);
             found.hinges.push(Hinge { joint: index, between: between(), side, point: point.into(), rotation });
         }
     }

@@ -41,8 +41,8 @@ pub struct Body {
     pub fixed: bool,
 }
 
-/// Layout of an arch. Voussoirs are the bodies `first..first + n` from left to right; joint k lies between voussoirs
-/// k−1 and k and has its end 0 on the intrados.
+/// Layout of an arch. Voussoirs are the bodies `first..first + n` from left to right; joint k ≤ n lies between
+/// voussoirs k−1 and k and has its end 0 on the intrados. Bases of abutments are joints after these.
 #[derive(Debug, Clone)]
 pub struct ArchLayout {
     /// Index of the first voussoir.
@@ -53,6 +53,13 @@ pub struct ArchLayout {
     pub span: f64,
     /// Rise of the intrados \[m\].
     pub rise: f64,
+}
+
+impl ArchLayout {
+    /// Returns true if a joint lies across the ring; the other joints are the bases of abutments.
+    pub fn crosses_ring(&self, joint: usize) -> bool {
+        joint <= self.voussoirs
+    }
 }
 
 /// Bodies and joints, with the materials and laws that they refer to.
@@ -141,7 +148,7 @@ impl Assembly {
     }
 
     /// Returns the straight upper faces that carry loads and fill, from left to right: the extrados of arches, for
-    /// bridges also the tops of piers. Empty for other scenes.
+    /// bridges also the tops of piers and abutments. Empty for other scenes.
     pub fn extrados(&self) -> Vec<Chord> {
         if let Some(bridge) = &self.bridge {
             return bridge.extrados.clone();

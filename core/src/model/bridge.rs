@@ -144,7 +144,7 @@ impl FillReaction {
 /// Data of a bridge besides bodies and joints.
 #[derive(Debug, Clone, Default)]
 pub struct Bridge {
-    /// Upper faces from left to right: chords of the outermost rings, and tops of piers between them.
+    /// Upper faces from left to right: chords of the outermost rings, and tops of piers and abutments.
     pub extrados: Vec<Chord>,
     /// x of the outermost intrados springings \[m\].
     pub springings: [f64; 2],

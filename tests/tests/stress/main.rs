@@ -1,5 +1,6 @@
 //! Random scenes: solvers that share no numerical method against each other, and against other programs.
 
+mod abutments;
 mod bridges;
 mod cap;
 mod conic;

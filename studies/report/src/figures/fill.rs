@@ -2,10 +2,11 @@
 
 use super::scene_canvas::SceneCanvas;
 use super::symbols::{FILL, LOAD, LOST, OUTLINE, PRESSURE, SPREAD};
-use voussoir_core::model::geometry::Vec2;
-use voussoir_core::model::{Assembly, Bridge, Stage};
+use voussoir_core::model::geometry::{Vec2, area_and_centroid};
+use voussoir_core::model::{Assembly, Body, Bridge, Stage};
 use voussoir_plot::svg::SMALL;
 use voussoir_study::results::FillEntry;
+use voussoir_study::scenes::abutments;
 
 /// Places at which it is asked where a layer ends.
 const SAMPLES: usize = 600;
@@ -73,7 +74,11 @@ pub fn draw_spreads(canvas: &mut SceneCanvas, stages: &[Stage]) -> bool {
     !spreads.is_empty()
 }
 
-/// Writes the names of spans and piers, as results have them.
+fn is_abutment(body: &Body) -> bool {
+    abutments::NAMES.contains(&body.name.as_str())
+}
+
+/// Writes the names of spans, piers and abutments, as results have them.
 pub fn name_parts(canvas: &mut SceneCanvas, assembly: &Assembly) {
     if assembly.bridge.is_none() {
         return;
@@ -101,6 +106,10 @@ pub fn name_parts(canvas: &mut SceneCanvas, assembly: &Assembly) {
         let [x, y] = canvas.at(course.vertices.iter().sum::<Vec2>() / count);
         canvas.text([x, y + 4.0], "middle", SMALL, &part, OUTLINE, false);
     }
+    for body in assembly.bodies.iter().filter(|body| is_abutment(body)) {
+        let [x, y] = canvas.at(area_and_centroid(&body.vertices).1);
+        canvas.text([x, y + 4.0], "middle", SMALL, "abutment", OUTLINE, false);
+    }
 }
 
 /// Marks the parts of joints that have lost their mortar: where a joint ends before the edges of its blocks do; whether
@@ -116,9 +125,9 @@ pub fn mark_lost_mortar(canvas: &mut SceneCanvas, assembly: &Assembly) -> bool {
         }
         let along = joint.frame().1;
         for (end, outwards) in [(joint.ends[0], -along), (joint.ends[1], along)] {
-            // The cap of a pier reaches over all rings that stand on it.
+            // Caps of piers and abutments reach over all rings that end on them.
             let voussoirs = [joint.minus, joint.plus].map(|body| &assembly.bodies[body]);
-            let voussoirs = voussoirs.into_iter().filter(|body| !body.name.starts_with('p'));
+            let voussoirs = voussoirs.into_iter().filter(|body| !body.name.starts_with('p') && !is_abutment(body));
             let beyond = voussoirs.flat_map(|body| &body.vertices).filter(|vertex| {
                 let way = **vertex - end;
                 way.norm() > 1e-9 * size && (way.normalize() - outwards).norm() < 1e-6

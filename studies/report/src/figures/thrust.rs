@@ -50,7 +50,8 @@ pub fn thrust_pieces(assembly: &Assembly, points: &[Option<Vec2>], forces: &[Opt
     let mut pieces: Vec<Vec<Vec2>> = vec![Vec::new()];
     for (k, point) in points.iter().enumerate() {
         let piece = pieces.last_mut().expect("there is always a piece");
-        let Some(point) = point else {
+        let across = assembly.arch.as_ref().is_none_or(|arch| arch.crosses_ring(k));
+        let Some(point) = point.as_ref().filter(|_| across) else {
             if !piece.is_empty() {
                 pieces.push(Vec::new());
             }

@@ -73,6 +73,7 @@ pub fn case_data(assembly: &Assembly, result: &CaseResult, finite: bool) -> Opti
         (main.joint, tidy(main.point[0]), tidy(main.point[1]))
     };
     let thrust = result.proof.thrust_line.as_ref();
+    let across = |joint: usize| assembly.arch.as_ref().is_some_and(|arch| arch.crosses_ring(joint));
     let (motion, closing) = moving_blocks(assembly, result)
         .map(|blocks| blocks.iter().map(|own| (own.velocity.map(fine), own.closing.map(|term| term.map(fine)))).unzip())
         .unzip();
@@ -83,7 +84,10 @@ pub fn case_data(assembly: &Assembly, result: &CaseResult, finite: bool) -> Opti
         centres: centres(assembly).into_iter().map(|at| [fine(at.x), fine(at.y)]).collect(),
         free: assembly.bodies.iter().map(|body| !body.fixed).collect(),
         joints: assembly.joints.iter().map(joint).collect(),
-        thrust: thrust.map(|line| line.iter().map(|point| point.map(|at| at.map(tidy))).collect()),
+        thrust: thrust.map(|line| {
+            let points = line.iter().enumerate();
+            points.map(|(joint, point)| point.filter(|_| across(joint)).map(|at| at.map(tidy))).collect()
+        }),
         motion,
         closing,
         hinges,
@@ -131,7 +135,8 @@ fn path_data(assembly: &Assembly, result: &CaseResult, finite: bool) -> Option<P
         for (contact, pressure) in field.iter().zip(&state.pressures) {
             stress[contact.joint].push((share(contact.joint, contact.point), *pressure));
         }
-        let thrust = assembly.joints.iter().zip(&mut stress).map(|(joint, points)| {
+        let across = |joint: usize| assembly.arch.as_ref().is_some_and(|arch| arch.crosses_ring(joint));
+        let thrust = assembly.joints.iter().zip(&mut stress).enumerate().map(|(index, (joint, points))| {
             // Bonded joints neither open nor transmit contact pressure as other joints do.
             if matches!(joint.bond, Bond::Bonded) {
                 points.clear();
@@ -140,7 +145,7 @@ fn path_data(assembly: &Assembly, result: &CaseResult, finite: bool) -> Option<P
             let total: f64 = points.iter().map(|(_, p)| p).sum();
             let middle = points.iter().map(|(s, p)| s * p).sum::<f64>() / total;
             let at = joint.ends[0] + (joint.ends[1] - joint.ends[0]) * middle;
-            (total > 0.0 && assembly.arch.is_some()).then(|| [digits(at.x), digits(at.y)])
+            (total > 0.0 && across(index)).then(|| [digits(at.x), digits(at.y)])
         });
         let thrust = thrust.collect();
         let points = |points: &Vec<(f64, f64)>| points.iter().map(|(s, p)| [digits(*s), digits(*p)]).collect();

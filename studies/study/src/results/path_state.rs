@@ -107,11 +107,12 @@ pub fn open_hinges(assembly: &Assembly, problem: &PathProblem, state: &PathState
             (least, _) if least >= 1.0 - TOE && open(0) => 1,
             _ => continue,
         };
+        let arch = assembly.arch.as_ref().filter(|arch| arch.crosses_ring(index));
         let turn = |block: usize| state.motion[problem.body_of[block]][2];
         hinges.push(Hinge {
             joint: index,
             between: [joint.minus, joint.plus].map(|body| assembly.bodies[body].name.clone()),
-            side: assembly.arch.as_ref().map(|_| [Side::Intrados, Side::Extrados][touching]),
+            side: arch.map(|_| [Side::Intrados, Side::Extrados][touching]),
             point: joint.ends[touching].into(),
             rotation: turn(joint.plus) - turn(joint.minus),
         });

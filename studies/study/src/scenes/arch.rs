@@ -1,13 +1,15 @@
 //! `arch`: a ring of voussoirs between two supports.
 #![doc = include_str!("arch.md")]
 
+use super::abutments::{AbutmentBlock, Abutments};
 use super::keys::{PlaneState, SceneKeys};
 use super::lookup::{from_root, law, material, out_of_range, pairs_of, take};
 use super::mesh::{Mesh, density, mesh_diagnostics};
+use super::overlap::overlap;
 use super::profile::{Profile, Ring, Springing};
 use super::thickness::Thickness;
 use voussoir_core::model::geometry::bounding_box;
-use voussoir_core::model::{ArchLayout, Assembly, Body, Bond, Catalogue, Gap, Joint, Scene, find_joints};
+use voussoir_core::model::{ArchLayout, Assembly, Body, Bond, Bridge, Catalogue, Gap, Joint, Scene, find_joints};
 use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind, Sample};
 
 /// Connection of the ring with its supports.
@@ -45,6 +47,9 @@ pub struct Arch {
     /// inclination of the support plane above the horizontal, rising outwards; one number or \[left, right\]
     #[key(optional = "the end joints are normal to the intrados")]
     pub springing: Option<Springing>,
+    /// rigid abutments on a base with friction behind the springings
+    #[key(optional = "fixed supports")]
+    pub abutments: Option<Abutments>,
     /// Material of the voussoirs.
     #[key(like = SceneKeys)]
     pub material: String,
@@ -95,8 +100,26 @@ impl Arch {
         ))
     }
 
+    /// Returns the ring and its abutments, or all mistakes in the geometry.
+    fn shapes(&self) -> Result<(Ring, Vec<AbutmentBlock>), Vec<Diagnostic>> {
+        let below = |wrong: Vec<Diagnostic>| wrong.into_iter().map(|own| own.below("abutments"));
+        let ring = self.ring().map_err(|mut wrong| {
+            wrong.extend(below(self.abutments.map(|own| own.mistakes()).unwrap_or_default()));
+            wrong
+        })?;
+        let blocks = match &self.abutments {
+            Some(abutments) => {
+                let springing = |k: usize| [ring.intrados[k], ring.extrados[k]];
+                let blocks = abutments.blocks([springing(0), springing(ring.voussoirs())]);
+                blocks.map_err(|wrong| below(wrong).collect::<Vec<_>>())?
+            }
+            None => Vec::new(),
+        };
+        Ok((ring, blocks))
+    }
+
     fn validate(&self) -> Vec<(String, String)> {
-        self.ring().err().map(pairs_of).unwrap_or_default()
+        self.shapes().err().map(pairs_of).unwrap_or_default()
     }
 }
 
@@ -110,32 +133,75 @@ impl Scene for Arch {
         let mut diagnostics = Vec::new();
         let material = take(material(catalogue, &self.material, "material"), &mut diagnostics);
         let law = take(law(catalogue, &self.joint, "joint"), &mut diagnostics);
-        let ring = self.ring().map_err(|mut wrong| diagnostics.append(&mut wrong)).ok();
-        let (Some(material), Some(law), Some(ring)) = (material, law, ring) else {
+        let shapes = self.shapes().map_err(|mut wrong| diagnostics.append(&mut wrong)).ok();
+        let (Some(material), Some(law), Some((ring, abutments))) = (material, law, shapes) else {
             return Err(from_root(diagnostics));
         };
         let count = ring.voussoirs();
+        let mut catalogue = catalogue.clone();
         let support = |name: &str| Body { name: name.into(), vertices: Vec::new(), material, fixed: true };
         let mut bodies = vec![support("left")];
+        let (left, right): (Vec<_>, Vec<_>) = abutments.iter().partition(|abutment| abutment.is_left());
+        let block = |own: &AbutmentBlock, catalogue: &mut Catalogue| own.body(catalogue, material);
+        let wrong = |wrong| from_root(vec![wrong]);
+        for abutment in left {
+            bodies.push(block(abutment, &mut catalogue).map_err(wrong)?);
+        }
+        let first = bodies.len();
         bodies.extend((0..count).map(|k| voussoir(&ring, k, material)));
+        for abutment in right {
+            bodies.push(block(abutment, &mut catalogue).map_err(wrong)?);
+        }
         bodies.push(support("right"));
         let joint = |k: usize| Joint {
-            minus: k,
-            plus: k + 1,
+            minus: first + k - 1,
+            plus: first + k,
             ends: [ring.intrados[k], ring.extrados[k]],
             bond: if self.ends == Ends::Bonded && (k == 0 || k == count) { Bond::Bonded } else { Bond::Law(law) },
             gap: Gap::default(),
         };
-        Ok(Assembly {
-            catalogue: catalogue.clone(),
+        let mut assembly = Assembly {
             joints: (0..=count).map(joint).collect(),
             bodies,
             width: self.width,
             plane: self.plane.into(),
             mesh: density(self.mesh),
-            arch: Some(ArchLayout { first: 1, voussoirs: count, span: ring.span, rise: ring.rise }),
+            arch: Some(ArchLayout { first, voussoirs: count, span: ring.span, rise: ring.rise }),
             bridge: None,
-        })
+            catalogue,
+        };
+        if !abutments.is_empty() {
+            self.add_abutments(&mut assembly, &abutments, law).map_err(wrong)?;
+        }
+        Ok(assembly)
+    }
+}
+
+impl Arch {
+    /// Adds the bases of abutments, their upper faces, and the ground behind them.
+    fn add_abutments(
+        &self,
+        assembly: &mut Assembly,
+        abutments: &[AbutmentBlock],
+        law: usize,
+    ) -> Result<(), Diagnostic> {
+        if let Some(wrong) = overlap(&assembly.bodies, "abutments") {
+            return Err(wrong);
+        }
+        let mut extrados = assembly.extrados();
+        let (radial, last) = (assembly.joints.len(), assembly.bodies.len() - 1);
+        let mut reactions = Vec::new();
+        for abutment in abutments {
+            let [ground, body] = if abutment.is_left() { [0, 1] } else { [last, last - 1] };
+            assembly.joints.push(abutment.base(&mut assembly.catalogue, law, [ground, body])?);
+            let place = if abutment.is_left() { 0 } else { extrados.len() };
+            extrados.splice(place..place, abutment.face(body));
+            reactions.extend(abutment.reaction(body, self.width));
+        }
+        let springings = [0, radial - 1].map(|joint| assembly.joints[joint].ends[0].x);
+        let longest_span = assembly.span();
+        assembly.bridge = Some(Bridge { extrados, springings, longest_span, radial, reactions, ..Bridge::default() });
+        Ok(())
     }
 }
 
@@ -162,6 +228,13 @@ plane = "strain"
 material = "brick"
 joint = "mortar"
 mesh = { elements = [2, 4] }"#),
+            Sample::keys(r#"profile = { shape = "segmental", span = 9.0, rise = 3.0 }
+thickness = 0.6
+width = 2.0
+voussoirs = 9
+material = "stone"
+joint = "dry"
+abutments = { width = 3.0, height = 2.0, base_friction = 0.5, right = { width = 4.0, backing = 1e4 } }"#),
         ],
         file: file!(),
         package: voussoir_core::package!(),

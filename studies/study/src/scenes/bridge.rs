@@ -15,12 +15,13 @@ pub use self::rings::{Counts, RadialJoints, Span};
 use self::builder::Builder;
 use self::piers::PierBlocks;
 use self::rings::SpanBlocks;
+use super::abutments::{AbutmentBlock, Abutments};
 use super::arch::Ends;
 use super::keys::{PlaneState, SceneKeys};
 use super::lookup::{from_root, law, material, out_of_range, pairs_of, take};
 use super::mesh::{Mesh, density, mesh_diagnostics};
-use voussoir_core::model::geometry::bounding_box;
-use voussoir_core::model::{ArchLayout, Assembly, Body, Bond, Bridge, Catalogue, Gap, Scene, find_joints};
+use super::overlap::overlap;
+use voussoir_core::model::{ArchLayout, Assembly, Bond, Bridge, Catalogue, Scene};
 use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind, Sample};
 
 /// Spans on abutments and piers, with fill.
@@ -48,6 +49,9 @@ pub struct BridgeScene {
     /// one between two spans
     #[key(len = "<= 1000", default = [])]
     pub piers: Vec<Pier>,
+    /// rigid abutments on a base with friction behind the outermost springings
+    #[key(optional = "fixed supports")]
+    pub abutments: Option<Abutments>,
     /// fill between the rings and the road
     #[key(optional = "bare rings")]
     pub fill: Option<Fill>,
@@ -64,6 +68,7 @@ pub struct BridgeScene {
 struct Shapes {
     spans: Vec<SpanBlocks>,
     piers: Vec<PierBlocks>,
+    abutments: Vec<AbutmentBlock>,
 }
 
 /// Adds a prefix to the paths of diagnostics.
@@ -89,6 +94,9 @@ impl BridgeScene {
         if let Some(fill) = &self.fill {
             diagnostics.extend(within("fill", fill.mistakes()));
         }
+        if let Some(abutments) = &self.abutments {
+            diagnostics.extend(within("abutments", abutments.mistakes()));
+        }
         let (mut spans, mut x) = (Vec::new(), 0.0);
         for (i, span) in self.spans.iter().enumerate() {
             match span.blocks(x) {
@@ -109,7 +117,16 @@ impl BridgeScene {
                 Err(wrong) => diagnostics.extend(within(&format!("piers.{i}"), vec![wrong])),
             }
         }
-        if diagnostics.is_empty() { Ok(Shapes { spans, piers }) } else { Err(diagnostics) }
+        let ends = [spans[0].springing(0), spans[spans.len() - 1].springing(1)];
+        let abutments = match self.abutments.map(|abutments| abutments.blocks(ends)) {
+            Some(Ok(blocks)) => blocks,
+            Some(Err(wrong)) => {
+                diagnostics.extend(within("abutments", wrong));
+                Vec::new()
+            }
+            None => Vec::new(),
+        };
+        if diagnostics.is_empty() { Ok(Shapes { spans, piers, abutments }) } else { Err(diagnostics) }
     }
 
     fn validate(&self) -> Vec<(String, String)> {
@@ -155,11 +172,21 @@ impl BridgeScene {
         indices.ok_or(diagnostics)
     }
 
-    /// Builds bodies, joints and upper faces.
-    fn put_together(&self, shapes: &Shapes, indices: &Indices) -> Builder {
+    /// Builds bodies, joints and upper faces, and adds the laws of abutments to the catalogue.
+    fn put_together(
+        &self,
+        shapes: &Shapes,
+        indices: &Indices,
+        catalogue: &mut Catalogue,
+    ) -> Result<Builder, Diagnostic> {
         let mut builder = Builder::default();
         let [joint, ring_joint] = [indices.joint, indices.ring_joint].map(Bond::Law);
+        let abutment = |left: bool| shapes.abutments.iter().find(|own| own.is_left() == left);
+        let laws = [indices.material, indices.joint];
         let mut before = builder.body("left".into(), Vec::new(), indices.material, true);
+        if let Some(own) = abutment(true) {
+            before = builder.abutment(own, before, laws, catalogue)?;
+        }
         let alone = self.spans.len() == 1 && shapes.spans[0].rings.len() == 1;
         for (index, (span, blocks)) in self.spans.iter().zip(&shapes.spans).enumerate() {
             let springing = if span.ends == Ends::Bonded { Bond::Bonded } else { joint };
@@ -168,19 +195,13 @@ impl BridgeScene {
                 before = builder.pier(index, pier, blocks, joint, indices.piers[index]);
             }
         }
-        let right = builder.body("right".into(), Vec::new(), indices.material, true);
-        builder.join_ends(right);
-        builder
+        let mut after = builder.body("right".into(), Vec::new(), indices.material, true);
+        if let Some(own) = abutment(false) {
+            after = builder.abutment(own, after, laws, catalogue)?;
+        }
+        builder.join_ends(after);
+        Ok(builder)
     }
-}
-
-/// Reports parts that overlap, as can happen with wide rings over a narrow valley.
-fn overlap(bodies: &[Body]) -> Option<Diagnostic> {
-    let (low, high) = bounding_box(bodies.iter().flat_map(|body| &body.vertices));
-    let (_, overlaps) = find_joints(bodies, (high - low).norm(), |_, _| (Bond::Bonded, Gap::default()));
-    let worst = overlaps.into_iter().max_by(|a, b| a.depth.total_cmp(&b.depth))?;
-    let [a, b] = worst.bodies.map(|body| &bodies[body].name);
-    Some(Diagnostic::new("spans", format!("blocks \"{a}\" and \"{b}\" overlap by {:.3e} m", worst.depth)))
 }
 
 #[typetag::serde(name = "bridge")]
@@ -190,20 +211,24 @@ impl Scene for BridgeScene {
         let indices = self.indices(catalogue).map_err(|mut wrong| diagnostics.append(&mut wrong)).ok();
         let shapes = self.shapes().map_err(|mut wrong| diagnostics.append(&mut wrong)).ok();
         let (Some(indices), Some(shapes)) = (indices, shapes) else { return Err(from_root(diagnostics)) };
-        let mut builder = self.put_together(&shapes, &indices);
+        let mut own = catalogue.clone();
+        let builder = self.put_together(&shapes, &indices, &mut own);
+        let mut builder = builder.map_err(|wrong| from_root(vec![wrong]))?;
         builder.damage(&self.damage, catalogue).map_err(from_root)?;
         let Builder { bodies, radial, other, extrados, rings: _, piers: _ } = builder;
-        if let Some(wrong) = overlap(&bodies) {
+        if let Some(wrong) = overlap(&bodies, "spans") {
             return Err(from_root(vec![wrong]));
         }
         let ends = [shapes.spans[0].springing(0)[0], shapes.spans[shapes.spans.len() - 1].springing(1)[0]];
         // A repointed joint consists of two joints; then joints are not numbered along the ring.
-        let alone = shapes.spans.len() == 1 && shapes.spans[0].rings.len() == 1 && other.is_empty();
+        let bases = shapes.abutments.len();
+        let alone = shapes.spans.len() == 1 && shapes.spans[0].rings.len() == 1 && other.len() == bases;
         let ring = || {
             let joints = &shapes.spans[0].rings[0].joints;
             let crown = joints.iter().fold(f64::NEG_INFINITY, |top, ends| top.max(ends[0].y));
             let rise = crown - (ends[0].y + ends[1].y) / 2.0;
-            ArchLayout { first: 1, voussoirs: radial.len() - 1, span: ends[1].x - ends[0].x, rise }
+            let first = 1 + usize::from(shapes.abutments.iter().any(AbutmentBlock::is_left));
+            ArchLayout { first, voussoirs: radial.len() - 1, span: ends[1].x - ends[0].x, rise }
         };
         let arch = alone.then(ring);
         let springings = ends.map(|end| end.x);
@@ -211,7 +236,7 @@ impl Scene for BridgeScene {
         let longest_span = shapes.spans.iter().map(span).fold(0.0, f64::max);
         let mut bridge = Bridge { extrados, springings, longest_span, radial: radial.len(), ..Bridge::default() };
         let mut assembly = Assembly {
-            catalogue: catalogue.clone(),
+            catalogue: own,
             joints: radial.into_iter().chain(other).collect(),
             bodies,
             width: self.width,
@@ -224,6 +249,10 @@ impl Scene for BridgeScene {
             let crown = shapes.spans.iter().fold(f64::NEG_INFINITY, |top, span| top.max(span.crown));
             let added = fill.add_to(&assembly, &mut bridge, crown, springings);
             added.map_err(|wrong| from_root(within("fill", wrong).collect()))?;
+        }
+        for abutment in &shapes.abutments {
+            let body = assembly.body(abutment.name);
+            bridge.reactions.extend(body.and_then(|body| abutment.reaction(body, self.width)));
         }
         assembly.bridge = Some(bridge);
         Ok(assembly)
@@ -249,6 +278,12 @@ friction_angle = 35.0
 cohesion = 0.0
 dispersion = { law = "uniform", angle = 26.6 }
 resistance = { law = "fill_pressure", passive_factor = 0.33 }"#),
+            Sample::keys(r#"width = 3.0
+material = "stone"
+joint = "dry"
+spans = [{ profile = { shape = "segmental", span = 4.0, rise = 1.0 }, thickness = 0.4, voussoirs = 12 }]
+abutments = { width = 3.0, height = 2.0, base_friction = 0.5, backing = 1e4 }
+fill = { cover = 0.3, density = 2000.0 }"#),
         ],
         file: file!(),
         package: voussoir_core::package!(),

@@ -1,5 +1,6 @@
 //! Scenes: each converts its geometry into an assembly of blocks. One file each; file = tag.
 
+pub mod abutments;
 pub mod arch;
 pub mod blocks;
 pub mod bridge;
@@ -8,6 +9,7 @@ pub mod dispersion;
 mod keys;
 mod lookup;
 pub mod mesh;
+mod overlap;
 pub mod profile;
 mod surveyed;
 #[cfg(test)]

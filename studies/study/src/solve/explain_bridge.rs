@@ -2,6 +2,7 @@
 
 use crate::config::common_keys::own_keys;
 use crate::loads::VehicleAxles;
+use crate::scenes::abutments;
 use crate::scenes::bridge::BridgeScene;
 use crate::study::Case;
 use serde_json::{Value as Json, json};
@@ -49,6 +50,9 @@ pub fn explain_bridge(case: &Case, bridge: &Bridge, text: &mut String) {
     }
     for i in 0..scene.as_ref().map_or(0, |scene| scene.piers.len()) {
         line(text, format!("pier {i}"), format!("p{i}c"));
+    }
+    for (side, name) in ["left", "right"].into_iter().zip(abutments::NAMES) {
+        line(text, format!("{side} abutment"), name.into());
     }
     for (i, damage) in scene.iter().flat_map(|scene| &scene.damage).enumerate() {
         let _ = writeln!(text, "  damage {i}: {}", words(&json!(damage)));

@@ -25,6 +25,7 @@ pub fn as_blocks(case: &Case, name: &str) -> Result<String, String> {
     for table in ["materials", "joints", "solver"] {
         study.extend(tables.get(table).map(|value| (table.to_string(), value.clone())));
     }
+    add_own(&mut study, assembly)?;
     let written = case.resolved.get("stages").and_then(Json::as_array).map(Vec::as_slice).unwrap_or_default();
     let mut gravity = Vec2::zeros();
     let mut stages = Vec::new();
@@ -38,6 +39,20 @@ pub fn as_blocks(case: &Case, name: &str) -> Result<String, String> {
     let resists = !assembly.fill_reactions().is_empty();
     let remark = "# Without the horizontal forces of the fill, which the scene \"blocks\" does not have.\n";
     Ok(format!("{}{text}", if resists { remark } else { "" }))
+}
+
+/// Adds materials and joint laws that the scene has made itself.
+fn add_own(study: &mut Map<String, Json>, assembly: &Assembly) -> Result<(), String> {
+    let catalogue = &assembly.catalogue;
+    let materials = catalogue.materials.iter().map(|(name, own)| ("materials", name, serde_json::to_value(&**own)));
+    let laws = catalogue.laws.iter().map(|(name, own)| ("joints", name, serde_json::to_value(&**own)));
+    for (table, name, own) in materials.chain(laws) {
+        let entries = study.entry(table).or_insert_with(|| Map::new().into()).as_object_mut();
+        if let Some(entries) = entries.filter(|entries| !entries.contains_key(name)) {
+            entries.insert(name.clone(), own.map_err(|error| error.to_string())?);
+        }
+    }
+    Ok(())
 }
 
 /// Removes keys with the value `null`.

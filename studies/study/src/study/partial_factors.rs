@@ -38,7 +38,7 @@ pub struct Factors {
     /// partial factor on loads, for all stages or for the stages named: { live = 1.5 }
     #[key(optional = "1")]
     loads: Option<LoadFactors>,
-    /// partial factor on the friction of joints, whose coefficients are divided
+    /// partial factor on the friction of joints and of bases of abutments, whose coefficients are divided
     #[key(unit = "-", range = "> 0", optional = "1")]
     friction: Option<f64>,
     /// partial factor on the cohesion of joints, which is divided
@@ -56,7 +56,7 @@ pub struct Factors {
     /// partial factor on the cohesion of the fill, which is divided
     #[key(unit = "-", range = "> 0", optional = "1")]
     fill_cohesion: Option<f64>,
-    /// partial factor on the strength of the backing, which is divided
+    /// partial factor on the strength of the backing of rings and abutments, which is divided
     #[key(unit = "-", range = "> 0", optional = "1")]
     backing_strength: Option<f64>,
 }
@@ -106,6 +106,8 @@ const CHANGES: &[(&str, &str, Change)] = &[
     ("friction", "joints.*.friction", Change::Over),
     ("friction", "joints.*.friction_angle", Change::TangentOver),
     ("friction", "joints.*.dilatancy_angle", Change::TangentOver),
+    ("friction", "scene.abutments.base_friction", Change::Over),
+    ("friction", "scene.abutments.*.base_friction", Change::Over),
     ("cohesion", "joints.*.cohesion", Change::Over),
     ("tensile_strength", "joints.*.tensile_strength", Change::Over),
     ("compressive_strength", "joints.*.compressive_strength", Change::Over),
@@ -114,6 +116,8 @@ const CHANGES: &[(&str, &str, Change)] = &[
     ("fill_cohesion", "scene.fill.cohesion", Change::Over),
     ("fill_cohesion", "scene.fill.layers.*.cohesion", Change::Over),
     ("backing_strength", "scene.fill.haunching.strength", Change::Over),
+    ("backing_strength", "scene.abutments.backing", Change::Over),
+    ("backing_strength", "scene.abutments.*.backing", Change::Over),
 ];
 
 /// Returns the tables of a checked case with its design values. Adds a note for factors that change nothing.

@@ -56,7 +56,8 @@ fn path(case: &CaseResult, assembly: &Assembly) -> Markup {
 
 /// Describes a change of a joint.
 fn what(assembly: &Assembly, event: &JointEvent) -> String {
-    let end = |end: usize| match (&assembly.arch, end) {
+    let ring = assembly.arch.as_ref().filter(|arch| arch.crosses_ring(event.joint));
+    let end = |end: usize| match (ring, end) {
         (Some(_), 0) => "at the intrados".to_string(),
         (Some(_), _) => "at the extrados".to_string(),
         (None, _) => format!("at ({}, {}) m", format_short(event.point[0], 4), format_short(event.point[1], 4)),

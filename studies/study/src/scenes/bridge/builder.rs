@@ -2,8 +2,10 @@
 
 use super::piers::{Footing, Pier, PierBlocks};
 use super::rings::SpanBlocks;
+use crate::scenes::abutments::AbutmentBlock;
 use voussoir_core::model::geometry::Vec2;
-use voussoir_core::model::{Body, Bond, Chord, Gap, Joint};
+use voussoir_core::model::{Body, Bond, Catalogue, Chord, Gap, Joint};
+use voussoir_core::plugin::Diagnostic;
 
 /// Indices of a ring among the bodies and joints of a bridge.
 #[derive(Debug, Clone, Copy)]
@@ -124,5 +126,20 @@ impl Builder {
             self.other.push(Joint { minus, plus, ends: [*right, *left], bond, gap: Gap::default() });
         }
         top
+    }
+    /// Adds an abutment on fixed ground and returns its index. `laws` are the indices of the material and of the law of
+    /// joints.
+    pub fn abutment(
+        &mut self,
+        abutment: &AbutmentBlock,
+        ground: usize,
+        [material, joint]: [usize; 2],
+        catalogue: &mut Catalogue,
+    ) -> Result<usize, Diagnostic> {
+        self.bodies.push(abutment.body(catalogue, material)?);
+        let body = self.bodies.len() - 1;
+        self.other.push(abutment.base(catalogue, joint, [ground, body])?);
+        self.extrados.extend(abutment.face(body));
+        Ok(body)
     }
 }

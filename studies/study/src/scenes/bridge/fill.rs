@@ -1,5 +1,6 @@
 //! The fill of a bridge: its weight on the blocks by vertical columns, and its resistance at the chords of the extrados.
 
+use crate::scenes::abutments::backing as resistance_up_to;
 use crate::scenes::dispersion::Dispersion;
 use crate::scenes::lookup::out_of_range;
 use std::sync::Arc;
@@ -144,8 +145,7 @@ impl Fill {
         let floor = self.haunching.map_or(f64::NEG_INFINITY, |backing| backing.level);
         let mut strata = Vec::new();
         if let Some(backing) = self.haunching {
-            let law = serde_json::json!({ "law": "backing", "strength": backing.strength });
-            let law = serde_json::from_value::<Box<dyn FillResistance>>(law).ok().map(Arc::from);
+            let law = resistance_up_to(backing.strength);
             strata.push(Stratum { law, ..stratum(floor, backing.density.unwrap_or(masonry), 0.0, 0.0, None) });
         }
         for layer in self.layers.iter().filter(|layer| layer.to_level > floor) {
