@@ -30,6 +30,9 @@ const PARTS: [(&str, &[(&str, &str)]); 6] = [
         &[
             ("how_to/surveyed_bridge.md", "Assess a surveyed bridge"),
             ("how_to/settlements.md", "Move supports"),
+            ("how_to/rise_abutments.md", "Let abutments move"),
+            ("how_to/rise_fill.md", "Find the best rise with fill"),
+            ("how_to/rise_softening.md", "Find the best rise of softening stone"),
             ("how_to/walls.md", "Describe a wall"),
             ("how_to/seismic.md", "Check a mechanism under earthquakes"),
             ("how_to/drawings.md", "Use a drawing as scene"),

@@ -29,6 +29,8 @@ const EXHIBITS: [(&str, &[Exhibit]); 6] = [
             ),
             exhibit("viaduct", "figures/viaduct_worst.svg", "Three spans on piers under a bogie"),
             exhibit("bolton", "case-0000-scene.svg", "Arch of two rings with fill and a load"),
+            exhibit("abutments", "sweep.svg", "Load over the rise, fixed supports and abutments 8 m and 3 m wide"),
+            exhibit("rise_fill", "sweep.svg", "Load over the rise with and without fill"),
         ],
     ),
     (
@@ -59,6 +61,11 @@ const EXHIBITS: [(&str, &[Exhibit]); 6] = [
             exhibit("cohesive_bar", "figures/softening_bar.svg", "Softening and snap-back of two bars"),
             exhibit("cohesive_arch", "curve.svg", "Load over displacement with several bonds"),
             exhibit("strathmashie_cap", "figures/crushing_mechanism.svg", "Elements that have yielded"),
+            exhibit(
+                "rise_softening",
+                "figures/rise_softening.svg",
+                "Load over the rise, stone that softens and that does not",
+            ),
             exhibit("softening_arch", "figures/softening_stone.svg", "Load over displacement, softening stone"),
         ],
     ),

@@ -1,9 +1,9 @@
-//! Abutments of an arch or a bridge: rigid blocks behind and below the outermost springings, on a base with friction.
+//! Abutments of an arch or a bridge: blocks behind and below the outermost springings, on a base with friction.
 
 use super::lookup::out_of_range;
 use serde_json::{Map, Value as Json, json};
 use std::sync::Arc;
-use voussoir_core::law::{BulkMaterial, FacetMode, FillResistance, InterfaceLaw, is_associated};
+use voussoir_core::law::{FacetMode, FillResistance, InterfaceLaw, is_associated};
 use voussoir_core::model::geometry::{Vec2, area_and_centroid};
 use voussoir_core::model::{Body, Bond, Catalogue, Chord, FillPart, FillReaction, Gap, Joint, crosses_itself};
 use voussoir_core::plugin::{Diagnostic, Keys};
@@ -98,8 +98,7 @@ impl Abutments {
         let shared = Abutment { width, height, base_friction, backing };
         for (prefix, keys) in [("", Some(shared)), ("left.", left), ("right.", right)] {
             let Some(Abutment { width, height, base_friction, backing }) = keys else { continue };
-            let named =
-                [("width", width), ("height", height), ("base_friction", base_friction), ("backing", backing)];
+            let named = [("width", width), ("height", height), ("base_friction", base_friction), ("backing", backing)];
             let given = named.into_iter().filter_map(|(key, value)| Some((key, value?)));
             wrong.extend(given.filter_map(|(key, value)| out_of_range::<Abutment>(&format!("{prefix}{key}"), value)));
         }
@@ -143,11 +142,7 @@ impl Abutments {
 
 impl Abutment {
     /// Returns the block at a springing, or the key that does not fit with the reason.
-    fn block(
-        &self,
-        side: usize,
-        [inner, outer]: [Vec2; 2],
-    ) -> Result<Option<AbutmentBlock>, (&'static str, String)> {
+    fn block(&self, side: usize, [inner, outer]: [Vec2; 2]) -> Result<Option<AbutmentBlock>, (&'static str, String)> {
         let (Some(width), Some(height), Some(base_friction)) = (self.width, self.height, self.base_friction) else {
             return Ok(None);
         };
@@ -161,8 +156,7 @@ impl Abutment {
         if outer.y - foot <= tolerance {
             return Err(("height", format!("{height} m is too low: the springing reaches the base")));
         }
-        let mut vertices =
-            vec![Vec2::new(inner.x, foot), Vec2::new(far, foot), Vec2::new(far, outer.y), outer, inner];
+        let mut vertices = vec![Vec2::new(inner.x, foot), Vec2::new(far, foot), Vec2::new(far, outer.y), outer, inner];
         vertices.dedup_by(|a, b| (*a - *b).norm() <= tolerance);
         if side == 0 {
             vertices.reverse();
@@ -193,19 +187,9 @@ impl AbutmentBlock {
         self.name == NAMES[0]
     }
 
-    /// Returns the block, of a rigid material with the density of `material`, which is added to the catalogue if necessary.
-    pub fn body(&self, catalogue: &mut Catalogue, material: usize) -> Result<Body, Diagnostic> {
-        let own = &catalogue.materials[material];
-        let material = if own.1.elasticity().is_none() {
-            material
-        } else {
-            let table = json!({ "law": "rigid", "density": own.1.density() });
-            let rigid = serde_json::from_value::<Box<dyn BulkMaterial>>(table).map_err(|error| unreadable(&error))?;
-            let name = unused(format!("{}_{}", own.0, self.name), |name| catalogue.material(name).is_some());
-            catalogue.materials.push((name, Arc::from(rigid)));
-            catalogue.materials.len() - 1
-        };
-        Ok(Body { name: self.name.into(), vertices: self.vertices.clone(), material, fixed: false })
+    /// Returns the block with a material of the catalogue.
+    pub fn body(&self, material: usize) -> Body {
+        Body { name: self.name.into(), vertices: self.vertices.clone(), material, fixed: false }
     }
 
     /// Returns its joint with the ground, and adds the law of this joint to the catalogue. `joint` is the law of the other
@@ -217,8 +201,12 @@ impl AbutmentBlock {
         [ground, body]: [usize; 2],
     ) -> Result<Joint, Diagnostic> {
         let table = base_law(&*catalogue.laws[joint].1, self.base_friction);
-        let law = serde_json::from_value::<Box<dyn InterfaceLaw>>(table).map_err(|error| unreadable(&error))?;
-        let name = unused(format!("{}_base", self.name), |name| catalogue.law(name).is_some());
+        let law = serde_json::from_value::<Box<dyn InterfaceLaw>>(table)
+            .map_err(|error| Diagnostic::new("abutments", format!("need the law \"mohr_coulomb\": {error}")))?;
+        let mut name = format!("{}_base", self.name);
+        while catalogue.law(&name).is_some() {
+            name.push('_');
+        }
         catalogue.laws.push((name, Arc::from(law)));
         let bond = Bond::Law(catalogue.laws.len() - 1);
         Ok(Joint { minus: ground, plus: body, ends: self.base, bond, gap: Gap::default() })
@@ -266,7 +254,8 @@ fn base_law(joint: &dyn InterfaceLaw, friction: f64) -> Json {
         let angle = dilatancy.unwrap_or(0.0).clamp(0.0, friction).atan().to_degrees();
         table.insert("dilatancy_angle".into(), angle.into());
     }
-    for (key, stiffness) in ["normal_stiffness", "shear_stiffness"].into_iter().zip(joint.stiffness().into_iter().flatten())
+    for (key, stiffness) in
+        ["normal_stiffness", "shear_stiffness"].into_iter().zip(joint.stiffness().into_iter().flatten())
     {
         if stiffness.is_finite() {
             table.insert(key.into(), stiffness.into());
@@ -275,14 +264,74 @@ fn base_law(joint: &dyn InterfaceLaw, friction: f64) -> Json {
     table.into()
 }
 
-fn unreadable(error: &serde_json::Error) -> Diagnostic {
-    Diagnostic::new("abutments", format!("need the laws \"rigid\" and \"mohr_coulomb\": {error}"))
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenes::test_catalogue::catalogue;
+    use voussoir_core::model::{Assembly, Scene};
 
-/// Appends underscores to a name until it is not taken.
-fn unused(mut name: String, taken: impl Fn(&str) -> bool) -> String {
-    while taken(&name) {
-        name.push('_');
+    fn arch(abutments: Json) -> Result<Assembly, Vec<String>> {
+        let scene = json!({
+            "scene": "arch", "profile": { "shape": "segmental", "span": 9.42, "rise": 2.99 }, "thickness": 0.6,
+            "width": 5.81, "voussoirs": 15, "material": "stone", "joint": "dry", "abutments": abutments,
+        });
+        let scene: Box<dyn Scene> = serde_json::from_value(scene).expect("a scene");
+        scene.build(&catalogue()).map_err(|wrong| wrong.into_iter().map(|own| own.path).collect())
     }
-    name
+
+    /// A key of one side replaces the key of both; a side without keys is a fixed support.
+    #[test]
+    fn each_side_has_its_own_keys_or_those_of_both() {
+        let widths = |table: Json| {
+            let assembly = arch(table).expect("an arch");
+            let base = |name: &str| {
+                let body = assembly.body(name)?;
+                assembly.joints.iter().find(|joint| joint.plus == body).map(|joint| joint.height())
+            };
+            NAMES.map(base)
+        };
+        let near = |found: [Option<f64>; 2], expected: [Option<f64>; 2]| {
+            let same = |(a, b): (Option<f64>, Option<f64>)| a.zip(b).map_or(a == b, |(a, b)| (a - b).abs() < 1e-12);
+            assert!(found.into_iter().zip(expected).all(same), "{found:?} {expected:?}");
+        };
+        let both = json!({ "width": 3.0, "height": 2.0, "base_friction": 0.5 });
+        near(widths(both.clone()), [Some(3.0), Some(3.0)]);
+        near(widths(json!({ "left": both })), [Some(3.0), None]);
+        let mut one = both;
+        one["right"] = json!({ "width": 4.0 });
+        near(widths(one), [Some(3.0), Some(4.0)]);
+    }
+
+    /// Missing, negative and too small numbers have the key of their table.
+    #[test]
+    fn mistakes_name_their_key() {
+        let wrong = |table: Json| arch(table).expect_err("a mistake");
+        assert_eq!(wrong(json!({})), ["scene.abutments.width"]);
+        assert_eq!(wrong(json!({ "width": 3.0, "height": 2.0 })), ["scene.abutments.base_friction"]);
+        let small = json!({ "width": 3.0, "height": 2.0, "base_friction": 0.5, "right": { "width": 0.2 } });
+        assert_eq!(wrong(small), ["scene.abutments.right.width"]);
+        let negative = json!({ "width": 3.0, "height": 2.0, "base_friction": -0.5, "left": { "height": f64::MIN } });
+        assert_eq!(wrong(negative), ["scene.abutments.base_friction", "scene.abutments.left.height"]);
+    }
+
+    /// The base has the friction of its key, and crushing strength and flow of the other joints; it has neither cohesion
+    /// nor tensile strength.
+    #[test]
+    fn a_base_slides_and_crushes_like_the_other_joints() {
+        let base = |law: Json| {
+            let law: Box<dyn InterfaceLaw> = serde_json::from_value(law).expect("a law");
+            let base = base_law(&*law, 0.3);
+            serde_json::from_value::<Box<dyn InterfaceLaw>>(base).expect("a law").facets().expect("facets")
+        };
+        let mortar = json!({
+            "law": "mohr_coulomb", "friction": 0.6, "cohesion": 1e5, "tensile_strength": 1e5, "compressive_strength": 8e6
+        });
+        let facets = base(mortar);
+        assert!(is_associated(&facets));
+        assert_eq!(facets.iter().map(|facet| facet.bound).collect::<Vec<_>>(), [0.0, 0.0, 0.0, 8e6]);
+        assert!(facets.iter().filter(|facet| facet.mode == FacetMode::Sliding).all(|facet| facet.normal[0] == -0.3));
+        let facets = base(json!({ "law": "coulomb", "friction": 0.6 }));
+        assert_eq!(facets.len(), 3);
+        assert!(facets.iter().filter(|facet| facet.mode == FacetMode::Sliding).all(|facet| facet.flow[0] == 0.0));
+    }
 }

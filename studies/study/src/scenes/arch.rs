@@ -47,7 +47,7 @@ pub struct Arch {
     /// inclination of the support plane above the horizontal, rising outwards; one number or \[left, right\]
     #[key(optional = "the end joints are normal to the intrados")]
     pub springing: Option<Springing>,
-    /// rigid abutments on a base with friction behind the springings
+    /// abutments behind the springings, on a base with friction
     #[key(optional = "fixed supports")]
     pub abutments: Option<Abutments>,
     /// Material of the voussoirs.
@@ -138,20 +138,13 @@ impl Scene for Arch {
             return Err(from_root(diagnostics));
         };
         let count = ring.voussoirs();
-        let mut catalogue = catalogue.clone();
         let support = |name: &str| Body { name: name.into(), vertices: Vec::new(), material, fixed: true };
         let mut bodies = vec![support("left")];
         let (left, right): (Vec<_>, Vec<_>) = abutments.iter().partition(|abutment| abutment.is_left());
-        let block = |own: &AbutmentBlock, catalogue: &mut Catalogue| own.body(catalogue, material);
-        let wrong = |wrong| from_root(vec![wrong]);
-        for abutment in left {
-            bodies.push(block(abutment, &mut catalogue).map_err(wrong)?);
-        }
+        bodies.extend(left.iter().map(|abutment| abutment.body(material)));
         let first = bodies.len();
         bodies.extend((0..count).map(|k| voussoir(&ring, k, material)));
-        for abutment in right {
-            bodies.push(block(abutment, &mut catalogue).map_err(wrong)?);
-        }
+        bodies.extend(right.iter().map(|abutment| abutment.body(material)));
         bodies.push(support("right"));
         let joint = |k: usize| Joint {
             minus: first + k - 1,
@@ -168,10 +161,10 @@ impl Scene for Arch {
             mesh: density(self.mesh),
             arch: Some(ArchLayout { first, voussoirs: count, span: ring.span, rise: ring.rise }),
             bridge: None,
-            catalogue,
+            catalogue: catalogue.clone(),
         };
         if !abutments.is_empty() {
-            self.add_abutments(&mut assembly, &abutments, law).map_err(wrong)?;
+            self.add_abutments(&mut assembly, &abutments, law).map_err(|wrong| from_root(vec![wrong]))?;
         }
         Ok(assembly)
     }

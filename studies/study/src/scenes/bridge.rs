@@ -49,7 +49,7 @@ pub struct BridgeScene {
     /// one between two spans
     #[key(len = "<= 1000", default = [])]
     pub piers: Vec<Pier>,
-    /// rigid abutments on a base with friction behind the outermost springings
+    /// abutments behind the outermost springings, on a base with friction
     #[key(optional = "fixed supports")]
     pub abutments: Option<Abutments>,
     /// fill between the rings and the road

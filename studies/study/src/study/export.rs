@@ -41,15 +41,12 @@ pub fn as_blocks(case: &Case, name: &str) -> Result<String, String> {
     Ok(format!("{}{text}", if resists { remark } else { "" }))
 }
 
-/// Adds materials and joint laws that the scene has made itself.
+/// Adds joint laws that the scene has made itself.
 fn add_own(study: &mut Map<String, Json>, assembly: &Assembly) -> Result<(), String> {
-    let catalogue = &assembly.catalogue;
-    let materials = catalogue.materials.iter().map(|(name, own)| ("materials", name, serde_json::to_value(&**own)));
-    let laws = catalogue.laws.iter().map(|(name, own)| ("joints", name, serde_json::to_value(&**own)));
-    for (table, name, own) in materials.chain(laws) {
-        let entries = study.entry(table).or_insert_with(|| Map::new().into()).as_object_mut();
-        if let Some(entries) = entries.filter(|entries| !entries.contains_key(name)) {
-            entries.insert(name.clone(), own.map_err(|error| error.to_string())?);
+    let Some(tables) = study.get_mut("joints").and_then(Json::as_object_mut) else { return Ok(()) };
+    for (name, law) in &assembly.catalogue.laws {
+        if !tables.contains_key(name) {
+            tables.insert(name.clone(), serde_json::to_value(&**law).map_err(|error| error.to_string())?);
         }
     }
     Ok(())

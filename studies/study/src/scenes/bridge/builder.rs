@@ -136,7 +136,7 @@ impl Builder {
         [material, joint]: [usize; 2],
         catalogue: &mut Catalogue,
     ) -> Result<usize, Diagnostic> {
-        self.bodies.push(abutment.body(catalogue, material)?);
+        self.bodies.push(abutment.body(material));
         let body = self.bodies.len() - 1;
         self.other.push(abutment.base(catalogue, joint, [ground, body])?);
         self.extrados.extend(abutment.face(body));
