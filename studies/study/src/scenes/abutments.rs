@@ -286,7 +286,7 @@ mod tests {
             let assembly = arch(table).expect("an arch");
             let base = |name: &str| {
                 let body = assembly.body(name)?;
-                assembly.joints.iter().find(|joint| joint.plus == body).map(|joint| joint.height())
+                assembly.joints.iter().rfind(|joint| joint.plus == body).map(|joint| joint.height())
             };
             NAMES.map(base)
         };
