@@ -11,7 +11,7 @@
 mod contact;
 pub mod limit;
 mod linear;
-mod optimise;
+pub mod optimise;
 pub mod path;
 pub mod point;
 mod rate;

@@ -37,6 +37,7 @@ const PARTS: [(&str, &[(&str, &str)]); 6] = [
             ("how_to/seismic.md", "Check a mechanism under earthquakes"),
             ("how_to/drawings.md", "Use a drawing as scene"),
             ("how_to/one_point.md", "Test a law at one point"),
+            ("how_to/best_shape.md", "Find the best shape"),
             ("how_to/own_solver.md", "Write a solver"),
             ("how_to/clusters.md", "Run a sweep on a cluster"),
             ("how_to/pandas.md", "Read results with pandas"),

@@ -1,5 +1,6 @@
-//! Optimisation methods: dense linear programs and linear complementarity problems.
+//! Optimisation methods: dense linear programs, linear complementarity problems, cutting planes.
 
+pub mod cutting_planes;
 pub(crate) mod dense_simplex;
 pub(crate) mod lcp;
 pub(crate) mod line_search;

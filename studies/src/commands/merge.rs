@@ -96,7 +96,7 @@ fn merged(dirs: &[PathBuf], options: &MergeOptions) -> Outcome {
     let write = || write_outputs(cases, &folder, &text, &lines, (jobs, options.quiet));
     let made = side_by_side(jobs, write)?;
     if !options.quiet {
-        say(made.table + &tally(&made.totals, &lines));
+        say(made.table + &tally(&made.totals, &lines, cases.makes_cases()));
         say(format!("{} parts confirmed and merged; results in {}", parts.len(), out.display()));
     }
     Ok(verdict(&made.totals))

@@ -83,8 +83,9 @@ pub fn verdict(totals: &Totals) -> Verdict {
     Verdict::of(totals.certified == totals.cases)
 }
 
-/// Returns a summary if there are more cases than the table shows; otherwise an empty text.
-pub fn tally(totals: &Totals, lines: &CaseLines) -> String {
+/// Returns a summary if there are more cases than the table shows; otherwise an empty text. A study that `searches` has a
+/// table of its optima instead of the least load factor.
+pub fn tally(totals: &Totals, lines: &CaseLines, searches: bool) -> String {
     if totals.all_shown() {
         return String::new();
     }
@@ -98,7 +99,7 @@ pub fn tally(totals: &Totals, lines: &CaseLines) -> String {
         totals.shown().len()
     );
     let found = Cell::new(String::new());
-    let least = totals.least().into_iter().collect();
+    let least = totals.least().into_iter().filter(|_| !searches).collect();
     drop(lines.each_of(&least, &mut |cases| {
         let Some(case) = cases.first() else { return Ok(()) };
         let swept = case.label.parameters.iter().map(|(key, value)| format!(", {key} = {}", format_value(value)));

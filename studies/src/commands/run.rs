@@ -170,7 +170,7 @@ fn run_cases(study: &Study, wanted: &[usize], dir: &Path, resolved: &str, option
         });
         said.map_err(|error| CliError::of_file(folder.path(), error))?;
     } else if !options.quiet {
-        say(made.table + &tally(&made.totals, &solved.lines));
+        say(made.table + &tally(&made.totals, &solved.lines, study.makes_cases()));
         solved.remarks.iter().for_each(say);
         options
             .case

@@ -1,31 +1,20 @@
-//! The chart of an envelope: the load factor over the place of the load, a line for each vehicle and way it stands.
+//! Charts of searches: the load factor over the position of a moving load, with a line for each vehicle and direction, and the
+//! result over the parameter of an optimisation.
 
 use crate::output::StudyOutput;
 use voussoir_plot::chart::chart_svg;
 use voussoir_plot::series::{Marker, Series, Spot};
-use voussoir_study::results::format::format_number;
-use voussoir_study::results::{PlaceEntry, WorstEntry, other_limit_point};
+use voussoir_study::results::format::{format_number, status_word};
+use voussoir_study::results::{CaseResult, OptimumEntry, PlaceEntry, WorstEntry, best_of, other_limit_point};
 use voussoir_study::study::SweptKeys;
 
-/// The chart, where the results are those of an envelope.
+/// The chart of an envelope; `None` for other kinds.
 pub fn envelope_chart(study: &StudyOutput) -> Option<String> {
     let (curve, worsts) = (study.results.own.curve.as_ref()?, study.results.own.worsts.as_ref()?);
-    let mut series: Vec<Series> = Vec::new();
-    for place in curve {
-        let name = line_name(place, &study.keys);
-        let index = series.iter().position(|line| line.name == name).unwrap_or_else(|| {
-            series.push(Series { name: name.clone(), spots: Some(Vec::new()), ..Series::default() });
-            series.len() - 1
-        });
-        series[index].points.extend(place.result.map(|y| (place.value, y)));
-    }
+    let mut series = curves(curve, &study.keys);
     for WorstEntry { place, .. } in worsts {
         let (x, Some(y)) = (place.value, place.result) else { continue };
-        let name = line_name(place, &study.keys);
-        if let Some(spots) = series.iter_mut().find(|line| line.name == name).and_then(|line| line.spots.as_mut()) {
-            let label = format!("{} at {}", format_number(y, 4), format_number(x, 4));
-            spots.push(Spot { at: (x, y), kind: "worst place", marker: Marker::Dot, label });
-        }
+        mark(&mut series, &line_name(place, &study.keys), (x, y), ("worst place", true));
     }
     let first: Vec<Series> =
         series.iter().filter_map(|line| first_limit_points(&line.name, curve, &study.keys)).collect();
@@ -34,6 +23,88 @@ pub fn envelope_chart(study: &StudyOutput) -> Option<String> {
     let label = worsts.first().map_or("place".into(), |worst| study.keys.title(&worst.parameter));
     let title = format!("{}: load factor at collapse over the place of the load", study.name);
     (!series.is_empty()).then(|| chart_svg(&title, &label, "load factor at collapse [-]", &series, &[]))
+}
+
+/// The chart of an optimisation: the result at every value that was tried, with the optima; with several parameters over the
+/// number of the trial. `None` for other kinds.
+pub fn optimum_chart(study: &StudyOutput) -> Option<String> {
+    let optima = study.results.own.optima.as_ref()?;
+    let first = optima.first()?;
+    let (quantity, several) = (first.quantity(), first.keys().len() > 1);
+    let places: Vec<PlaceEntry> = match &study.results.own.curve {
+        Some(curve) if !several => curve.clone(),
+        _ => optima.iter().flat_map(|own| trials(study, own)).collect(),
+    };
+    let mut series = curves(&places, &study.keys);
+    series.iter_mut().for_each(|line| line.dots = true);
+    let greatest = best_of(optima).unwrap_or(first);
+    let mut notes = Vec::new();
+    for own in optima {
+        let Some(best) = &own.best_finite else { continue };
+        let line = |place: &&PlaceEntry| place.case == best.case;
+        let Some(place) = places.iter().find(line) else { continue };
+        // Labels of neighbours would cover each other: only the best optimum has one.
+        let labelled = std::ptr::eq(own, greatest);
+        mark(&mut series, &line_name(place, &study.keys), (place.value, best.result), (own.extreme(), labelled));
+        if own.value.is_none() {
+            let words = own.status.map_or("", status_word).replace('_', " ");
+            notes.push(format!(
+                "{}: {words} at some values, the mark is the best finite one",
+                line_name(place, &study.keys)
+            ));
+        }
+    }
+    series.retain(|line| !line.points.is_empty());
+    let label = match (several, &first.parameter) {
+        (false, Some(key)) => study.keys.title(key),
+        _ => "number of the trial".into(),
+    };
+    let title = format!("{}: {quantity} over {label}", study.name);
+    (!series.is_empty()).then(|| chart_svg(&title, &label, &format!("{quantity} [-]"), &series, &notes))
+}
+
+/// The trials of an optimum with several parameters, by their number.
+fn trials(study: &StudyOutput, own: &OptimumEntry) -> Vec<PlaceEntry> {
+    let key = own.parameter.as_deref().unwrap_or_default();
+    let is_own = |case: &&CaseResult| {
+        let label = &case.label;
+        let swept = own.parameters.iter().all(|(key, value)| label.parameters.get(key) == Some(value));
+        label.variant == own.variant && swept && label.parameters.contains_key(key)
+    };
+    let entry = |(number, case): (usize, &CaseResult)| PlaceEntry {
+        variant: own.variant.clone(),
+        parameters: own.parameters.clone(),
+        vehicle: None,
+        direction: None,
+        value: (number + 1) as f64,
+        result: if own.optimised == "first_limit_point" { case.path.first_limit_point } else { case.load_factor },
+        first_limit_point: case.path.first_limit_point,
+        status: case.status,
+        case: case.label.id,
+    };
+    study.results.cases.iter().filter(is_own).enumerate().map(entry).collect()
+}
+
+/// A line for each variant, vehicle, direction and sweep point.
+fn curves(curve: &[PlaceEntry], keys: &SweptKeys) -> Vec<Series> {
+    let mut series: Vec<Series> = Vec::new();
+    for place in curve {
+        let name = line_name(place, keys);
+        let index = series.iter().position(|line| line.name == name).unwrap_or_else(|| {
+            series.push(Series { name: name.clone(), spots: Some(Vec::new()), ..Series::default() });
+            series.len() - 1
+        });
+        series[index].points.extend(place.result.map(|y| (place.value, y)));
+    }
+    series
+}
+
+/// Marks a point of a line.
+fn mark(series: &mut [Series], name: &str, at: (f64, f64), (kind, labelled): (&'static str, bool)) {
+    let spots = series.iter_mut().find(|line| line.name == name).and_then(|line| line.spots.as_mut());
+    let label =
+        if labelled { format!("{} at {}", format_number(at.1, 4), format_number(at.0, 4)) } else { String::new() };
+    spots.into_iter().for_each(|spots| spots.push(Spot { at, kind, marker: Marker::Dot, label: label.clone() }));
 }
 
 /// The line of first limit points beside a line of load factors, if they differ at any place.

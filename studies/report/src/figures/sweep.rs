@@ -57,6 +57,10 @@ fn two_axes(study: &StudyOutput) -> Option<(String, Vec<f64>, Vec<String>)> {
 /// The chart of a study: lines over a swept number or over one of two, or maps over two swept numbers that have too many
 /// values for lines. It shows the load if all cases have the same load at factor 1, else the load factor.
 pub fn study_chart(study: &StudyOutput) -> Option<String> {
+    // The chart of an optimisation shows its optima.
+    if study.results.own.optima.is_some() {
+        return None;
+    }
     lines(study).or_else(|| load_factor_maps(study).filter(|_| study.results.comparison.is_none()))
 }
 

@@ -3,7 +3,7 @@
 
 use super::outputs::write_files;
 use super::verify_study::verify_study;
-use crate::figures::envelope::envelope_chart;
+use crate::figures::envelope::{envelope_chart, optimum_chart};
 use crate::figures::seismic::capacity_charts;
 use crate::figures::sweep::study_chart;
 use crate::figures::{curve_svg, mechanism_svg, scene_svg};
@@ -75,6 +75,7 @@ impl LoadedStudy for SceneStudy {
             Piece::Record => None,
             Piece::Chart => study_chart(&output)
                 .or_else(|| envelope_chart(&output))
+                .or_else(|| optimum_chart(&output))
                 .or_else(|| capacity_charts(&output).into_iter().next().map(|(_, svg)| svg)),
             Piece::Scene(id) => {
                 of_case(id).map(|(case, assembly, stages)| scene_svg(&output.case_title(case), assembly, stages, case))

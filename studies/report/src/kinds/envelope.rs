@@ -82,7 +82,7 @@ impl StudyKind for Envelope {
                 Diagnostic::new("envelope", "is missing").help("say what moves: [envelope] parameter, from, to"),
             ];
         };
-        range_mistakes("envelope", request.range(), &request.keys(), outline)
+        range_mistakes(["envelope", "envelope.parameter"], request.range(), &request.keys(), outline)
     }
 
     fn solve(&self, study: &Study, wanted: &[usize], jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {

@@ -4,16 +4,23 @@
 mod optima;
 mod request;
 mod search;
+mod several;
+mod shape;
+mod trials;
 
-use self::request::{Request, STRIDE};
+use self::request::{Axis, Request};
+use self::several::Several;
+use self::shape::Level;
 use super::case_study::SceneStudy;
-use super::search::{case_at, range_mistakes};
+use super::search::case_at;
 use std::borrow::Cow;
 use voussoir_core::plugin::{Card, Diagnostic, PluginKind, Sample};
 use voussoir_study::cases::{Observer, solve_cases, solve_unless_cancelled};
+use voussoir_study::config::diagnostic::LocatedDiagnostic;
 use voussoir_study::kind::{KindEntry, LoadedStudy, OwnResults, StudyKind};
 use voussoir_study::results::{CaseLabel, CaseResult};
 use voussoir_study::side_by_side::side_by_side;
+use voussoir_study::solve::sensitivity::derivatives;
 use voussoir_study::study::{Case, Outline, Study, StudyError, StudySource};
 
 struct Optimise;
@@ -25,7 +32,7 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::StudyKind,
         tag: "optimise",
         summary: "the value of a key at which a result is greatest or least, for each variant and sweep point",
-        sources: &["Kiefer 1953, Proc. Amer. Math. Soc. 4, 502-506"],
+        sources: &["Kelley 1960, J. Soc. Indust. Appl. Math. 8, 703-712", "Halton 1960, Numer. Math. 2, 84-90"],
         samples: &[Sample::keys(r#"[optimise]
 parameter = "scene.thickness"
 from = 0.3
@@ -43,41 +50,33 @@ impl StudyKind for Optimise {
     fn read(&self, source: StudySource) -> Result<Box<dyn LoadedStudy>, StudyError> {
         let study = Study::from_source_in_turn(source)?;
         if let Some(request) = study.outline.read::<Request>() {
-            // Checking both ends finds a key that does not exist or that does not accept numbers.
-            let at = |value: f64| study.at(0, &request.values(value));
-            let middle = 0.5 * (request.range()[0] + request.range()[1]);
-            if let (Err(wrong), Err(_), Err(_)) = (at(request.range()[0]), at(request.range()[1]), at(middle)) {
+            // Checking ends and middle finds keys that do not exist or that do not accept numbers.
+            let axes = request.axes();
+            let at = |share: f64| study.at(0, &Request::values(&axes, &shape::point(&axes, &vec![share; axes.len()])));
+            if let (Err(wrong), Err(_), Err(_)) = (at(0.0), at(1.0), at(0.5)) {
                 return Err(wrong);
+            }
+            if let Some(wanted) = request.volume
+                && !several::reaches(&request, &Level { wanted, study: &study, base: 0, axes: &axes })
+            {
+                let origin = study.root(0)?.place("optimise.volume");
+                let message = format!("no point in the ranges has the volume {wanted} m³");
+                return Err(vec![LocatedDiagnostic::new(&origin, "optimise.volume", message)].into());
             }
         }
         Ok(Box::new(SceneStudy(study)))
     }
 
     fn check(&self, outline: &Outline) -> Vec<Diagnostic> {
-        let Some(request) = outline.read::<Request>() else { return Vec::new() };
-        if request.parameter.is_some() == request.parameters.is_some() {
-            let help =
-                "[optimise] parameter = \"scene.springing\", from, to; several keys in lockstep: parameters = [...]";
-            return vec![Diagnostic::new("optimise", "needs parameter, or parameters, and not both").help(help)];
-        }
-        range_mistakes("optimise", request.range(), &request.keys(), outline)
+        outline.read::<Request>().map(|request| request.mistakes(outline)).unwrap_or_default()
     }
 
     fn solve(&self, study: &Study, wanted: &[usize], jobs: usize, observer: &dyn Observer) -> Vec<CaseResult> {
         let mut results = solve_cases(study, wanted, jobs, observer);
         let Some(request) = study.outline.read::<Request>() else { return results };
-        let all = || {
-            let of = |&base: &usize| {
-                let first = study.count() + base * STRIDE;
-                let solve = |index: usize, value: f64| {
-                    let case = case_at(study, base, first + index, &request.values(value))?;
-                    let result = solve_unless_cancelled(&case, observer)?;
-                    Some((request.merit(&case, &result), result))
-                };
-                search::best_value(&request, &solve)
-            };
-            wanted.iter().flat_map(of).collect::<Vec<_>>()
-        };
+        let axes = request.axes();
+        let search = |base: &usize| searched(study, *base, &request, &axes, observer);
+        let all = || wanted.iter().flat_map(search).collect::<Vec<_>>();
         results.extend(side_by_side(jobs, all));
         results
     }
@@ -91,13 +90,36 @@ impl StudyKind for Optimise {
             return study.case(label.id);
         }
         let request = study.outline.read::<Request>()?;
-        let base = (label.id - study.cases.len()) / STRIDE;
-        let value = label.parameters.get(request.keys().first()?)?.as_f64()?;
-        case_at(study, base, label.id, &request.values(value)).map(Cow::Owned)
+        let base = (label.id - study.count()) / request.stride();
+        let axes = request.axes();
+        let value = |axis: &Axis| label.parameters.get(axis.keys.first()?)?.as_f64();
+        let point: Vec<f64> = axes.iter().map(value).collect::<Option<_>>()?;
+        case_at(study, base, label.id, &Request::values(&axes, &point)).map(Cow::Owned)
     }
 
     fn own_results(&self, study: &Study, cases: &[CaseResult]) -> OwnResults {
         let Some(request) = study.outline.read::<Request>() else { return OwnResults::default() };
         OwnResults { entries: optima::entries(study, &request, cases), ..OwnResults::default() }
     }
+}
+
+/// Returns the results of all trials for a case of the study, in order of id.
+fn searched(study: &Study, base: usize, request: &Request, axes: &[Axis], observer: &dyn Observer) -> Vec<CaseResult> {
+    let first = study.count() + base * request.stride();
+    let solve = |index: usize, point: &[f64]| {
+        let case = case_at(study, base, first + index, &Request::values(axes, point))?;
+        let result = solve_unless_cancelled(&case, observer)?;
+        Some((request.merit(&case, &result), result))
+    };
+    if let [axis] = axes {
+        return search::best_value(request, axis, &solve);
+    }
+    let derivatives = |point: &[f64], result: &CaseResult| {
+        let case = case_at(study, base, result.label.id, &Request::values(axes, point))?;
+        request.result_of(&case, result).filter(|own| Some(*own) == result.load_factor)?;
+        let keys: Vec<&str> = axes.iter().flat_map(|axis| &axis.keys).map(String::as_str).collect();
+        derivatives(&case, result, &keys)
+    };
+    let level = request.volume.map(|wanted| Level { wanted, study, base, axes });
+    Several { request, axes, solve: &solve, derivatives: &derivatives, level }.best_point()
 }

@@ -3,6 +3,7 @@
 use crate::output::{StudyOutput, drawn};
 use crate::writers::comparison::comparison_table;
 use crate::writers::files::Files;
+use crate::writers::optima::optima_table;
 use crate::writers::path_proofs::PathProofs;
 use crate::writers::results_json::add_cases;
 use crate::writers::results_text::{ResultsHead, ResultsText};
@@ -56,7 +57,10 @@ fn shown(
     gathered: &Gathered,
     finished: &(impl FinishedCases + ?Sized),
 ) -> io::Result<StudyResults> {
-    let ids = gathered.totals.shown();
+    let mut ids = gathered.totals.shown();
+    let optima = gathered.own.entries.optima.iter().flatten();
+    ids.extend(optima.flat_map(|own| [own.case, own.best_finite.as_ref().map(|best| best.case)]).flatten());
+    ids.extend(gathered.own.entries.worsts.iter().flatten().map(|own| own.place.case));
     let mut cases = Vec::with_capacity(ids.len());
     finished.each_of(&ids, &mut |few| {
         cases.extend(few.iter().map(CaseResult::without_drawings));
@@ -159,6 +163,9 @@ fn write_shown(
 
 /// Returns the table for the terminal, with the additions of the study's kind.
 fn table(output: &StudyOutput) -> String {
+    if let Some(optima) = optima_table(output) {
+        return optima;
+    }
     let mut table = seismic_sentence(output).map_or(String::new(), |sentence| format!("{sentence}\n\n"));
     table += &results_table(output);
     if let Some(comparison) = &output.results.comparison {

@@ -347,6 +347,7 @@ fn every_writer_gives_its_files_and_they_need_nothing_else() {
                 "curve_csv",
                 "figures",
                 "joints_csv",
+                "optima_csv",
                 "outputs_csv",
                 "report",
                 "results_csv",

@@ -2,7 +2,7 @@
 
 use super::register::register;
 use super::writer::Writer;
-use crate::figures::envelope::envelope_chart;
+use crate::figures::envelope::{envelope_chart, optimum_chart};
 use crate::figures::moving_load::moving_load_svg;
 use crate::figures::seismic::capacity_charts;
 use crate::figures::sweep::{output_charts, study_chart};
@@ -27,6 +27,7 @@ impl Writer for Figures {
         files.extend(output_charts(study).into_iter().map(|(name, svg)| (format!("figures/sweep-{name}.svg"), svg)));
         files.extend(envelope_chart(study).map(|svg| ("figures/envelope.svg".to_string(), svg)));
         files.extend(capacity_charts(study).into_iter().map(|(name, svg)| (format!("figures/{name}.svg"), svg)));
+        files.extend(optimum_chart(study).map(|svg| ("figures/optimum.svg".to_string(), svg)));
         files.extend(moving_load_svg(study).map(|svg| ("figures/moving-load.svg".to_string(), svg)));
         files.extend(curve_charts(study).into_iter().map(|(name, svg)| (format!("figures/{name}.svg"), svg)));
         let drawn: Vec<_> =
@@ -53,6 +54,7 @@ register!(
      number is swept, `figures/sweep.svg` and `figures/sweep-NAME.svg` for each output of the case that a plug-in declares. \
      Displacements of mechanisms are exaggerated. Where `[output] curve = true`, the \
      load over its displacement is in `figures/case-NNNN-curve.svg`, and two to seven cases together in `figures/curve.svg` \
-     (more cases: `figures/curve-N.svg` for the N-th variant), with the joints that become hinges or slide. With `[output] \
+     (more cases: `figures/curve-N.svg` for the N-th variant), with the joints that become hinges or slide. An optimisation has \
+     `figures/optimum.svg`: the result at every value that was tried, with the optima. With `[output] \
      animation = true` an envelope has `figures/moving-load.svg`, which a browser plays; the report shows it too.\n"
 );

@@ -14,8 +14,8 @@ use super::register::register;
 use super::seismic;
 use super::title_block::{ReportOrigin, title_block};
 use super::writer::Writer;
-use super::{joints_csv, outputs_csv, sensitivities_csv};
-use crate::figures::envelope::envelope_chart;
+use super::{joints_csv, optima, outputs_csv, sensitivities_csv};
+use crate::figures::envelope::{envelope_chart, optimum_chart};
 use crate::figures::moving_load::moving_load_svg;
 use crate::figures::sweep::study_chart;
 use crate::output::StudyOutput;
@@ -59,6 +59,7 @@ pub fn report_html(study: &StudyOutput, drawn: usize) -> String {
         h1 { (study.name) }
         @if let Some(origin) = origin { (title_block(study.name, signed, origin)) }
         (answer::answer(study))
+        (optima::section(study))
         div class="first" {
             @if figures && drawn > 0 && let Some(place) = worst { (pictures::of_case(study, place)) }
             (answer::critical_numbers(study))
@@ -105,6 +106,10 @@ fn charts(study: &StudyOutput) -> Markup {
         @if let Some(chart) = envelope_chart(study) {
             h2 { "Envelope" }
             (figure(&chart, "The load factor at every place that was tried."))
+        }
+        @if let Some(chart) = optimum_chart(study) {
+            h2 { "The search" }
+            (figure(&chart, "Each point is a value that was tried. Lines only join neighbouring values. The marks are the optima."))
         }
         @if let Some(svg) = moving_load_svg(study) {
             h2 { "The load on its way" }

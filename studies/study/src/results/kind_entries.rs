@@ -87,10 +87,73 @@ pub struct OptimumEntry {
     pub case: Option<usize>,
     /// The best value with a finite result.
     pub best_finite: Option<FiniteEntry>,
-    /// The intervals of one status.
+    /// `maximise` or `minimise`.
+    #[serde(default)]
+    pub goal: String,
+    /// The name of the result: `load_factor` or `first_limit_point`.
+    #[serde(default)]
+    pub optimised: String,
+    /// The best value of each key, if there are several independent keys.
+    #[serde(default, skip_serializing_if = "Map::is_empty")]
+    pub values: Map<String, Json>,
+    /// The neighbours of the best finite value that were tried; `null` for several independent keys.
+    #[serde(default)]
+    pub bracket: Option<[f64; 2]>,
+    /// The greatest gain between these neighbours, if the result is concave there (convex if it is minimised).
+    #[serde(default)]
+    pub possible_gain: Option<f64>,
+    /// The number of values that were tried.
+    #[serde(default)]
+    pub tried: usize,
+    /// The intervals of one status; empty for several independent keys.
     pub intervals: Vec<IntervalEntry>,
-    /// Distance between the values that are tried first.
-    pub scan_spacing: f64,
+    /// Distance between the values that are tried first; `null` for several independent keys.
+    pub scan_spacing: Option<f64>,
+}
+
+impl OptimumEntry {
+    /// Returns the keys that vary independently.
+    pub fn keys(&self) -> Vec<&str> {
+        match self.values.is_empty() {
+            true => self.parameter.as_deref().into_iter().collect(),
+            false => self.values.keys().map(String::as_str).collect(),
+        }
+    }
+
+    /// Returns the best finite values in the order of the keys; `None` without one.
+    pub fn point(&self) -> Option<Vec<f64>> {
+        let best = self.best_finite.as_ref()?;
+        match self.values.is_empty() {
+            true => Some(vec![best.value]),
+            false => self.values.values().map(Json::as_f64).collect(),
+        }
+    }
+
+    /// Returns `greatest` or `least`.
+    pub fn extreme(&self) -> &'static str {
+        if self.goal == "minimise" { "least" } else { "greatest" }
+    }
+
+    /// Returns the name of the result in words.
+    pub fn quantity(&self) -> String {
+        if self.optimised.is_empty() { "load factor".into() } else { self.optimised.replace('_', " ") }
+    }
+}
+
+/// Returns the best of the optima of a study; one without a bound is better than all others.
+pub fn best_of(optima: &[OptimumEntry]) -> Option<&OptimumEntry> {
+    let merit = |own: &OptimumEntry| match (own.result, own.value.is_none() && own.best_finite.is_some()) {
+        (Some(result), _) => {
+            if own.goal == "minimise" {
+                -result
+            } else {
+                result
+            }
+        }
+        (None, true) => f64::INFINITY,
+        (None, false) => f64::NEG_INFINITY,
+    };
+    optima.iter().reduce(|best, other| if merit(other) > merit(best) { other } else { best })
 }
 
 /// A value with a finite result.

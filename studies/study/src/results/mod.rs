@@ -35,7 +35,7 @@ pub use entries::{
     DisplacementEntry, EventEntry, FieldEntry, FillEntry, LoadEntry, LoadOrigin, MotionEntry, StateEntry, YieldedEntry,
 };
 pub use finished::{FinishedCases, TakeCases};
-pub use kind_entries::{FiniteEntry, IntervalEntry, KindEntries, OptimumEntry, PlaceEntry, WorstEntry};
+pub use kind_entries::{FiniteEntry, IntervalEntry, KindEntries, OptimumEntry, PlaceEntry, WorstEntry, best_of};
 pub use limit_points::{BranchEntry, FollowedTo, LimitPointEntry, NextState, StabilityEntry};
 pub use load_factor_error::LoadFactorError;
 pub use origin::{Build, FORMAT, HEAD, Origin, PluginCrate, head, this_program, without_origin, words};

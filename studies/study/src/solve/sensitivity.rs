@@ -5,8 +5,9 @@
 
 use super::restated::restated;
 use crate::results::{CaseResult, SensitivityEntry};
-use crate::study::{Case, NumberKind, NumericKey};
+use crate::study::{Case, NumberKind, NumericKey, numeric_keys, study_keys};
 use serde_json::json;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use voussoir_core::limit::{JointForce, LimitProblem, Status, Velocity};
 use voussoir_core::model::geometry::turned;
 use voussoir_core::model::{Target, stage_loads};
@@ -76,9 +77,28 @@ fn motion(case: &Case, problem: &LimitProblem, result: &CaseResult) -> Result<Ve
     Ok(motion)
 }
 
+/// Returns the left and right derivatives of a collapse load with respect to these numbers, 0 if it does not depend on one.
+/// `None` if one of them does not exist.
+pub fn derivatives(case: &Case, result: &CaseResult, keys: &[&str]) -> Option<Vec<[f64; 2]>> {
+    let numbers = numeric_keys(study_keys(), &case.resolved.to_json(), usize::MAX);
+    let number = |key: &&str| numbers.iter().find(|number| number.key == **key).cloned();
+    let numbers: Vec<NumericKey> = keys.iter().map(number).collect::<Option<_>>()?;
+    let found = catch_unwind(AssertUnwindSafe(|| of_numbers(case, result, &numbers))).ok()?.ok()?;
+    let sides = |key: &&str| match found.iter().find(|entry| entry.key == **key) {
+        Some(entry) => Some([entry.left?, entry.right?]),
+        None => Some([0.0; 2]),
+    };
+    keys.iter().map(sides).collect()
+}
+
 /// Returns the derivatives of a collapse load with respect to all numbers that influence it. The error gives the reason if
 /// this is not possible.
 pub fn sensitivities(case: &Case, result: &CaseResult) -> Result<Vec<SensitivityEntry>, String> {
+    of_numbers(case, result, &case.output_sensitivities)
+}
+
+/// Returns the derivatives with respect to these numbers.
+fn of_numbers(case: &Case, result: &CaseResult, numbers: &[NumericKey]) -> Result<Vec<SensitivityEntry>, String> {
     let factor = result.load_factor.filter(|_| result.status == Status::Collapse && result.certificate.passed);
     let factor = factor.ok_or("there is no collapse load to differentiate")?;
     if card(PluginKind::LimitSolver, &result.solver).is_none() {
@@ -97,7 +117,7 @@ pub fn sensitivities(case: &Case, result: &CaseResult) -> Result<Vec<Sensitivity
     }
     let forces = forces(&problem, result)?;
     let face = OptimalFace::new(&problem, factor, &forces, &motion(case, &problem, result)?)?;
-    Ok(case.output_sensitivities.iter().filter_map(|key| entry(case, &problem, &face, key, factor)).collect())
+    Ok(numbers.iter().filter_map(|key| entry(case, &problem, &face, key, factor)).collect())
 }
 
 /// Returns the derivative with respect to one number; `None` if the data do not depend on it.

@@ -44,6 +44,9 @@ pub(super) struct Request {
     /// of the worst value, as a share of the range from `from` to `to`
     #[key(unit = "-", range = "> 0, <= 1", default = 1e-3)]
     pub tolerance: f64,
+    /// of the least load factor, as a share of it: the search ends if its neighbours do not permit a lower one
+    #[key(unit = "-", range = "> 0, <= 1", default = 1e-6)]
+    pub accuracy: f64,
     /// number of places on an even scan; places where axles enter or edges of patches meet joints are added
     #[key(range = ">= 2, <= MAX_SCAN", default = 41)]
     pub scan: usize,

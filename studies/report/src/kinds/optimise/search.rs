@@ -1,128 +1,128 @@
-//! The search: a scan, bisection of the borders of ranges without a finite result, and golden sections around the best value.
+//! The search over one parameter: a scan, bisection of the borders of ranges without a finite result, and refinement of the best
+//! values.
 
-use super::request::Request;
-use crate::kinds::search::golden_section;
+use super::request::{Axis, Request};
+use super::trials::{Answer, Trials};
+use crate::kinds::search::{Goal, Point, refine};
 use rayon::prelude::*;
 use voussoir_study::results::CaseResult;
 
-/// The merit of a value (greater is better, `None` if there is no finite result) and its result; `None` if the value gives no
-/// valid scene.
-pub(super) type Answer = Option<(Option<f64>, CaseResult)>;
-
-struct Search<'a> {
-    solve: &'a (dyn Fn(usize, f64) -> Answer + Sync),
-    results: Vec<CaseResult>,
-    next: usize,
-}
+/// Merits whose relative difference is below this are equal.
+const TIE: f64 = 1e-9;
 
 /// A value that was tried, with its merit.
 type Tried = (f64, Option<f64>);
 
+/// Returns the values of the scan.
+pub(super) fn scanned(request: &Request, axis: &Axis) -> Vec<f64> {
+    let ([from, to], last) = (axis.range, request.scan - 1);
+    (0..request.scan).map(|i| if i == last { to } else { from + (to - from) * i as f64 / last as f64 }).collect()
+}
+
 /// Returns the results at all values that were tried, in order of id.
-pub(super) fn best_value(request: &Request, solve: &(dyn Fn(usize, f64) -> Answer + Sync)) -> Vec<CaseResult> {
-    let [from, to] = request.range();
-    let last = request.scan - 1;
-    let place = |i: usize| if i == last { to } else { from + (to - from) * i as f64 / last as f64 };
-    let scanned: Vec<(f64, Answer)> =
-        (0..request.scan).into_par_iter().map(|i| (place(i), solve(i, place(i)))).collect();
-    let mut search = Search { solve, results: Vec::new(), next: request.scan };
-    let mut tried: Vec<Tried> = Vec::new();
-    for (value, answer) in scanned {
-        tried.push((value, answer.as_ref().and_then(|(merit, _)| *merit)));
-        search.results.extend(answer.map(|(_, result)| result));
-    }
-    let width = request.tolerance * (to - from);
+pub(super) fn best_value(
+    request: &Request,
+    axis: &Axis,
+    solve: &(dyn Fn(usize, &[f64]) -> Answer + Sync),
+) -> Vec<CaseResult> {
+    let places = scanned(request, axis);
+    let answers = places.par_iter().enumerate().map(|(i, x)| solve(i, &[*x])).collect::<Vec<_>>();
+    let mut trials = Trials::new(solve, request.stride());
+    let mut tried: Vec<Tried> =
+        places.into_iter().zip(answers).map(|(x, answer)| (x, trials.add(answer).flatten())).collect();
+    let width = request.tolerance * axis.length();
     let borders: Vec<Tried> = tried
         .windows(2)
         .filter(|pair| pair[0].1.is_some() != pair[1].1.is_some())
-        .flat_map(|pair| search.border([pair[0], pair[1]], width))
+        .flat_map(|pair| border(&mut trials, [pair[0], pair[1]], width))
         .collect();
     tried.extend(borders);
     tried.sort_by(|a, b| a.0.total_cmp(&b.0));
-    for bracket in peaks(&tried) {
-        golden_section(bracket, width, |value| search.at(value));
+    let goal = Goal { accuracy: request.accuracy, width };
+    let mut most = f64::NEG_INFINITY;
+    for mut points in peaks(&tried) {
+        refine(&mut points, goal, most, |x| trials.at(&[x]).flatten());
+        most = points.iter().map(|(_, merit)| *merit).fold(most, f64::max);
     }
-    search.results
+    trials.results
 }
 
-/// Returns brackets of the finite values that are better than their neighbours. A value without a finite result ends a
-/// bracket.
-fn peaks(tried: &[Tried]) -> Vec<[f64; 2]> {
-    let mut brackets = Vec::new();
-    for stretch in tried.chunk_by(|a, b| a.1.is_some() == b.1.is_some()) {
-        for i in 0..stretch.len() {
-            let Some(own) = stretch[i].1 else { continue };
-            let (low, high) = (i.saturating_sub(1), (i + 1).min(stretch.len() - 1));
-            let (before, after) = (stretch[low].1.unwrap_or(own), stretch[high].1.unwrap_or(own));
-            let better = (own >= before && own > after) || (own > before && own >= after);
-            if better && low < high {
-                brackets.push([stretch[low].0, stretch[high].0]);
+/// Returns the finite values that are better than their neighbours, the best first, each with at most two values on each side.
+fn peaks(tried: &[Tried]) -> Vec<Vec<Point>> {
+    let mut found: Vec<(f64, Vec<Point>)> = Vec::new();
+    for points in stretches(tried) {
+        let merit = |i: usize| points[i].1;
+        for i in 0..points.len() {
+            let (before, after) = (merit(i.saturating_sub(1)), merit((i + 1).min(points.len() - 1)));
+            let better = (merit(i) >= before && merit(i) > after) || (merit(i) > before && merit(i) >= after);
+            if better {
+                let around = points[i.saturating_sub(2)..(i + 3).min(points.len())].to_vec();
+                found.push((merit(i), around));
             }
         }
     }
-    brackets
+    let most = found.iter().map(|(merit, _)| *merit).fold(f64::NEG_INFINITY, f64::max);
+    // Values of mirrored scenes differ by rounding: the first is the best.
+    let level = |merit: f64| (merit / most.abs() / TIE).round();
+    found.sort_by(|a, b| level(b.0).total_cmp(&level(a.0)));
+    found.into_iter().map(|(_, around)| around).collect()
 }
 
-impl Search<'_> {
-    fn at(&mut self, value: f64) -> Option<f64> {
-        let answer = (self.solve)(self.next, value);
-        self.next += 1;
-        let (merit, result) = answer?;
-        self.results.push(result);
-        merit
-    }
+/// Returns the stretches of neighbouring values with finite results.
+pub(super) fn stretches(tried: &[Tried]) -> impl Iterator<Item = Vec<Point>> + '_ {
+    let parts = tried.chunk_by(|a, b| a.1.is_some() == b.1.is_some());
+    let finite = |part: &[Tried]| part.iter().filter_map(|(x, merit)| Some((*x, (*merit)?))).collect::<Vec<_>>();
+    parts.map(finite).filter(|points| !points.is_empty())
+}
 
-    /// Bisects between a value with a finite result and one without, until the interval is narrow enough.
-    fn border(&mut self, mut ends: [Tried; 2], width: f64) -> Vec<Tried> {
-        let mut tried = Vec::new();
-        while (ends[1].0 - ends[0].0).abs() > width {
-            let middle = 0.5 * (ends[0].0 + ends[1].0);
-            let merit = self.at(middle);
-            tried.push((middle, merit));
-            ends[usize::from(merit.is_some() == ends[1].1.is_some())] = (middle, merit);
+/// Bisects between a value with a finite result and one without, until the interval is narrow enough.
+fn border(trials: &mut Trials, mut ends: [Tried; 2], width: f64) -> Vec<Tried> {
+    let mut tried = Vec::new();
+    while (ends[1].0 - ends[0].0).abs() > width && !trials.spent() {
+        let middle = 0.5 * (ends[0].0 + ends[1].0);
+        if middle <= ends[0].0 || middle >= ends[1].0 {
+            break;
         }
-        tried
+        let merit = trials.at(&[middle]).flatten();
+        tried.push((middle, merit));
+        ends[usize::from(merit.is_some() == ends[1].1.is_some())] = (middle, merit);
     }
+    tried
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::request::Goal;
+    use super::super::request::{Request, Varied};
     use super::*;
-
-    fn request(tolerance: f64) -> Request {
-        let keys = vec!["x".to_string()];
-        Request {
-            parameter: None,
-            parameters: Some(keys),
-            from: 0.0,
-            to: 10.0,
-            goal: Goal::Maximise,
-            result: None,
-            scan: 11,
-            tolerance,
-        }
-    }
+    use voussoir_core::plugin::Keys;
 
     fn best(f: impl Fn(f64) -> Option<f64> + Sync) -> (f64, Vec<usize>) {
+        let request = Request {
+            parameters: Some(vec![Varied::Key("x".into())]),
+            from: Some(0.0),
+            to: Some(10.0),
+            scan: 11,
+            tolerance: 1e-4,
+            ..Request::defaults()
+        };
         let merits = std::sync::Mutex::new(Vec::new());
-        let solve = |id: usize, x: f64| {
+        let solve = |id: usize, x: &[f64]| {
             let mut result = CaseResult::empty();
             result.label.id = id;
-            merits.lock().expect("no panic").push((x, f(x)));
-            Some((f(x), result))
+            merits.lock().expect("no panic").push((x[0], f(x[0])));
+            Some((f(x[0]), result))
         };
-        let ids = best_value(&request(1e-4), &solve).iter().map(|result| result.label.id).collect();
+        let ids = best_value(&request, &request.axes()[0], &solve).iter().map(|result| result.label.id).collect();
         let tried = merits.into_inner().expect("no panic");
         let finite = tried.iter().filter_map(|(x, merit)| Some((*x, (*merit)?)));
         (finite.max_by(|a, b| a.1.total_cmp(&b.1)).expect("a value").0, ids)
     }
 
-    /// Two optima, one smooth and one with a kink: the better one is found within the tolerance.
+    /// Two optima, one smooth and one with a kink: the better one is found to the accuracy.
     #[test]
     fn the_better_of_two_optima_is_found() {
         let (x, ids) = best(|x| Some((-(x - 2.3_f64).powi(2)).max(0.01 - 3.0 * (x - 7.777).abs())));
-        assert!((x - 7.777).abs() < 2e-3, "{x}");
+        assert!((x - 7.777).abs() < 1e-8, "{x}");
         assert!(ids.windows(2).all(|pair| pair[0] < pair[1]), "{ids:?}");
     }
 

@@ -4,6 +4,7 @@ use super::cases::hinges;
 use crate::figures::envelope::place_name;
 use crate::output::StudyOutput;
 use crate::writers::joints_csv::carried_sentences;
+use crate::writers::optima;
 use crate::writers::record::section;
 use crate::writers::seismic::seismic_sentence;
 use crate::writers::table::id_list;
@@ -14,7 +15,7 @@ use voussoir_study::results::format::{
     capitalised, certificate_verdict, format_force, format_number, format_short, headline, kind_words, open_bounds,
     proved_interval, status_meaning, status_word, unit_load,
 };
-use voussoir_study::results::{CaseResult, Comparison, WorstEntry, governing, least_of};
+use voussoir_study::results::{CaseResult, Comparison, WorstEntry, best_of, governing, least_of};
 
 /// Order of statuses in the sentence.
 const STATUSES: [Status; 7] = [
@@ -41,9 +42,11 @@ pub(super) fn worst(study: &StudyOutput) -> Option<usize> {
     if let Some(entry) = study.results.own.seismic.as_deref().and_then(governing) {
         return place(entry.case);
     }
-    let found: Vec<usize> = match (&study.results.own.worsts, &study.results.own.optima) {
-        (Some(worsts), _) if !worsts.is_empty() => worsts.iter().map(|worst| worst.place.case).collect(),
-        (_, Some(optima)) if !optima.is_empty() => optima.iter().filter_map(|optimum| optimum.case).collect(),
+    if let Some(best) = study.results.own.optima.as_deref().and_then(best_of) {
+        return best.case.and_then(place);
+    }
+    let found: Vec<usize> = match &study.results.own.worsts {
+        Some(worsts) if !worsts.is_empty() => worsts.iter().map(|worst| worst.place.case).collect(),
         _ => return least_of(cases.iter()).and_then(|case| place(case.label.id)),
     };
     let chosen = found.into_iter().filter_map(|id| study.results.case(id));
@@ -69,6 +72,9 @@ fn sentence(study: &StudyOutput) -> String {
     if let Some(sentence) = seismic_sentence(study) {
         return sentence;
     }
+    if let Some(words) = optima::sentence(study) {
+        return words;
+    }
     let Some(place) = worst(study) else { return "No case has a load factor.".into() };
     let case = &cases[place];
     let words = headline(case, study.scene(place).map_or(&[], |(_, stages)| stages));
@@ -88,9 +94,6 @@ fn sentence(study: &StudyOutput) -> String {
         1 => format!("{}.", capitalised(&words)),
         _ if let Some(entry) = worst => {
             format!("The most onerous position of the load is {}: {words}.", position(study, entry))
-        }
-        _ if own.optima.as_ref().is_some_and(|optima| !optima.is_empty()) => {
-            format!("The best that was found is {at}: {words}.")
         }
         count if case.load_factor.is_none() => format!("The worst of {count} cases is {at}: {words}."),
         count if at.is_empty() => format!("The least load factor of {count} cases: {words}."),
