@@ -264,3 +264,23 @@ loads = [{ kind = "body", acceleration = [1.0, 0.0] }]
     assert_close(optimum["best_finite"]["value"].as_f64().expect("a value"), high, 1e-12);
     assert!(tried <= 60, "{tried}");
 }
+
+/// The least load over the rise and the position of the load, at the end of the range of the rise and at a kink over the position,
+/// is the most onerous position at this rise. Friction is not associated, so derivatives are differences.
+#[test]
+fn a_kink_at_the_end_of_a_range_is_found() {
+    let arch = |rise: f64| Arch { ends: "bonded", rise, joint: friction(0.6), ..Arch::default() };
+    let place = "stages.1.loads.0.span_fraction";
+    let tables = format!(
+        "parameters = [{{ key = \"scene.profile.rise\", from = 1.5, to = 4.5 }}, {{ key = \"{place}\", from = 0.05, to = 0.45 }}]\ngoal = \"minimise\"\n"
+    );
+    let (_, both) = voussoir_tests::written::results(&searching(&arch(2.39), "optimise", &tables));
+    let table = format!("parameter = \"{place}\"\nfrom = 0.05\nto = 0.45\n");
+    let (_, single) = voussoir_tests::written::results(&searching(&arch(4.5), "envelope", &table));
+    let (found, least) = (&both["optima"][0], &single["worsts"][0]["result"]);
+    let tried = both["cases"].as_array().expect("cases").len();
+    println!("{} after {tried}, {least}", found["result"]);
+    assert_eq!(found["values"]["scene.profile.rise"], json!(4.5));
+    assert_close(found["result"].as_f64().expect("a result"), least.as_f64().expect("a result"), 1e-6);
+    assert!(tried <= 160, "{tried}");
+}

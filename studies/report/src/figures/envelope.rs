@@ -14,7 +14,7 @@ pub fn envelope_chart(study: &StudyOutput) -> Option<String> {
     let mut series = curves(curve, &study.keys);
     for WorstEntry { place, .. } in worsts {
         let (x, Some(y)) = (place.value, place.result) else { continue };
-        mark(&mut series, &line_name(place, &study.keys), (x, y), ("worst place", true));
+        mark(&mut series, &line_name(place, &study.keys), (x, y), ("worst place", Marker::Dot, true));
     }
     let first: Vec<Series> =
         series.iter().filter_map(|line| first_limit_points(&line.name, curve, &study.keys)).collect();
@@ -25,12 +25,13 @@ pub fn envelope_chart(study: &StudyOutput) -> Option<String> {
     (!series.is_empty()).then(|| chart_svg(&title, &label, "load factor at collapse [-]", &series, &[]))
 }
 
-/// The chart of an optimisation: the result at every value that was tried, with the optima; with several parameters over the
-/// number of the trial. `None` for other kinds.
+/// The chart of an optimisation: the result at every value that was tried, with the optima; with several parameters the best result
+/// up to each trial. `None` for other kinds.
 pub fn optimum_chart(study: &StudyOutput) -> Option<String> {
     let optima = study.results.own.optima.as_ref()?;
     let first = optima.first()?;
-    let (quantity, several) = (first.quantity(), first.keys().len() > 1);
+    let several = first.keys().len() > 1;
+    let quantity = if several { format!("{} {} so far", first.extreme(), first.quantity()) } else { first.quantity() };
     let places: Vec<PlaceEntry> = match &study.results.own.curve {
         Some(curve) if !several => curve.clone(),
         _ => optima.iter().flat_map(|own| trials(study, own)).collect(),
@@ -45,7 +46,12 @@ pub fn optimum_chart(study: &StudyOutput) -> Option<String> {
         let Some(place) = places.iter().find(line) else { continue };
         // Labels of neighbours would cover each other: only the best optimum has one.
         let labelled = std::ptr::eq(own, greatest);
-        mark(&mut series, &line_name(place, &study.keys), (place.value, best.result), (own.extreme(), labelled));
+        mark(
+            &mut series,
+            &line_name(place, &study.keys),
+            (place.value, best.result),
+            (own.extreme(), Marker::Ring, labelled),
+        );
         if own.value.is_none() {
             let words = own.status.map_or("", status_word).replace('_', " ");
             notes.push(format!(
@@ -63,7 +69,7 @@ pub fn optimum_chart(study: &StudyOutput) -> Option<String> {
     (!series.is_empty()).then(|| chart_svg(&title, &label, &format!("{quantity} [-]"), &series, &notes))
 }
 
-/// The trials of an optimum with several parameters, by their number.
+/// The best result up to each trial of an optimum with several parameters, by the number of the trial.
 fn trials(study: &StudyOutput, own: &OptimumEntry) -> Vec<PlaceEntry> {
     let key = own.parameter.as_deref().unwrap_or_default();
     let is_own = |case: &&CaseResult| {
@@ -71,16 +77,24 @@ fn trials(study: &StudyOutput, own: &OptimumEntry) -> Vec<PlaceEntry> {
         let swept = own.parameters.iter().all(|(key, value)| label.parameters.get(key) == Some(value));
         label.variant == own.variant && swept && label.parameters.contains_key(key)
     };
-    let entry = |(number, case): (usize, &CaseResult)| PlaceEntry {
-        variant: own.variant.clone(),
-        parameters: own.parameters.clone(),
-        vehicle: None,
-        direction: None,
-        value: (number + 1) as f64,
-        result: if own.optimised == "first_limit_point" { case.path.first_limit_point } else { case.load_factor },
-        first_limit_point: case.path.first_limit_point,
-        status: case.status,
-        case: case.label.id,
+    let mut best: Option<f64> = None;
+    let entry = |(number, case): (usize, &CaseResult)| {
+        let result = if own.optimised == "first_limit_point" { case.path.first_limit_point } else { case.load_factor };
+        let better = |a: f64, b: f64| if own.goal == "minimise" { a < b } else { a > b };
+        // A trial that is better than the optimum has another volume.
+        let result = result.filter(|x| own.best_finite.as_ref().is_none_or(|best| !better(*x, best.result)));
+        best = result.filter(|x| best.is_none_or(|best| better(*x, best))).or(best);
+        PlaceEntry {
+            variant: own.variant.clone(),
+            parameters: own.parameters.clone(),
+            vehicle: None,
+            direction: None,
+            value: (number + 1) as f64,
+            result: best,
+            first_limit_point: case.path.first_limit_point,
+            status: case.status,
+            case: case.label.id,
+        }
     };
     study.results.cases.iter().filter(is_own).enumerate().map(entry).collect()
 }
@@ -100,11 +114,11 @@ fn curves(curve: &[PlaceEntry], keys: &SweptKeys) -> Vec<Series> {
 }
 
 /// Marks a point of a line.
-fn mark(series: &mut [Series], name: &str, at: (f64, f64), (kind, labelled): (&'static str, bool)) {
+fn mark(series: &mut [Series], name: &str, at: (f64, f64), (kind, marker, labelled): (&'static str, Marker, bool)) {
     let spots = series.iter_mut().find(|line| line.name == name).and_then(|line| line.spots.as_mut());
     let label =
         if labelled { format!("{} at {}", format_number(at.1, 4), format_number(at.0, 4)) } else { String::new() };
-    spots.into_iter().for_each(|spots| spots.push(Spot { at, kind, marker: Marker::Dot, label: label.clone() }));
+    spots.into_iter().for_each(|spots| spots.push(Spot { at, kind, marker, label: label.clone() }));
 }
 
 /// The line of first limit points beside a line of load factors, if they differ at any place.

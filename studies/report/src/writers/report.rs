@@ -109,7 +109,7 @@ fn charts(study: &StudyOutput) -> Markup {
         }
         @if let Some(chart) = optimum_chart(study) {
             h2 { "The search" }
-            (figure(&chart, "Each point is a value that was tried. Lines only join neighbouring values. The marks are the optima."))
+            (figure(&chart, "Each point is a trial. Lines only join neighbouring points. The rings are the optima."))
         }
         @if let Some(svg) = moving_load_svg(study) {
             h2 { "The load on its way" }
