@@ -79,7 +79,8 @@ fn five_searches_are_right_to_a_millionth() {
     let ring = |rise: f64| Arch { ends: "bonded", rise, joint: friction(0.6), ..Arch::default() };
     let crushed = Arch { ends: "jointed", rise: 1.49, joint: crushing(0.6, 10e6), ..Arch::default() };
     let place = "stages.1.loads.0.span_fraction";
-    let problems: [(&str, Arch, &str, &str, [f64; 2], bool, usize); 5] = [
+    type Problem = (&'static str, Arch, &'static str, &'static str, [f64; 2], bool, usize);
+    let problems: [Problem; 5] = [
         ("position, rise 2.39 m", ring(2.39), "envelope", place, [0.03, 0.97], false, 80),
         ("position, rise 3.7 m", ring(3.7), "envelope", place, [0.05, 0.6], false, 80),
         ("inclination with crushing", crushed.clone(), "optimise", "scene.springing", [40.0, 90.0], true, 80),

@@ -81,8 +81,7 @@ fn neighbours(request: &Request, tried: &[Tried], value: f64) -> Option<Bracket>
     let merit = |tried: &Tried| tried.found.and_then(|(_, own)| Some(request.sense() * own?));
     let merits: Vec<(f64, Option<f64>)> = tried.iter().map(|tried| (tried.value, merit(tried))).collect();
     let at = |points: &Vec<Point>| points.iter().position(|point| point.0 == value);
-    let found = stretches(&merits).find_map(|points| Some(bracket(&points, at(&points)?)));
-    found
+    stretches(&merits).find_map(|points| Some(bracket(&points, at(&points)?)))
 }
 
 fn entry(request: &Request, axes: &[Axis], base: &Case, tried: &[Tried]) -> OptimumEntry {

@@ -152,7 +152,8 @@ mod tests {
     /// Maxima at kinks, smooth ones, one at an end and one beside a jump are right to 1e-6.
     #[test]
     fn maxima_are_right_to_the_accuracy() {
-        let cases: [(&str, fn(f64) -> f64, f64, usize); 6] = [
+        type Case = (&'static str, fn(f64) -> f64, f64, usize);
+        let cases: [Case; 6] = [
             ("kink", |x| 5.0 - 3.0 * (x - 7.777).abs(), 5.0, 12),
             ("curved kink", |x| (10.0 + x * x).min(200.0 / x), 27.144_176_165_949_064, 12),
             ("smooth", |x| 2.0 - (x - 2.3).powi(2), 2.0, 24),
