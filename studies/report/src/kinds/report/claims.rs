@@ -2,7 +2,7 @@
 
 use super::evaluate::evaluate;
 use super::expression::Expression;
-use super::value::Value;
+use super::value::{SeriesByName, Value};
 use serde::Serialize;
 use serde_json::{Value as Json, json};
 use voussoir_core::plugin::Keys;
@@ -92,7 +92,7 @@ pub struct Answer<'a> {
 
 impl Claim {
     /// Returns the verdict of the claim. Each of `levels` returns a series by its name, with finer settings than the one before.
-    pub fn answer(&self, levels: &[&dyn Fn(&str) -> Option<Value>]) -> Answer<'_> {
+    pub fn answer(&self, levels: &[SeriesByName<'_>]) -> Answer<'_> {
         let tests: Vec<Tested> = self.tests.iter().map(|test| test.at_levels(levels)).collect();
         let all = |holds: bool| tests.iter().all(|test| test.holds == Some(holds));
         let verdict = match () {
@@ -107,7 +107,7 @@ impl Claim {
 
 impl Test {
     /// Runs the test with coarse and fine settings. It is decided only if all agree.
-    fn at_levels(&self, levels: &[&dyn Fn(&str) -> Option<Value>]) -> Tested {
+    fn at_levels(&self, levels: &[SeriesByName<'_>]) -> Tested {
         let mut results: Vec<(Value, Option<bool>)> = levels.iter().map(|series| self.run(series)).collect();
         let (value, holds) = results.pop().unwrap_or_else(|| (Value::unknown("there are no results"), None));
         let agree = results.iter().all(|(_, coarse)| *coarse == holds);
@@ -116,7 +116,7 @@ impl Test {
         Tested { value, coarser, holds: holds.filter(|_| agree) }
     }
 
-    fn run(&self, series: &dyn Fn(&str) -> Option<Value>) -> (Value, Option<bool>) {
+    fn run(&self, series: SeriesByName<'_>) -> (Value, Option<bool>) {
         let value = match Expression::parse(&self.value) {
             Ok(expression) => evaluate(&expression, series),
             Err(why) => Value::unknown(why),

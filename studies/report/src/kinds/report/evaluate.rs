@@ -2,7 +2,7 @@
 
 use super::expression::{Expression, Operator};
 use super::types::Type::{self, Number, Truth, Word};
-use super::value::Value;
+use super::value::{SeriesByName, Value};
 
 /// A function with its documentation.
 pub struct Function {
@@ -97,7 +97,7 @@ pub const FUNCTIONS: &[Function] = &[
 ];
 
 /// Returns the value of an expression; `names` returns a series by its name.
-pub fn evaluate(expression: &Expression, names: &dyn Fn(&str) -> Option<Value>) -> Value {
+pub fn evaluate(expression: &Expression, names: SeriesByName<'_>) -> Value {
     match expression {
         Expression::Number(number) => Value::Number(*number),
         Expression::Word(word) => Value::Word(word.clone()),

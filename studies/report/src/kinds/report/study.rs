@@ -5,7 +5,7 @@ use super::contents::{Contents, ReportFile};
 use super::figures::Chart;
 use super::page::results_page;
 use super::parts::Parts;
-use super::value::Value;
+use super::value::{SeriesByName, Value};
 use crate::kinds::read_source;
 use crate::kinds::stored_results::altered;
 use crate::writers::title_block::ReportOrigin;
@@ -80,7 +80,7 @@ impl ReportStudy {
         };
         let levels: Vec<_> = (0..=self.contents.finer_levels()).map(series).collect();
         let named: Vec<_> = levels.iter().map(|series| |name: &str| series.get(name).cloned()).collect();
-        let named: Vec<&dyn Fn(&str) -> Option<Value>> = named.iter().map(|own| own as _).collect();
+        let named: Vec<SeriesByName<'_>> = named.iter().map(|own| own as _).collect();
         let answers: Vec<Answer> = self.contents.claims.iter().map(|claim| claim.answer(&named)).collect();
         let mut files = Vec::new();
         if self.figures {

@@ -2,6 +2,9 @@
 
 use voussoir_study::results::format::format_short;
 
+/// Returns the value of a series by its name.
+pub type SeriesByName<'a> = &'a dyn Fn(&str) -> Option<Value>;
+
 /// The value of an expression.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
