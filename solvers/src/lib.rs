@@ -1,7 +1,7 @@
 //! Solvers of limit analysis (`limit`: chains, conic programs, sequences of them, non-associated flow), of paths
 //! (`path`: from event to event, and steps by Newton's method) and of one point of a law (`point`).
 //!
-//! They use four folders that do not depend on assemblies: `optimise` (dense simplex, complementarity problems, line
+//! They use four folders that do not depend on assemblies: `optimise` (dense simplex, complementarity problems, cutting planes, line
 //! search), `linear` (sparse rows, factorisations that follow changes of few rows), `contact` (modes, yield polygon and
 //! return map of one contact point) and `rate` (the rate problem over the active set, for both path solvers). Solvers
 //! do not depend on laws: limit analysis reads strengths of a joint ([`voussoir_core::law::JointStrength`]); paths read

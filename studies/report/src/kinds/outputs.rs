@@ -3,7 +3,7 @@
 use crate::output::{StudyOutput, drawn};
 use crate::writers::comparison::comparison_table;
 use crate::writers::files::Files;
-use crate::writers::optima::optima_table;
+use crate::writers::optima_csv::optima_table;
 use crate::writers::path_proofs::PathProofs;
 use crate::writers::results_json::add_cases;
 use crate::writers::results_text::{ResultsHead, ResultsText};

@@ -17,7 +17,7 @@ mod limit_points;
 mod links;
 pub mod live;
 pub mod markdown;
-pub mod optima;
+pub mod optima_csv;
 pub mod outputs_csv;
 pub mod page;
 pub mod parquet;

@@ -14,7 +14,7 @@ use super::register::register;
 use super::seismic;
 use super::title_block::{ReportOrigin, title_block};
 use super::writer::Writer;
-use super::{joints_csv, optima, outputs_csv, sensitivities_csv};
+use super::{joints_csv, optima_csv, outputs_csv, sensitivities_csv};
 use crate::figures::envelope::{envelope_chart, optimum_chart};
 use crate::figures::moving_load::moving_load_svg;
 use crate::figures::sweep::study_chart;
@@ -59,7 +59,7 @@ pub fn report_html(study: &StudyOutput, drawn: usize) -> String {
         h1 { (study.name) }
         @if let Some(origin) = origin { (title_block(study.name, signed, origin)) }
         (answer::answer(study))
-        (optima::section(study))
+        (optima_csv::section(study))
         div class="first" {
             @if figures && drawn > 0 && let Some(place) = worst { (pictures::of_case(study, place)) }
             (answer::critical_numbers(study))

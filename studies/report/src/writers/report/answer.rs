@@ -4,7 +4,7 @@ use super::cases::hinges;
 use crate::figures::envelope::place_name;
 use crate::output::StudyOutput;
 use crate::writers::joints_csv::carried_sentences;
-use crate::writers::optima;
+use crate::writers::optima_csv;
 use crate::writers::record::section;
 use crate::writers::seismic::seismic_sentence;
 use crate::writers::table::id_list;
@@ -72,7 +72,7 @@ fn sentence(study: &StudyOutput) -> String {
     if let Some(sentence) = seismic_sentence(study) {
         return sentence;
     }
-    if let Some(words) = optima::sentence(study) {
+    if let Some(words) = optima_csv::sentence(study) {
         return words;
     }
     let Some(place) = worst(study) else { return "No case has a load factor.".into() };
