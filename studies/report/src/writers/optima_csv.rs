@@ -94,7 +94,7 @@ fn name(study: &StudyOutput, own: &OptimumEntry) -> String {
     parts.into_iter().filter(|text| !text.is_empty()).collect::<Vec<_>>().join(", ")
 }
 
-/// States what is proved.
+/// States the proved part of a result.
 fn scope(first: &OptimumEntry) -> &'static str {
     match first.keys().len() {
         1 => {

@@ -189,7 +189,7 @@ impl Several<'_> {
         let cut = |own: &Known, slope: &Vec<f64>| {
             let to: Vec<f64> = centre.shares.iter().zip(&own.shares).map(|(a, b)| a - b).collect();
             let value = Cut { value: own.merit, slope: slope.clone() }.at(&to);
-            // A bound below the best merit is none: the result is not concave between the two points.
+            // A bound below the best merit is not valid: the result is not concave between the two points.
             Cut { value: value.max(centre.merit), slope: slope.clone() }
         };
         let cuts: Vec<Cut> = near.flat_map(|own| own.slopes.iter().map(move |slope| cut(own, slope))).collect();

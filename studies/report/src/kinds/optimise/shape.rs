@@ -56,7 +56,7 @@ impl Level<'_> {
         Some((own / self.wanted - 1.0, (0..shares.len()).map(along).collect::<Option<Vec<f64>>>()?))
     }
 
-    /// Returns a near point with the volume by Newton steps along the derivatives; `None` if there is none near.
+    /// Returns a near point with the volume by Newton steps along the derivatives; `None` if no such point is near.
     pub fn projected(&self, shares: &[f64]) -> Option<Vec<f64>> {
         let mut shares = shares.to_vec();
         for _ in 0..MAX_STEPS {

@@ -73,7 +73,7 @@ fn part(points: &[Point], i: usize, best: f64) -> Part {
             let x = p.0 + (q.0 - p.0) * share;
             (line(up, x).max(p.1).min(line(down, x).max(q.1)), inside(p.0, q.0, x))
         }
-        // Beyond the first point there is none: the function may rise next to it.
+        // No point is beyond the first one: the function may rise next to it.
         (None, Some(down)) => (line(down, p.0), if i == 0 { inside(p.0, q.0, p.0) } else { middle }),
         (Some(up), None) => (line(up, q.0), if i + 2 == points.len() { inside(p.0, q.0, q.0) } else { middle }),
         (None, None) => (best + (p.1 - q.1).abs(), middle),
