@@ -34,6 +34,7 @@ tests = [{ of = "limit analysis", value = "at(loads, 2.99)", unit = "kN", holds 
 [[report.claims]]
 id = "2"
 claim = "The deeper arch carries more"
+reading = "The authors probably had <b>finite displacements</b>."
 tests = [{ of = "limit analysis", value = "argmax(loads)", unit = "m", holds = "value > 2" }]
 [[report.claims]]
 id = "3"
@@ -80,6 +81,15 @@ fn verdicts_are_computed_and_changed_ones_are_found() {
     assert!(
         page.matches("<figure><svg").count() == 2 && page.contains("&lt;script&gt;bad()") && page.contains("carries")
     );
+    assert!(
+        page.contains("The place of the greatest value of loads is greater than 2.") && page.contains("argmax(loads)")
+    );
+    let reading = "The authors probably had <b>finite displacements</b>.";
+    assert!(page.contains(&reading.replace('<', "&lt;").replace('>', "&gt;")) && !page.contains(reading));
+    assert_eq!((&json["claims"][0].get("reading"), &json["claims"][1]["reading"]), (&None, &Json::from(reading)));
+    // Page and results name version and commit.
+    let commit = json["commit"].as_str().expect("a commit");
+    assert!(json["version"] == "test" && page.contains("Voussoir test") && page.contains(commit));
     assert!(text(&output, "figures/chart-loads.svg").contains("rise [m]"));
 
     let file = |name: &str| match name {
@@ -123,6 +133,7 @@ fn mistakes_say_where_and_what() {
         found[0].clone()
     };
     for (from, to, said) in [
+        ("reading = ", "readings = ", "reading"),
         ("argmax(loads)", "argmx(loads)", "there is no function \"argmx\""),
         ("argmax(loads)", "argmax(load)", "there is no series \"load\""),
         ("at(loads, 2.99)", "at(loads)", "at takes 2 argument(s), not 1"),

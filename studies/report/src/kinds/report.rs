@@ -8,6 +8,7 @@ mod expression;
 mod figures;
 mod page;
 mod parts;
+mod sentence;
 mod series;
 mod study;
 #[cfg(test)]

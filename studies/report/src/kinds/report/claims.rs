@@ -20,6 +20,9 @@ pub struct Claim {
     /// difference between the tests, named if some hold and some do not
     #[key(optional = "one test")]
     pub depends_on: Option<String>,
+    /// one sentence on the reading that the source probably had: model, kinematics, strength, mesh
+    #[key(optional = "no reading is shown")]
+    pub reading: Option<String>,
     /// notes for the reader, in Markdown
     #[key(default = "")]
     pub remark: String,
@@ -155,14 +158,18 @@ impl Answer<'_> {
             }
             entry
         };
-        json!({
+        let mut entry = json!({
             "id": self.claim.id,
             "claim": self.claim.claim,
             "source": self.claim.source,
             "verdict": self.verdict,
             "depends_on": self.claim.depends_on.as_ref().filter(|_| self.verdict == Verdict::DependsOn),
             "tests": self.claim.tests.iter().zip(&self.tests).map(test).collect::<Vec<_>>(),
-        })
+        });
+        if let Some(reading) = &self.claim.reading {
+            entry["reading"] = json!(reading);
+        }
+        entry
     }
 }
 
@@ -182,6 +189,7 @@ mod tests {
             claim: String::new(),
             source: String::new(),
             depends_on: Some("a".into()),
+            reading: None,
             remark: String::new(),
             tests: conditions.iter().map(test).collect(),
         };
@@ -199,11 +207,13 @@ mod tests {
                 claim: String::new(),
                 source: String::new(),
                 depends_on: None,
+                reading: (condition == "value < 7.5").then(|| "the mesh was fine".to_string()),
                 remark: String::new(),
                 tests: vec![test],
             };
             let answer = claim.answer(&[&coarse, &fine]);
             assert_eq!(answer.verdict, verdict);
+            assert_eq!(answer.entry().get("reading"), claim.reading.as_ref().map(|own| json!(own)).as_ref());
             let entry = &answer.entry()["tests"][0];
             assert_eq!((&entry["value"], &entry["coarser"]), (&json!(7.0), &json!([6.0])));
             assert!(claim.answer(&[&fine, &fine]).entry()["tests"][0].get("coarser").is_none());

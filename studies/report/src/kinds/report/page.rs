@@ -1,9 +1,11 @@
 //! The page of a study of studies: verdicts first, then each study with its text, inputs and results.
 
-use super::claims::{Answer, Verdict};
+use super::claims::{Answer, Test, Verdict};
 use super::contents::Contents;
+use super::expression::Expression;
 use super::figures::Image;
 use super::parts::Parts;
+use super::sentence::sentence;
 use super::value::Value;
 use crate::writers::markdown::markdown;
 use crate::writers::page;
@@ -35,7 +37,7 @@ pub fn results_page(
         h1 { (title) }
         (title_block(name, record, origin))
         (text(&contents.introduction))
-        (claims(answers, &text))
+        (claims(answers, contents, &text))
         @for (place, part) in parts.list().iter().enumerate().take(contents.studies.len()) {
             @let words = contents.text.get(place).map_or("", |words| words.trim());
             section id=(part.folder) {
@@ -69,7 +71,7 @@ fn heading(words: &str, study: &str) -> Markup {
 }
 
 /// The claims with their verdicts; the tests of each can be opened.
-fn claims(answers: &[Answer], text: &dyn Fn(&str) -> Markup) -> Markup {
+fn claims(answers: &[Answer], contents: &Contents, text: &dyn Fn(&str) -> Markup) -> Markup {
     let count = |verdict: Verdict| answers.iter().filter(|answer| answer.verdict == verdict).count();
     let all = [Verdict::Reproduced, Verdict::Refuted, Verdict::DependsOn, Verdict::Undecided];
     let words = |verdict: &Verdict| match verdict {
@@ -85,7 +87,7 @@ fn claims(answers: &[Answer], text: &dyn Fn(&str) -> Markup) -> Markup {
                 "Of " (answers.len()) " claims " strong { (counted.join(", ")) }
                 ". Every verdict is computed from the numbers below it."
             }
-            @for answer in answers { (claim(answer, text)) }
+            @for answer in answers { (claim(answer, contents, text)) }
         }
     }
 }
@@ -96,7 +98,17 @@ fn coarser(values: &[Value]) -> String {
     if words.is_empty() { String::new() } else { format!(" (coarser: {})", words.join("; ")) }
 }
 
-fn claim(answer: &Answer, text: &dyn Fn(&str) -> Markup) -> Markup {
+/// The condition of a test as a sentence; a series with a label has the label's words.
+fn condition(test: &Test, contents: &Contents) -> String {
+    let label = |name: &str| contents.series.get(name).and_then(|series| series.label.clone());
+    let words = |name: &str| label(name).map_or_else(|| name.into(), |label| format!("“{label}”"));
+    match Expression::parse(&test.holds) {
+        Ok(holds) => sentence(&holds, Expression::parse(&test.value).ok().as_ref(), &words),
+        Err(_) => test.holds.clone(),
+    }
+}
+
+fn claim(answer: &Answer, contents: &Contents, text: &dyn Fn(&str) -> Markup) -> Markup {
     let claim = answer.claim;
     let class = match answer.verdict {
         Verdict::Reproduced => "verdict yes",
@@ -120,16 +132,20 @@ fn claim(answer: &Answer, text: &dyn Fn(&str) -> Markup) -> Markup {
             test.of.clone(),
             format!("{}{unit}{}", tested.value.describe(), coarser(&tested.coarser)),
             holds.into(),
-            format!("{} with value = {}", test.holds, test.value),
+            condition(test, contents),
         ]
     });
+    let expressions = ["", "value", "condition"].map(String::from);
+    let terms = claim.tests.iter().map(|test| vec![test.of.clone(), test.value.clone(), test.holds.clone()]);
     html! {
         details class="claim" id={ "claim-" (claim.id) } {
             summary {
                 span class=(class) { (answer.words()) } " " (claim.id) ". " (claim.claim)
                 @if !claim.source.is_empty() { " " span class="quiet" { "(" (claim.source) ")" } }
+                @if let Some(reading) = &claim.reading { span class="reading" { (reading) } }
             }
             (page::table(&header, rows))
+            details { summary { "Expressions" } (page::table(&expressions, terms)) }
             (text(&claim.remark))
         }
     }
