@@ -110,6 +110,7 @@ impl Words<'_> {
     /// Returns a number, word, list or series in words.
     fn noun(&self, expression: &Expression) -> String {
         match expression {
+            Expression::Number(number) if *number != 0.0 && !(1e-3..1e6).contains(number) => format!("{number:e}"),
             Expression::Number(number) => number.to_string(),
             Expression::Word(word) => format!("\"{word}\""),
             Expression::Name(name) if name == "value" => match self.value {
@@ -242,6 +243,7 @@ mod tests {
                 "A is greater than 1, and (b is greater than 1 or c is greater than 1).",
             ),
             ("value < 2 * (a + b)", "highest_where(a > 1e12)", "The value is less than 2 times (a plus b)."),
+            ("value < 1e-6", "highest_where(a > 1e12)", "The value is less than 1e-6."),
             ("value < 1", "highest_where(a)", "The greatest place at which a is true is less than 1."),
             (
                 "count(a > 1) == length(b)",
