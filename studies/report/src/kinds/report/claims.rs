@@ -93,9 +93,6 @@ pub struct Answer<'a> {
     pub tests: Vec<Tested>,
 }
 
-/// Returns a series by its name.
-pub type SeriesByName<'a> = &'a dyn Fn(&str) -> Option<Value>;
-
 impl Claim {
     /// Returns the verdict of the claim. Each of `levels` returns a series by its name, with finer settings than the one before.
     pub fn answer(&self, levels: &[SeriesByName<'_>]) -> Answer<'_> {

@@ -1,6 +1,6 @@
 //! A study of studies, as commands use it: its parts are run first, then the page is made from their results.
 
-use super::claims::{Answer, SeriesByName, Verdict};
+use super::claims::{Answer, Verdict};
 use super::contents::{Contents, ReportFile};
 use super::figures::Chart;
 use super::page::results_page;
