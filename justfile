@@ -55,6 +55,7 @@ book:
 # A small binary with drawings and pixels.
 dist:
     cargo build --profile dist --locked -p voussoir --features png
+    strip "${CARGO_TARGET_DIR:-target}/dist/voussoir"
 
 # Packages of all crates in order, each built from what its package contains.
 package:
