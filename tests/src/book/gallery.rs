@@ -38,7 +38,7 @@ const EXHIBITS: [(&str, &[Exhibit]); 6] = [
         &[
             exhibit("strathmashie_rise", "sweep.svg", "Load at collapse over the rise, two strengths"),
             exhibit("milankovitch", "case-0000-mechanism.svg", "Mechanism of a semicircular ring"),
-            exhibit("best_inclination", "sweep.svg", "Load over the inclination of the supports, three rises"),
+            exhibit("best_inclination", "optimum.svg", "Load over the inclination of the supports, three rises"),
             exhibit("wall", "case-0000-mechanism.svg", "Mechanism of a wall that is pushed"),
         ],
     ),
