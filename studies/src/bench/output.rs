@@ -83,7 +83,7 @@ pub fn csv(bench: &Bench) -> String {
 }
 
 /// Returns the names of the contestants in order of appearance.
-pub(super) fn names(bench: &Bench) -> Vec<&str> {
+fn names(bench: &Bench) -> Vec<&str> {
     let mut names: Vec<&str> = Vec::new();
     for own in &bench.measurements {
         if !names.contains(&own.contestant.as_str()) {

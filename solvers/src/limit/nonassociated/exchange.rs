@@ -12,6 +12,8 @@ use crate::optimise::dense_simplex::Feasibility;
 /// The exchanges of one mode of a state.
 #[derive(Debug, Clone, Default)]
 pub struct Exchanges {
+    /// θ of the state.
+    pub theta: f64,
     /// Number of other mechanisms that were tried.
     pub tried: u64,
     /// True if every exchange was decided.
@@ -28,7 +30,7 @@ pub fn exchanges(systems: &Systems, moving: &[usize], theta: f64, most: u64, wor
     let mut statics = systems.statics(Some(theta * (1.0 - SETTINGS.closed)))?;
     let open = vec![[0.0, f64::INFINITY]; pairs];
     let mut kinematics = systems.kinematics([f64::NEG_INFINITY, f64::INFINITY], &open, &vec![false; pairs])?;
-    let mut found = Exchanges { complete: true, ..Exchanges::default() };
+    let mut found = Exchanges { theta, complete: true, ..Exchanges::default() };
     for new in (0..pairs).filter(|i| !moving.contains(i)) {
         if statics.work() + kinematics.work() > most {
             found.complete = false;

@@ -84,8 +84,18 @@ struct Least<'a> {
     work: Work,
     /// The last exchanges.
     exchanges: Exchanges,
-    /// θ of the best state of the local search, the start that led to it, and the number of starts.
-    local: (f64, [usize; 2]),
+    local: LocalSearch,
+}
+
+/// The end of the local search.
+#[derive(Debug, Clone, Copy, Default)]
+struct LocalSearch {
+    /// θ of its best state, if that is the best state so far.
+    theta: Option<f64>,
+    /// The start that led to this state, from 1.
+    start: usize,
+    /// Number of starts.
+    starts: usize,
 }
 
 impl Least<'_> {
@@ -177,9 +187,9 @@ impl Least<'_> {
                     present = next;
                 }
                 best = Some(state);
-                self.local.1[0] = index + 1;
+                self.local.start = index + 1;
             }
-            self.local.1[1] = index + 1;
+            self.local.starts = index + 1;
         }
         self.work.pivots += statics.pivots + kinematics.pivots;
         best
@@ -207,7 +217,7 @@ impl LimitSolver for LimitNonassociated {
             systems: Systems::new(problem, &base),
             work: Work::default(),
             exchanges: Exchanges::default(),
-            local: (f64::NAN, [0; 2]),
+            local: LocalSearch::default(),
         };
         let unit = least.systems.unit;
         // The greatest θ of interest: the result of associated flow or of the search.
@@ -223,7 +233,7 @@ impl LimitSolver for LimitNonassociated {
                     let from = answer.motion.as_ref().map(|motion| least.systems.multipliers(problem, motion));
                     let found = least.local(most, from);
                     if least.take(found.map(|state| state.moving), &mut best) {
-                        least.local.0 = best.as_ref().map_or(f64::NAN, |b| b.0);
+                        least.local.theta = best.as_ref().map(|b| b.0);
                     }
                     best.iter().for_each(|b| least.work.curve.known(b.0));
                 }
@@ -233,15 +243,12 @@ impl LimitSolver for LimitNonassociated {
         // If a lower state is not excluded, the sequence of linear programs may find it.
         if best.as_ref().is_none_or(|b| lower.theta < b.0 * (1.0 - SETTINGS.closed)) {
             let from = answer.field.clone().unwrap_or_default();
-            let (state, why) = match sequence(problem, &base, &from, &mut answer.counters) {
-                Sequence::Converged(state) => (Some(state), None),
-                Sequence::Open(why, state) => (state, Some(why)),
-            };
+            let Sequence { state, open } = sequence(problem, &base, &from, &mut answer.counters);
             if let Some(state) = state.filter(|state| best.as_ref().is_none_or(|b| state.factor < b.1.factor)) {
                 least.work.curve.found(BracketWork::Sequence, 0.0, state.factor / unit);
                 best = Some((state.factor / unit, state));
             }
-            answer.notes.extend(why.map(|why| format!("sequential programs: {why}")));
+            answer.notes.extend(open.map(|why| format!("sequential programs: {why}")));
         }
         if least.searchable().is_ok() && least.lowered_by_exchange(self.search_limit, &mut best, &lower) {
             // A search excludes loads below any state; products are proved again for the lower state.
@@ -313,33 +320,35 @@ impl Least<'_> {
     /// was lowered. At the end the state is a local minimum, if the work suffices.
     fn lowered_by_exchange(&mut self, limit: f64, best: &mut Option<(f64, FlowState)>, lower: &Lower) -> bool {
         let mut most = (limit * 1e9 / 10.0).min(1e18) as u64;
-        let (mut lowered, mut last) = (false, Exchanges::default());
+        let mut lowered = false;
         while let Some((theta, state)) =
             best.as_ref().filter(|b| b.0 > 0.0 && lower.theta < b.0 * (1.0 - SETTINGS.closed))
         {
             let moving = greatest_shares(&self.systems.multipliers(self.problem, &state.motion));
             let Some(found) = exchanges(&self.systems, &moving, *theta, most, &mut self.work) else { break };
             most = most.saturating_sub(found.entries);
-            last = Exchanges { lower: None, ..found };
-            if found.lower.is_none() || !self.take(found.lower, best) {
+            let moving = found.lower.clone();
+            self.exchanges = found;
+            if !self.take(moving, best) {
                 break;
             }
             lowered = true;
             best.iter().for_each(|b| self.work.curve.known(b.0));
         }
-        self.exchanges = last;
         lowered
     }
 
     /// States how far the best state is known to be a local minimum, unless its bracket is closed.
     fn local_minimum(&self, theta: f64, lower: f64) -> Option<String> {
         let Exchanges { tried, complete, .. } = self.exchanges;
-        if tried == 0 || lower >= theta * (1.0 - SETTINGS.closed) {
+        // A lower state that rounding did not allow to compute says nothing about a minimum.
+        let of_this_state = self.exchanges.theta == theta && self.exchanges.lower.is_none();
+        if tried == 0 || !of_this_state || lower >= theta * (1.0 - SETTINGS.closed) {
             return None;
         }
         let what = if complete { "the load found is a local minimum: none" } else { "as far as it was tried, none" };
-        let (found, [start, starts]) = self.local;
-        let from = if found == theta {
+        let LocalSearch { start, starts, .. } = self.local;
+        let from = if self.local.theta == Some(theta) {
             format!("; start {start} of {starts} of the local search led to it, and no later one to a lower load")
         } else {
             String::new()

@@ -28,12 +28,21 @@ pub struct FlowState {
 }
 
 /// The end of a sequence.
-pub enum Sequence {
-    /// A state.
-    Converged(FlowState),
-    /// The programs do not converge, with the reason, and the state of the least factor among the mechanisms of the last
-    /// programs.
-    Open(String, Option<FlowState>),
+pub struct Sequence {
+    /// The state to which the programs converge; otherwise the state of the least factor among the mechanisms of the last programs.
+    pub state: Option<FlowState>,
+    /// Why the programs do not converge.
+    pub open: Option<String>,
+}
+
+impl Sequence {
+    fn converged(state: FlowState) -> Self {
+        Sequence { state: Some(state), open: None }
+    }
+
+    fn open(why: String, state: Option<FlowState>) -> Self {
+        Sequence { state, open: Some(why) }
+    }
 }
 
 /// Returns the problem with each non-associated row replaced by an associated row with its flow, through the yield
@@ -78,8 +87,8 @@ pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], co
         let greatest = vertex.unwrap_or_else(|| by_engine(&fictitious(problem, &reference), base, counters));
         let (factor, field, motion) = match greatest {
             GreatestFactor::Collapse { factor, field, motion, .. } => (factor, field, motion),
-            GreatestFactor::Failed(why) => return Sequence::Open(format!("linear program {}: {why}", step + 1), None),
-            _ => return Sequence::Open(format!("linear program {} has no bound", step + 1), None),
+            GreatestFactor::Failed(why) => return Sequence::open(format!("linear program {}: {why}", step + 1), None),
+            _ => return Sequence::open(format!("linear program {} has no bound", step + 1), None),
         };
         let asked = if step < STRICT_PROGRAMS { SETTINGS.negligible } else { SETTINGS.closed };
         let steady = (factor - last).abs() <= asked * factor.abs().max(SETTINGS.closed * systems.unit);
@@ -96,17 +105,17 @@ pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], co
         if worst.max(idle) <= asked
             && let Some(state) = settled(&systems, (z, factor), motion.clone(), &moving)
         {
-            return Sequence::Converged(state);
+            return Sequence::converged(state);
         }
         // If the field is not unique, the programs may change between fields at one factor.
         if steady && let Some((field, factor)) = field_at(&systems, problem, factor, &moving) {
-            return Sequence::Converged(FlowState { factor, field, motion });
+            return Sequence::converged(FlowState { factor, field, motion });
         }
         if steady
             && step % 8 == 7
             && let Some((field, factor)) = field_yielding(&systems, problem, base, &moving, counters)
         {
-            return Sequence::Converged(FlowState { factor, field, motion });
+            return Sequence::converged(FlowState { factor, field, motion });
         }
         let share = share(if step < VERTEX_PROGRAMS { step } else { step - VERTEX_PROGRAMS });
         for (old, new) in reference.iter_mut().zip(&field) {
@@ -119,7 +128,7 @@ pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], co
             .or_else(|| field_yielding(&systems, problem, base, &moving, counters))?;
         Some(FlowState { factor, field, motion })
     });
-    Sequence::Open(course.verdict(), states.min_by(|a, b| a.factor.total_cmp(&b.factor)))
+    Sequence::open(course.verdict(), states.min_by(|a, b| a.factor.total_cmp(&b.factor)))
 }
 
 /// Returns the step length from a reference to the field of its program: half if full steps have not converged, then a

@@ -41,31 +41,30 @@ impl LimitSolver for LimitSequential {
         let LimitQuestion::Collapse { start, max } = question else { return answer };
         let base = combined(&problem.fixed, &problem.varying, start);
         let from = answer.field.clone().unwrap_or_default();
-        let state = match sequence(problem, &base, &from, &mut answer.counters) {
-            Sequence::Converged(state) => Some(state),
-            Sequence::Open(why, state) => {
-                answer.notes.push(why);
+        let Sequence { state, open } = sequence(problem, &base, &from, &mut answer.counters);
+        let converged = open.is_none();
+        answer.notes.extend(open);
+        match state {
+            Some(state) if start + state.factor <= max => {
                 // With a lower end at the start, which proves nothing, the result is open and the state is its upper end.
-                if let Some(own) = answer.non_associated.as_mut().filter(|_| state.is_some()) {
+                if let Some(own) = answer.non_associated.as_mut().filter(|_| !converged) {
                     own.proved_lower = Some(start);
                     own.lower_proof = Some(LowerProof::by(LowerProofKind::Start));
                 }
-                if state.is_none() {
-                    answer.notes.push(admissible_up_to(&answer));
-                    answer.status = Status::Stalled;
-                    answer.factor = None;
-                }
-                state
+                answer.status = Status::Collapse;
+                answer.factor = Some(start + state.factor);
+                answer.field_factor = start + state.factor;
+                answer.field = Some(state.field);
+                answer.motion = Some(state.motion);
+                answer.unique = None;
+                answer.ray = None;
             }
-        };
-        if let Some(state) = state.filter(|state| start + state.factor <= max) {
-            answer.status = Status::Collapse;
-            answer.factor = Some(start + state.factor);
-            answer.field_factor = start + state.factor;
-            answer.field = Some(state.field);
-            answer.motion = Some(state.motion);
-            answer.unique = None;
-            answer.ray = None;
+            Some(_) => {}
+            None => {
+                answer.notes.push(admissible_up_to(&answer));
+                answer.status = Status::Stalled;
+                answer.factor = None;
+            }
         }
         answer
     }

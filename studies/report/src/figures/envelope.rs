@@ -138,7 +138,5 @@ pub(super) fn line_name(place: &PlaceEntry, keys: &SweptKeys) -> String {
 
 /// Variant, vehicle, direction and swept values of an entry; empty without any of them.
 pub fn place_name(place: &PlaceEntry, keys: &SweptKeys) -> String {
-    let swept = keys.text(&place.parameters);
-    let words: Vec<&str> = place.names().chain([swept.as_str()].into_iter().filter(|text| !text.is_empty())).collect();
-    words.join(", ")
+    keys.named(place.names(), &place.parameters)
 }

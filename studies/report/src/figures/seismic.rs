@@ -4,7 +4,7 @@ use crate::output::StudyOutput;
 use voussoir_plot::chart::chart_svg;
 use voussoir_plot::series::{Marker, Series, Spot};
 use voussoir_study::results::format::format_length;
-use voussoir_study::results::{CheckedQuantity, SeismicEntry, governing};
+use voussoir_study::results::{CheckedQuantity, SeismicEntry, acceleration_at, governing};
 
 /// Greatest number of charts.
 const MAX_CHARTS: usize = 40;
@@ -21,8 +21,7 @@ pub fn capacity_charts(study: &StudyOutput) -> Vec<(String, String)> {
 
 /// Returns the variant and the swept values of an entry; empty without them.
 pub fn entry_name(study: &StudyOutput, entry: &SeismicEntry) -> String {
-    let words = [entry.variant.clone(), Some(study.keys.text(&entry.parameters))];
-    words.into_iter().flatten().filter(|words| !words.is_empty()).collect::<Vec<_>>().join(", ")
+    study.keys.named(entry.variant.as_deref(), &entry.parameters)
 }
 
 fn chart(study: &StudyOutput, entries: &[SeismicEntry]) -> Option<String> {
@@ -44,13 +43,8 @@ fn chart(study: &StudyOutput, entries: &[SeismicEntry]) -> Option<String> {
 /// Returns the displacements that the check compares, as places of the curve. A demand beyond the curve is on the axis.
 fn spots(entry: &SeismicEntry) -> Vec<Spot> {
     let Some(own) = &entry.capacity else { return Vec::new() };
-    let on_curve = |d: f64| {
-        let after = entry.curve.iter().position(|point| point[0] >= d)?;
-        let [[d0, a0], [d1, a1]] = [after.checked_sub(1).map_or([0.0; 2], |i| entry.curve[i]), entry.curve[after]];
-        Some(if d1 > d0 { a0 + (a1 - a0) * (d - d0) / (d1 - d0) } else { a1 })
-    };
     let spot = |d: f64, kind: &'static str, marker: Marker, symbol: &str| Spot {
-        at: (d, on_curve(d).unwrap_or(0.0).max(0.0)),
+        at: (d, acceleration_at(&entry.curve, d).unwrap_or(0.0).max(0.0)),
         kind,
         marker,
         label: format!("{symbol} {}", format_length(d)),

@@ -89,9 +89,7 @@ pub(super) fn sentence(study: &StudyOutput) -> Option<String> {
 
 /// Variant and swept values of an optimum.
 fn name(study: &StudyOutput, own: &OptimumEntry) -> String {
-    let swept = study.keys.text(&own.parameters);
-    let parts = [own.variant.clone().unwrap_or_default(), swept];
-    parts.into_iter().filter(|text| !text.is_empty()).collect::<Vec<_>>().join(", ")
+    study.keys.named(own.variant.as_deref(), &own.parameters)
 }
 
 /// States the proved part of a result.

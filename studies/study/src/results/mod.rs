@@ -42,7 +42,8 @@ pub use origin::{Build, FORMAT, HEAD, Origin, PluginCrate, head, this_program, w
 pub use output_entry::{OutputColumn, OutputEntry, kind_name};
 pub use rank::{least_of, load_rank};
 pub use seismic_entry::{
-    CheckedQuantity, DisplacementCapacity, Oscillator, PushDirection, SeismicCheck, SeismicEntry, governing,
+    CheckedQuantity, DisplacementCapacity, Oscillator, PushDirection, SeismicCheck, SeismicEntry, acceleration_at,
+    governing,
 };
 pub use sensitivity::SensitivityEntry;
 pub use stored_entry::{StoredEntry, StoredOutline};

@@ -121,6 +121,21 @@ impl SeismicEntry {
     }
 }
 
+/// Returns the acceleration \[m/s²\] of a capacity curve \[d*, a*\] at a displacement \[m\], linear between its points. The curve starts at
+/// the origin. `None` beyond its end.
+pub fn acceleration_at(curve: &[[f64; 2]], d: f64) -> Option<f64> {
+    let mut before = [0.0, 0.0];
+    for point in curve {
+        if point[0] >= d {
+            let span = point[0] - before[0];
+            let share = if span > 0.0 { (d - before[0]) / span } else { 1.0 };
+            return Some(before[1] + share * (point[1] - before[1]));
+        }
+        before = *point;
+    }
+    None
+}
+
 /// Ratios with a smaller relative difference are equal: a symmetric mechanism has equal ratios in both directions.
 const EQUAL: f64 = 1e-6;
 

@@ -122,6 +122,12 @@ impl SweptKeys {
         entries.collect::<Vec<_>>().join(", ")
     }
 
+    /// Returns names (such as the variant) and values of keys in one line: `10 MPa, rise = 2.99 m`; empty without any of them.
+    pub fn named<'a>(&self, names: impl IntoIterator<Item = &'a str>, values: &Map<String, Json>) -> String {
+        let swept = Some(self.text(values)).filter(|text| !text.is_empty());
+        names.into_iter().map(String::from).chain(swept).collect::<Vec<_>>().join(", ")
+    }
+
     /// Returns the short name of a key; the whole key if another one has the same name.
     pub fn name(&self, key: &str) -> String {
         self.told_apart(key, KeyMeaning::short_name, |_| key.into())

@@ -1,7 +1,7 @@
 //! The conversion of a mechanism to one degree of freedom, and its capacity curve.
 
 use std::f64::consts::PI;
-use voussoir_study::results::{DisplacementCapacity, Oscillator};
+use voussoir_study::results::{DisplacementCapacity, Oscillator, acceleration_at};
 
 /// Two velocities are equal if they differ by less than this share of the greatest velocity.
 const EQUAL: f64 = 1e-6;
@@ -114,20 +114,6 @@ pub(super) fn displacement_capacity(curve: &[[f64; 2]], share: f64) -> Option<Di
         secant_acceleration,
         secant_period: 2.0 * PI * (secant_displacement / secant_acceleration).sqrt(),
     })
-}
-
-/// Returns the acceleration of a curve at a displacement, linear between its points. The curve starts at the origin.
-pub(super) fn acceleration_at(curve: &[[f64; 2]], d: f64) -> Option<f64> {
-    let mut before = [0.0, 0.0];
-    for point in curve {
-        if point[0] >= d {
-            let span = point[0] - before[0];
-            let share = if span > 0.0 { (d - before[0]) / span } else { 1.0 };
-            return Some(before[1] + share * (point[1] - before[1]));
-        }
-        before = *point;
-    }
-    None
 }
 
 #[cfg(test)]
