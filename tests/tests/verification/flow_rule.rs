@@ -138,7 +138,8 @@ fn a_sequence_that_wanders_has_a_certified_upper_end() {
         let associated = result.non_associated.associated_load_factor.expect("an upper bound");
         assert_close(associated, 0.337289824, 1e-8);
         assert_eq!((lower, upper), (None, result.load_factor));
-        assert!(upper.is_some_and(|upper| upper > 0.27 && upper < 0.2943), "{upper:?}");
+        // The least load of this mechanism by a linear program of blocks, independent of this project (HiGHS).
+        assert_close(upper.expect("an upper end"), 0.2674418604651161, 1e-9);
         let residuals = &result.certificate.residuals;
         assert!(residuals["complementarity"] < 1e-6 && residuals["flow"] < 1e-6, "{residuals:?}");
         assert!(result.notes.iter().any(|note| note.contains("wander between")), "{:?}", result.notes);

@@ -3,9 +3,9 @@
 use super::vertices::Vertices;
 use crate::limit::conic;
 use crate::limit::settings::SETTINGS;
-use crate::limit::systems::{LARGEST, PIVOTS, Systems, greatest_shares};
-use crate::optimise::dense_simplex::{Dictionary, Feasibility};
-use voussoir_core::limit::{Counters, GreatestFactor, JointForce, LimitProblem, Velocity};
+use crate::limit::systems::{LARGEST, Systems, greatest_shares};
+use crate::optimise::dense_simplex::Feasibility;
+use voussoir_core::limit::{Counters, GreatestFactor, JointForce, LimitProblem, Velocity, combined};
 use voussoir_core::model::Wrenches;
 
 /// The first programs.
@@ -60,10 +60,10 @@ fn fictitious(problem: &LimitProblem, reference: &[JointForce]) -> LimitProblem 
     replaced
 }
 
-/// Returns the greatest factor of associated flow by the conic engine, with a central optimal field.
-fn by_engine(problem: &LimitProblem, base: &Wrenches, counters: &mut Counters) -> GreatestFactor {
+/// Returns the greatest factor of associated flow up to `most` by the conic engine, with a central optimal field.
+fn by_engine(problem: &LimitProblem, base: &Wrenches, most: f64, counters: &mut Counters) -> GreatestFactor {
     let mut engine = conic::engine(problem);
-    let greatest = engine.greatest(base, &problem.varying, f64::INFINITY);
+    let greatest = engine.greatest(base, &problem.varying, most);
     for (name, count) in engine.counters() {
         *counters.entry(name).or_default() += count;
     }
@@ -84,7 +84,8 @@ pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], co
             vertices = None;
         }
         let vertex = vertices.as_mut().and_then(|vertices| vertices.greatest(problem, &systems, &reference, counters));
-        let greatest = vertex.unwrap_or_else(|| by_engine(&fictitious(problem, &reference), base, counters));
+        let greatest =
+            vertex.unwrap_or_else(|| by_engine(&fictitious(problem, &reference), base, f64::INFINITY, counters));
         let (factor, field, motion) = match greatest {
             GreatestFactor::Collapse { factor, field, motion, .. } => (factor, field, motion),
             GreatestFactor::Failed(why) => return Sequence::open(format!("linear program {}: {why}", step + 1), None),
@@ -123,11 +124,9 @@ pub fn sequence(problem: &LimitProblem, base: &Wrenches, from: &[JointForce], co
             old.shear += share * (new.shear - old.shear);
         }
     }
-    let states = last_motions.into_iter().filter_map(|(moving, motion)| {
-        let (field, factor) = least_field(&systems, problem, &moving)
-            .or_else(|| field_yielding(&systems, problem, base, &moving, counters))?;
-        Some(FlowState { factor, field, motion })
-    });
+    let states = last_motions
+        .into_iter()
+        .filter_map(|(moving, motion)| least_state(&systems, problem, base, (&moving, motion), counters));
     Sequence::open(course.verdict(), states.min_by(|a, b| a.factor.total_cmp(&b.factor)))
 }
 
@@ -170,7 +169,7 @@ impl Course {
         };
         format!(
             "the sequence of {MAX_PROGRAMS} linear programs did not converge: in the last {} {reason}; the last field violates \
-             yield by {:.1e} of the loads, and joints move that are {:.1e} short of it (both at most {:e} at a state)",
+             yield by {:.1e} of the loads, and joints move that are {:.1e} short of it (both at most {:.0e} at a state)",
             last.len(),
             self.violation,
             self.idle,
@@ -186,40 +185,25 @@ fn field_at(
     factor: f64,
     moving: &[usize],
 ) -> Option<(Vec<JointForce>, f64)> {
-    let theta = factor / systems.unit;
-    let near = |found: f64, share: f64| (found - theta).abs() <= share * SETTINGS.closed * theta.abs();
-    let greatest = yielding(systems, problem, Some(theta), moving)?;
-    let z = near(greatest.value(systems.theta()), 1.0).then(|| field_of(systems, &greatest, moving)).flatten()?;
-    near(z[systems.forces], 2.0).then(|| (systems.joint_forces(&z), z[systems.forces] * systems.unit))
-}
-
-/// Returns the field with the least factor at or above zero in which all moving pairs yield.
-fn least_field(systems: &Systems, problem: &LimitProblem, moving: &[usize]) -> Option<(Vec<JointForce>, f64)> {
-    let z = field_of(systems, &yielding(systems, problem, None, moving)?, moving)?;
-    (z[systems.forces] >= 0.0).then(|| (systems.joint_forces(&z), z[systems.forces] * systems.unit))
-}
-
-/// Solves statics with equality in the moving pairs: the greatest θ up to `most`, or the least one if there is no `most`.
-fn yielding(systems: &Systems, problem: &LimitProblem, most: Option<f64>, moving: &[usize]) -> Option<Dictionary> {
     if systems.entries() > LARGEST || problem.joints.iter().any(|joint| joint.strength.block.is_some()) {
         return None;
     }
-    let mut statics = systems.statics(most)?;
+    let theta = factor / systems.unit;
+    let mut statics = systems.statics(Some(theta))?;
     moving.iter().for_each(|&i| statics.fix(i, true));
     if statics.feasible() != Feasibility::Point {
         return None;
     }
-    let cost = if most.is_some() { -1.0 } else { 1.0 };
-    let (_, true) = statics.minimise(&[(systems.theta(), cost)], PIVOTS)? else { return None };
-    Some(statics)
-}
-
-/// Returns the force variables and θ of a solution of statics, if they keep all rows and the moving pairs yield.
-fn field_of(systems: &Systems, statics: &Dictionary, moving: &[usize]) -> Option<Vec<f64>> {
+    let (_, true) = statics.minimise(&[(systems.theta(), -1.0)], 20_000)? else { return None };
+    if statics.value(systems.theta()) < theta - SETTINGS.closed * theta.abs() {
+        return None;
+    }
     let slacks: Vec<f64> = (0..systems.pairs.len()).map(|i| statics.value(i).max(0.0)).collect();
     let (z, violation) = systems.field_with(&slacks)?;
     let idle = moving.iter().map(|&i| systems.slack(i, &z).abs()).fold(0.0, f64::max);
-    (violation.max(idle) <= SETTINGS.balanced).then_some(z)
+    let near = violation.max(idle) <= SETTINGS.balanced
+        && (z[systems.forces] - theta).abs() <= 2.0 * SETTINGS.closed * theta.abs();
+    near.then(|| (systems.joint_forces(&z), z[systems.forces] * systems.unit))
 }
 
 /// Returns such a field in scenes too large for the simplex method: the greatest factor with equality in the moving
@@ -231,6 +215,38 @@ fn field_yielding(
     moving: &[usize],
     counters: &mut Counters,
 ) -> Option<(Vec<JointForce>, f64)> {
+    let yielding = with_equality(problem, systems, moving);
+    let greatest = by_engine(&yielding, base, f64::INFINITY, counters);
+    let GreatestFactor::Collapse { factor, field, .. } = greatest else { return None };
+    corrected(systems, moving, &field, factor)
+}
+
+/// Returns the state of the least factor at or above zero of the mechanism that moves in these rows: the loads of the greatest
+/// factor are reduced as far as the rows permit.
+fn least_state(
+    systems: &Systems,
+    problem: &LimitProblem,
+    base: &Wrenches,
+    (moving, motion): (&[usize], Vec<Velocity>),
+    counters: &mut Counters,
+) -> Option<FlowState> {
+    let (mut field, mut factor) = field_yielding(systems, problem, base, moving, counters)?;
+    let mut reduced = with_equality(problem, systems, moving);
+    reduced.varying.iter_mut().flatten().for_each(|load| *load = -*load);
+    let loaded = combined(base, &problem.varying, factor);
+    let least = match by_engine(&reduced, &loaded, factor, counters) {
+        GreatestFactor::Collapse { factor: down, field, .. } => corrected(systems, moving, &field, factor - down),
+        GreatestFactor::Capped(field) => corrected(systems, moving, &field, 0.0),
+        _ => None,
+    };
+    if let Some(least) = least.filter(|least| (0.0..factor).contains(&least.1)) {
+        (field, factor) = least;
+    }
+    Some(FlowState { factor, field, motion })
+}
+
+/// Returns the problem with equality in the moving rows.
+fn with_equality(problem: &LimitProblem, systems: &Systems, moving: &[usize]) -> LimitProblem {
     let mut yielding = problem.clone();
     let mut pair = 0;
     for (joint, &(_, count)) in yielding.joints.iter_mut().zip(&systems.variables.joints) {
@@ -248,8 +264,12 @@ fn field_yielding(
             pair += 1;
         }
     }
-    let GreatestFactor::Collapse { factor, field, .. } = by_engine(&yielding, base, counters) else { return None };
-    let mut z = systems.force_variables(&field);
+    yielding
+}
+
+/// Returns a field moved by the least distance to equilibrium and onto the moving rows, with its factor.
+fn corrected(systems: &Systems, moving: &[usize], field: &[JointForce], factor: f64) -> Option<(Vec<JointForce>, f64)> {
+    let mut z = systems.force_variables(field);
     z.push(factor / systems.unit);
     let (z, violation) = systems.field(moving, z)?;
     (violation <= SETTINGS.balanced).then(|| (systems.joint_forces(&z), z[systems.forces] * systems.unit))

@@ -4,10 +4,10 @@
 //! follows from the differences of the data and from the optimal face of the result: no problem is solved again.
 
 use super::restated::restated;
+use crate::caught::caught;
 use crate::results::{CaseResult, SensitivityEntry};
 use crate::study::{Case, NumberKind, NumericKey, numeric_keys, study_keys};
 use serde_json::json;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use voussoir_core::limit::{JointForce, LimitProblem, Status, Velocity};
 use voussoir_core::model::geometry::turned;
 use voussoir_core::model::{Target, stage_loads};
@@ -83,7 +83,7 @@ pub fn derivatives(case: &Case, result: &CaseResult, keys: &[&str]) -> Option<Ve
     let numbers = numeric_keys(study_keys(), &case.resolved.to_json(), usize::MAX);
     let number = |key: &&str| numbers.iter().find(|number| number.key == **key).cloned();
     let numbers: Vec<NumericKey> = keys.iter().map(number).collect::<Option<_>>()?;
-    let found = catch_unwind(AssertUnwindSafe(|| of_numbers(case, result, &numbers))).ok()?.ok()?;
+    let found = caught(|| of_numbers(case, result, &numbers)).ok()?.ok()?;
     let sides = |key: &&str| match found.iter().find(|entry| entry.key == **key) {
         Some(entry) => Some([entry.left?, entry.right?]),
         None => Some([0.0; 2]),
