@@ -24,6 +24,7 @@ pub mod path;
 pub mod plugin;
 pub mod random;
 mod registered;
+pub mod space;
 
 pub use inventory;
 pub use nalgebra;

@@ -1,0 +1,96 @@
+//! The problem of limit analysis in space.
+
+use super::{SpaceAssembly, Vec3};
+
+/// Force and moment about the pole: \[f_x, f_y, f_z, m_x, m_y, m_z\] \[N, N m\].
+pub type Wrench = [f64; 6];
+
+/// Strength of a contact point: |(s, t)| ≤ μ n.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cone {
+    /// μ.
+    pub friction: f64,
+}
+
+/// A contact between two free bodies, or between a body and the ground (`None`).
+#[derive(Debug, Clone)]
+pub struct SpaceContact {
+    /// Index of the contact in the assembly.
+    pub contact: usize,
+    /// Free body on the minus side.
+    pub minus: Option<usize>,
+    /// Free body on the plus side.
+    pub plus: Option<usize>,
+    /// Points at which forces act, relative to the pole \[m\].
+    pub points: Vec<Vec3>,
+    /// Frame (n, s, t).
+    pub frame: [Vec3; 3],
+    /// Strength of each point.
+    pub cone: Cone,
+}
+
+impl SpaceContact {
+    /// Returns the wrench on the plus body per unit of force along a direction at a point; minus gets the opposite.
+    pub fn wrench(point: &Vec3, direction: &Vec3) -> Wrench {
+        let moment = point.cross(direction);
+        [direction.x, direction.y, direction.z, moment.x, moment.y, moment.z]
+    }
+}
+
+/// Rigid bodies with the wrenches `fixed + λ varying` about the pole, and their contacts.
+#[derive(Debug, Clone)]
+pub struct SpaceProblem {
+    /// Free body of the problem for each body of the assembly; `None` if the ground holds it.
+    pub free: Vec<Option<usize>>,
+    /// Number of free bodies.
+    pub bodies: usize,
+    /// Contacts with at least one free body.
+    pub contacts: Vec<SpaceContact>,
+    /// Fixed wrench of each free body about the pole \[N, N m\].
+    pub fixed: Vec<Wrench>,
+    /// Wrench of each free body about the pole for λ = 1 \[N, N m\].
+    pub varying: Vec<Wrench>,
+    /// Centre of the scene, the pole of all moments \[m\].
+    pub pole: Vec3,
+    /// Length scale \[m\].
+    pub length: f64,
+}
+
+impl SpaceProblem {
+    /// Reduces an assembly whose contacts have these cones, one for each law of the catalogue, under wrenches on each
+    /// body about the origin.
+    pub fn new(assembly: &SpaceAssembly, cones: &[Cone], fixed: &[Wrench], varying: &[Wrench]) -> Self {
+        let mut bodies = 0;
+        let free: Vec<Option<usize>> = assembly
+            .bodies
+            .iter()
+            .map(|body| (!body.fixed).then(|| std::mem::replace(&mut bodies, bodies + 1)))
+            .collect();
+        let (low, high) = assembly.bounding_box();
+        let (pole, length) =
+            if assembly.bodies.is_empty() { (Vec3::zeros(), 1.0) } else { ((low + high) / 2.0, (high - low).norm()) };
+        let contacts = assembly.contacts.iter().enumerate().filter_map(|(index, contact)| {
+            let (minus, plus) = (free[contact.minus], free[contact.plus]);
+            (minus.is_some() || plus.is_some()).then(|| SpaceContact {
+                contact: index,
+                minus,
+                plus,
+                points: contact.points.iter().map(|point| point - pole).collect(),
+                frame: [contact.normal, contact.tangents[0], contact.tangents[1]],
+                cone: cones[contact.law],
+            })
+        });
+        let contacts = contacts.collect();
+        let gather = |wrenches: &[Wrench]| {
+            let kept = free.iter().zip(wrenches).filter(|(free, _)| free.is_some());
+            kept.map(|(_, wrench)| about(&pole, wrench)).collect()
+        };
+        SpaceProblem { fixed: gather(fixed), varying: gather(varying), free, bodies, contacts, pole, length }
+    }
+}
+
+/// Returns a wrench about the origin as one about a pole.
+fn about(pole: &Vec3, [x, y, z, mx, my, mz]: &Wrench) -> Wrench {
+    let moment = Vec3::new(*mx, *my, *mz) - pole.cross(&Vec3::new(*x, *y, *z));
+    [*x, *y, *z, moment.x, moment.y, moment.z]
+}

@@ -1,0 +1,22 @@
+//! Blocks in space: polyhedra, plane contact faces, the problem of limit analysis and its certificate.
+//!
+//! # Conventions
+//! SI units, z upwards. A body has six velocities \[v_x, v_y, v_z, ω_x, ω_y, ω_z\]. At a contact the frame (n, s, t) is
+//! right-handed; n points from the *minus* to the *plus* body. A contact force acts as +r on plus and as −r on minus;
+//! positive r_n is compressive. The gap rate is v_plus − v_minus; a positive normal component opens the contact.
+//!
+//! # Forces at the vertices
+//! A contact is the convex hull of a plane polygon, and its unknowns are a force (n, s, t) at each vertex. For friction
+//! |(s, t)| ≤ μ n without cohesion, tension or crushing this is exact: barycentric weights of a fan of triangles move
+//! every admissible pressure and friction to the vertices without a change of their resultants.
+
+mod assembly;
+mod limit;
+mod polyhedron;
+
+pub use self::assembly::{Contact, SpaceAssembly, SpaceBody};
+pub use self::limit::{Cone, SpaceContact, SpaceProblem, Wrench};
+pub use self::polyhedron::Polyhedron;
+
+/// Point or vector \[m\].
+pub type Vec3 = nalgebra::Vector3<f64>;
