@@ -2,7 +2,7 @@
 #![doc = include_str!("coulomb.md")]
 
 use crate::shared::*;
-use voussoir_core::law::{Facet, InterfaceLaw};
+use voussoir_core::law::{Facet, FrictionCone, InterfaceLaw};
 use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, PluginKind, Property, Sample};
 
 /// Dry friction, non-associated by default.
@@ -38,6 +38,11 @@ impl InterfaceLaw for Coulomb {
         let mu = friction(self.friction, self.friction_angle);
         let [left, right] = Facet::friction(mu, 0.0, tangent(self.dilatancy_angle).min(mu));
         Some(vec![Facet::opening(0.0), left, right])
+    }
+
+    fn cone(&self) -> Option<FrictionCone> {
+        let mu = friction(self.friction, self.friction_angle);
+        Some(FrictionCone::dry(mu, tangent(self.dilatancy_angle).min(mu)))
     }
 
     fn stiffness(&self) -> Option<[f64; 2]> {

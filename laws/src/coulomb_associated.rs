@@ -2,7 +2,7 @@
 #![doc = include_str!("coulomb_associated.md")]
 
 use crate::shared::*;
-use voussoir_core::law::{Facet, InterfaceLaw};
+use voussoir_core::law::{Facet, FrictionCone, InterfaceLaw};
 use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, PluginKind, Property, Sample};
 
 /// Dry friction with associated flow.
@@ -35,6 +35,11 @@ impl InterfaceLaw for CoulombAssociated {
         let mu = friction(self.friction, self.friction_angle);
         let [left, right] = Facet::friction(mu, 0.0, mu);
         Some(vec![Facet::opening(0.0), left, right])
+    }
+
+    fn cone(&self) -> Option<FrictionCone> {
+        let mu = friction(self.friction, self.friction_angle);
+        Some(FrictionCone::dry(mu, mu))
     }
 
     fn stiffness(&self) -> Option<[f64; 2]> {

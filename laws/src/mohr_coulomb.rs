@@ -2,7 +2,7 @@
 #![doc = include_str!("mohr_coulomb.md")]
 
 use crate::shared::*;
-use voussoir_core::law::{Facet, InterfaceLaw};
+use voussoir_core::law::{Facet, FrictionCone, InterfaceLaw};
 use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, PluginKind, Property, Sample};
 
 /// A joint with strengths.
@@ -50,6 +50,17 @@ impl InterfaceLaw for MohrCoulomb {
         let mut facets = vec![Facet::opening(self.tensile_strength), left, right];
         facets.extend(self.compressive_strength.filter(|strength| *strength < NO_CRUSHING).map(Facet::crushing));
         Some(facets)
+    }
+
+    fn cone(&self) -> Option<FrictionCone> {
+        let friction = friction(self.friction, self.friction_angle);
+        Some(FrictionCone {
+            friction,
+            dilatancy: self.dilatancy_angle.map_or(friction, |angle| tangent(angle).min(friction)),
+            cohesion: self.cohesion,
+            tensile_strength: self.tensile_strength,
+            compressive_strength: self.compressive_strength.filter(|f| *f < NO_CRUSHING).unwrap_or(f64::INFINITY),
+        })
     }
 
     fn stiffness(&self) -> Option<[f64; 2]> {

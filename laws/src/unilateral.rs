@@ -2,7 +2,7 @@
 #![doc = include_str!("unilateral.md")]
 
 use crate::shared::*;
-use voussoir_core::law::{Facet, InterfaceLaw};
+use voussoir_core::law::{Facet, FrictionCone, InterfaceLaw};
 use voussoir_core::plugin::{Capability, Card, Keys, KnownPath, PluginKind, Property, Sample};
 
 /// Tangential behaviour of a closed joint.
@@ -36,6 +36,10 @@ impl InterfaceLaw for Unilateral {
             facets.extend(Facet::friction(0.0, 0.0, 0.0));
         }
         Some(facets)
+    }
+
+    fn cone(&self) -> Option<FrictionCone> {
+        (self.tangential == TangentialContact::Free).then(|| FrictionCone::dry(0.0, 0.0))
     }
 
     fn stiffness(&self) -> Option<[f64; 2]> {

@@ -3,6 +3,7 @@
 //! A law consists of parameters and pure functions; the solver stores the state. A law does not depend on any solver:
 //! it offers one or more forms, and a solver uses the first form that its card asks for.
 
+use super::cone::FrictionCone;
 use super::facet::Facet;
 use super::facet_response::FacetResponse;
 use super::response::InterfaceResponse;
@@ -16,6 +17,13 @@ pub trait InterfaceLaw: Debug + Send + Sync {
     /// Returns the facets a·t ≤ b that bound the tractions of the joint, with their flow. `None` if the law has no such
     /// form.
     fn facets(&self) -> Option<Vec<Facet>> {
+        None
+    }
+
+    /// Returns the cone of admissible tractions of a contact in space. `None` if the friction of the law is not
+    /// isotropic, or has no such form. A law with facets and a cone has the same bounds in both: the facets are the cone
+    /// in a plane through its axis.
+    fn cone(&self) -> Option<FrictionCone> {
         None
     }
 

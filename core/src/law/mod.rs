@@ -2,6 +2,7 @@
 //! them.
 
 mod branch;
+mod cone;
 mod context;
 mod elasticity;
 mod facet;
@@ -20,6 +21,7 @@ mod update;
 mod yield_polygon;
 
 pub use self::branch::{Effect, UpdateBranch};
+pub use self::cone::FrictionCone;
 pub use self::context::{Fields, PointContext};
 pub use self::elasticity::{Elasticity, LinearUpdate};
 pub use self::facet::{Facet, FacetMode, FlowRule, is_associated};

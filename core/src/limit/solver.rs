@@ -4,6 +4,7 @@ use super::lower_proof::{BracketPoint, LowerProof};
 use super::problem::{JointForce, LimitProblem, Velocity};
 use crate::law::FlowRule;
 use crate::model::Wrenches;
+use crate::space::{SpaceAnswer, SpaceProblem};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt::Debug;
@@ -190,6 +191,11 @@ pub trait LimitSolver: Debug + Send + Sync {
 
     /// Returns the reason why this solver does not support this problem, or `None`.
     fn refuses(&self, problem: &LimitProblem) -> Option<String>;
+
+    /// Answers the question for a scene in space, without panic. `None` if the solver knows plane scenes only.
+    fn solve_space(&self, _: &SpaceProblem, _: LimitQuestion) -> Option<SpaceAnswer> {
+        None
+    }
 
     /// Finds the motion of rigid blocks whose supports move, with small displacements. `openings` are the opening of
     /// both ends and the slip \[m\] that the supports alone would cause at each joint. Of all compatible motions q the

@@ -61,11 +61,13 @@ impl SpaceProblem {
     /// body about the origin.
     pub fn new(assembly: &SpaceAssembly, cones: &[Cone], fixed: &[Wrench], varying: &[Wrench]) -> Self {
         let mut bodies = 0;
-        let free: Vec<Option<usize>> = assembly
-            .bodies
-            .iter()
-            .map(|body| (!body.fixed).then(|| std::mem::replace(&mut bodies, bodies + 1)))
-            .collect();
+        let number = |fixed: bool| {
+            (!fixed).then(|| {
+                bodies += 1;
+                bodies - 1
+            })
+        };
+        let free: Vec<Option<usize>> = assembly.bodies.iter().map(|body| body.fixed).map(number).collect();
         let (low, high) = assembly.bounding_box();
         let (pole, length) =
             if assembly.bodies.is_empty() { (Vec3::zeros(), 1.0) } else { ((low + high) / 2.0, (high - low).norm()) };

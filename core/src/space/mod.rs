@@ -10,12 +10,16 @@
 //! |(s, t)| ≤ μ n without cohesion, tension or crushing this is exact: barycentric weights of a fan of triangles move
 //! every admissible pressure and friction to the vertices without a change of their resultants.
 
+mod answer;
 mod assembly;
 mod limit;
+mod loads;
 mod polyhedron;
 
+pub use self::answer::{SpaceAnswer, SpaceField, SpaceVelocity, power};
 pub use self::assembly::{Contact, SpaceAssembly, SpaceBody};
 pub use self::limit::{Cone, SpaceContact, SpaceProblem, Wrench};
+pub use self::loads::{SpaceForce, SpaceLoads, SpaceStage, add_space_force, space_loads};
 pub use self::polyhedron::Polyhedron;
 
 /// Point or vector \[m\].

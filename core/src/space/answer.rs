@@ -1,0 +1,49 @@
+//! The answer of a limit solver in space.
+
+use super::Wrench;
+use crate::limit::{Counters, Status};
+
+/// Velocity of a body as a rigid motion about the problem's pole: \[v_x, v_y, v_z, ω_x, ω_y, ω_z\].
+pub type SpaceVelocity = [f64; 6];
+
+/// Forces (n, s, t) at the points of each contact of the problem, in their order \[N\].
+pub type SpaceField = Vec<Vec<[f64; 3]>>;
+
+/// The answer of a limit solver for one stage of a scene in space. The certificate decides the status.
+#[derive(Debug, Clone, Default)]
+pub struct SpaceAnswer {
+    /// The end of the stage, as a hint.
+    pub status: Status,
+    /// The collapse factor.
+    pub factor: Option<f64>,
+    /// The factor at which `field` is in equilibrium.
+    pub field_factor: f64,
+    /// Forces of an admissible field.
+    pub field: Option<SpaceField>,
+    /// Velocities of the free bodies about the problem's pole, scaled to varying·q̇ = 1; for `NoEquilibrium` their
+    /// scale is arbitrary.
+    pub motion: Option<Vec<SpaceVelocity>>,
+    /// Forces of a ray, which balance the varying load alone.
+    pub ray: Option<SpaceField>,
+    /// True if forces strictly inside all cones are in balance without any load: blocks interlock, and every load is in
+    /// equilibrium with some forces.
+    pub self_stress: bool,
+    /// True if the motion is the only one.
+    pub unique: Option<bool>,
+    /// Work done.
+    pub counters: Counters,
+    /// Notes for the user.
+    pub notes: Vec<String>,
+}
+
+impl SpaceAnswer {
+    /// Creates an answer that decides nothing, with the reason.
+    pub fn stalled(why: impl Into<String>) -> Self {
+        SpaceAnswer { notes: vec![why.into()], ..SpaceAnswer::default() }
+    }
+}
+
+/// Returns the power of wrenches on a motion about the same pole \[W\].
+pub fn power(wrenches: &[Wrench], motion: &[SpaceVelocity]) -> f64 {
+    wrenches.iter().flatten().zip(motion.iter().flatten()).map(|(force, velocity)| force * velocity).sum()
+}
