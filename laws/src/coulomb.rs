@@ -69,7 +69,7 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::InterfaceLaw,
         tag: "coulomb",
         summary: "no tension, Coulomb friction; slip does not dilate (non-associated) unless dilatancy_angle is given",
-        provides: &[Capability::FACETS, Capability::RESPONSE],
+        provides: &[Capability::FACETS, Capability::RESPONSE, Capability::CONE],
         claims: &[Property::DISSIPATIVE],
         samples: &[
             Sample::new("friction = 0.6\nnormal_stiffness = 1e10\nshear_stiffness = 5e9", 1e-4, &["elastic", "sliding"]),

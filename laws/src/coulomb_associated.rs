@@ -63,7 +63,7 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::InterfaceLaw,
         tag: "coulomb_associated",
         summary: "no tension, Coulomb friction with associated flow: slip opens the joint, as linear programs assume",
-        provides: &[Capability::FACETS, Capability::RESPONSE],
+        provides: &[Capability::FACETS, Capability::RESPONSE, Capability::CONE],
         claims: &[Property::ASSOCIATED, Property::DISSIPATIVE, Property::SYMMETRIC_TANGENT],
         samples: &[
             Sample::new("friction = 0.6\nnormal_stiffness = 1e10\nshear_stiffness = 5e9", 1e-4, &["elastic", "sliding"]),

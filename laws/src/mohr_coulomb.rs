@@ -103,7 +103,7 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::InterfaceLaw,
         tag: "mohr_coulomb",
         summary: "friction with cohesion, tension cut-off and crushing; associated unless dilatancy_angle is given",
-        provides: &[Capability::FACETS, Capability::RESPONSE],
+        provides: &[Capability::FACETS, Capability::RESPONSE, Capability::CONE],
         claims: &[Property::DISSIPATIVE],
         samples: &[
             Sample::new("friction = 0.6\ncohesion = 4e5\ntensile_strength = 2e5\ncompressive_strength = 5e6\ndilatancy_angle = 10.0\nnormal_stiffness = 1e10\nshear_stiffness = 5e9", 2e-4, &["elastic", "sliding"]),

@@ -93,6 +93,20 @@ pub struct Inertia {
 }
 
 impl Assembly {
+    /// Creates an assembly without bodies, for scenes in space.
+    pub fn without_blocks(catalogue: Catalogue) -> Self {
+        Assembly {
+            catalogue,
+            bodies: Vec::new(),
+            joints: Vec::new(),
+            width: 1.0,
+            plane: Plane::Strain,
+            mesh: MeshDensity { elements: [1, 1], order: 1, grading: [1.0, 1.0] },
+            arch: None,
+            bridge: None,
+        }
+    }
+
     /// Returns the index of the body called `name`.
     pub fn body(&self, name: &str) -> Option<usize> {
         self.bodies.iter().position(|body| body.name == name)

@@ -41,6 +41,11 @@ impl Capability {
     /// The bounds of limit analysis for non-associated flow.
     pub const NON_ASSOCIATED: Self = Self::new(PluginKind::LimitSolver, "flow that is not associated");
 
+    /// The interface law is a cone of isotropic friction, for contacts in space.
+    pub const CONE: Self = Self::new(PluginKind::InterfaceLaw, "a cone of isotropic friction");
+    /// Scenes in space.
+    pub const SPACE: Self = Self::new(PluginKind::LimitSolver, "scenes in space");
+
     /// Creates a capability of a kind of plug-ins.
     pub const fn new(of: PluginKind, words: &'static str) -> Self {
         Capability { of, words }

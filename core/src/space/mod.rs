@@ -12,12 +12,14 @@
 
 mod answer;
 mod assembly;
+mod certificate;
 mod limit;
 mod loads;
 mod polyhedron;
 
 pub use self::answer::{SpaceAnswer, SpaceField, SpaceVelocity, power};
 pub use self::assembly::{Contact, SpaceAssembly, SpaceBody};
+pub use self::certificate::{SpaceClaim, certify_space};
 pub use self::limit::{Cone, SpaceContact, SpaceProblem, Wrench};
 pub use self::loads::{SpaceForce, SpaceLoads, SpaceStage, add_space_force, space_loads};
 pub use self::polyhedron::Polyhedron;

@@ -4,7 +4,7 @@ use super::handles::handles;
 use serde_json::{Value as Json, json};
 use voussoir_core::limit::Status;
 use voussoir_report::figures::hinges::hinge_list;
-use voussoir_report::figures::{curve_svg, scene_svg};
+use voussoir_report::figures::{curve_svg, scene_svg, space_svg};
 use voussoir_report::writers::live::case_data;
 use voussoir_study::config::document::Node;
 use voussoir_study::results::CaseResult;
@@ -32,8 +32,12 @@ pub(super) fn answer(case: &Case, result: &CaseResult, root: &Node) -> Json {
         let unique = if mechanism.unique == Some(false) { ", not the only one" } else { "" };
         format!("{}{hinges}{unique}", kind_words(mechanism.kind))
     });
+    let scene = match &case.space {
+        Some(space) => space_svg("", space, stages, result),
+        None => scene_svg("", assembly, stages, result),
+    };
     json!({
-        "scene": scene_svg("", assembly, stages, result),
+        "scene": scene,
         "curve": curve_svg("", assembly, stages, result),
         "drawing": case_data(assembly, result, case.solver.settings.finite),
         "headline": headline(result, stages),

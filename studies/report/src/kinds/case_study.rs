@@ -3,10 +3,10 @@
 
 use super::outputs::write_files;
 use super::verify_study::verify_study;
+use crate::figures::curve_svg;
 use crate::figures::envelope::{envelope_chart, optimum_chart};
 use crate::figures::seismic::capacity_charts;
 use crate::figures::sweep::study_chart;
-use crate::figures::{curve_svg, mechanism_svg, scene_svg};
 use crate::output::StudyOutput;
 use crate::writers::files::HeldFiles;
 use crate::writers::record::record;
@@ -66,8 +66,9 @@ impl LoadedStudy for SceneStudy {
         }
         let totals = Totals::of(&results.cases);
         let output = StudyOutput::new(&self.0, &results, &totals, &cases);
+        let place_of = |id: usize| results.cases.iter().position(|case| case.label.id == id);
         let of_case = |id: usize| {
-            let place = results.cases.iter().position(|case| case.label.id == id)?;
+            let place = place_of(id)?;
             let (assembly, stages) = output.scene(place)?;
             Some((&results.cases[place], assembly, stages))
         };
@@ -77,12 +78,8 @@ impl LoadedStudy for SceneStudy {
                 .or_else(|| envelope_chart(&output))
                 .or_else(|| optimum_chart(&output))
                 .or_else(|| capacity_charts(&output).into_iter().next().map(|(_, svg)| svg)),
-            Piece::Scene(id) => {
-                of_case(id).map(|(case, assembly, stages)| scene_svg(&output.case_title(case), assembly, stages, case))
-            }
-            Piece::Mechanism(id) => {
-                of_case(id).and_then(|(case, assembly, _)| mechanism_svg(&output.case_title(case), assembly, case))
-            }
+            Piece::Scene(id) => output.scene_svg(place_of(id)?),
+            Piece::Mechanism(id) => output.mechanism_svg(place_of(id)?),
             Piece::Curve(id) => of_case(id)
                 .and_then(|(case, assembly, stages)| curve_svg(&output.case_title(case), assembly, stages, case)),
         }

@@ -1,12 +1,13 @@
 //! The input of writers: the results, and the study that they were computed from.
 
+use crate::figures::{mechanism_svg, scene_svg, space_mechanism_svg, space_svg};
 use crate::output::columns::Labels;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use voussoir_core::limit::Status;
 use voussoir_core::model::{Assembly, Stage};
 use voussoir_study::results::{CaseResult, OptimumEntry, StudyResults, Totals, least_of};
-use voussoir_study::study::{Case, Drawn, Output, Resolved, Study, SweptKeys};
+use voussoir_study::study::{Case, Drawn, Output, Resolved, SpaceCase, Study, SweptKeys};
 
 /// A study with its results.
 #[derive(Debug, Clone)]
@@ -34,8 +35,10 @@ pub struct StudyOutput<'a> {
 /// The scene of a case.
 #[derive(Debug, Clone, Copy)]
 pub struct SceneOutput<'a> {
-    /// Blocks and joints.
+    /// Blocks and joints of a plane scene.
     pub assembly: &'a Assembly,
+    /// The scene in space; `None` for a plane scene.
+    pub space: Option<&'a SpaceCase>,
     /// Stages in order.
     pub stages: &'a [Stage],
     /// True if displacements are finite.
@@ -50,6 +53,7 @@ impl<'a> StudyOutput<'a> {
     pub fn new(study: &'a Study, results: &'a StudyResults, totals: &'a Totals, cases: &'a [Cow<'a, Case>]) -> Self {
         let scene = |case: &'a Cow<'a, Case>| SceneOutput {
             assembly: &case.assembly,
+            space: case.space.as_deref(),
             stages: &case.stages,
             finite: case.solver.settings.finite,
             resolved: &case.resolved,
@@ -100,6 +104,26 @@ impl<'a> StudyOutput<'a> {
     /// Returns true if a case is drawn.
     pub fn drawn(&self, id: usize) -> bool {
         self.drawn.as_ref().is_none_or(|drawn| drawn.contains(&id))
+    }
+
+    /// Returns the drawing of a case, by its index in the results; `None` if its scene is missing.
+    pub fn scene_svg(&self, place: usize) -> Option<String> {
+        let (scene, case) = (self.scenes.get(place)?, self.results.cases.get(place)?);
+        let title = self.case_title(case);
+        Some(match scene.space {
+            Some(space) => space_svg(&title, space, scene.stages, case),
+            None => scene_svg(&title, scene.assembly, scene.stages, case),
+        })
+    }
+
+    /// Returns the drawing of the mechanism of a case, by its index in the results, if it has one.
+    pub fn mechanism_svg(&self, place: usize) -> Option<String> {
+        let (scene, case) = (self.scenes.get(place)?, self.results.cases.get(place)?);
+        let title = self.case_title(case);
+        match scene.space {
+            Some(space) => space_mechanism_svg(&title, space, case),
+            None => mechanism_svg(&title, scene.assembly, case),
+        }
     }
 
     /// Assembly and stages of the case with this index; `None` if they are missing.

@@ -42,11 +42,15 @@ fn used(case: &Case) -> Vec<(String, &'static Card)> {
     out
 }
 
+/// The model of a plane scene.
+const PLANE: &str = "a plane model, the same over the width; static loads";
+
 /// The assumptions of a case.
 pub fn assumptions(case: &Case) -> Vec<(String, String)> {
     let assembly = &case.assembly;
     let row = |words: &str, value: &str| (words.to_string(), value.to_string());
-    let mut rows = vec![row("dimensions", "a plane model, the same over the width; static loads")];
+    let model = if case.space.is_some() { "blocks in space; static loads" } else { PLANE };
+    let mut rows = vec![row("dimensions", model)];
     rows.extend(used(case).into_iter().map(|(what, card)| (what, format!("{} ({})", card.summary, card.tag))));
     if matches!(case.solver.solver, SelectedSolver::Auto) {
         rows.push(row(

@@ -301,8 +301,9 @@ fn with_output<T>(figures: bool, then: impl FnOnce(&StudyOutput) -> T) -> T {
     let (assemblies, stages, results) = sweep();
     let pairs = assemblies.iter().zip(&stages);
     let resolved = Resolved::default();
-    let scenes =
-        pairs.map(|(assembly, stages)| SceneOutput { assembly, stages, finite: false, resolved: &resolved }).collect();
+    let scenes = pairs
+        .map(|(assembly, stages)| SceneOutput { assembly, space: None, stages, finite: false, resolved: &resolved })
+        .collect();
     then(&StudyOutput {
         name: "rise & <fall>",
         results: &results,

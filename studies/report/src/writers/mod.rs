@@ -16,6 +16,7 @@ pub mod joints_csv;
 mod limit_points;
 mod links;
 pub mod live;
+mod live_space;
 pub mod markdown;
 pub mod optima_csv;
 pub mod outputs_csv;
@@ -37,6 +38,7 @@ pub mod sensitivities_csv;
 pub mod table;
 pub(crate) mod title_block;
 pub mod vtu;
+mod vtu_space;
 mod writer;
 
 pub use writer::{CaseTable, Writer, WriterEntry, tables, writers, written};

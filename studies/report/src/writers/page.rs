@@ -13,7 +13,7 @@ static STYLE: LazyLock<String> =
 /// The script that draws a case.
 const DRAW: &str = include_str!("page/draw.js");
 /// The script of interactive pages: sorting, filtering, values under the pointer, moving drawings.
-const SCRIPT: &str = include_str!("page/script.js");
+const SCRIPT: &str = concat!(include_str!("page/script.js"), include_str!("page/space.js"));
 /// The script of a served page, which follows its sliders.
 const LIVE: &str = include_str!("page/live.js");
 

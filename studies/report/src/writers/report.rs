@@ -8,6 +8,7 @@ mod pictures;
 
 use super::comparison::{comparison_rows, figure as comparison_figure};
 use super::live::case_data;
+use super::live_space::space_data;
 use super::page::{self, figure};
 use super::record::record;
 use super::register::register;
@@ -156,7 +157,10 @@ fn live(study: &StudyOutput, worst: Option<usize>, drawn: usize) -> Vec<Json> {
     let mut places: Vec<usize> = chosen.chain(worst).collect();
     places.sort_unstable();
     places.dedup();
-    let data = |place: usize| case_data(study.scene(place)?.0, &cases[place], study.scenes[place].finite);
+    let data = |place: usize| match study.scenes.get(place)?.space {
+        Some(space) => space_data(space, &cases[place]),
+        None => case_data(study.scene(place)?.0, &cases[place], study.scenes[place].finite),
+    };
     places.into_iter().filter_map(data).collect()
 }
 

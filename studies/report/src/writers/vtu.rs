@@ -1,6 +1,7 @@
 //! `vtu/`: the blocks at the end of each path, for ParaView, as VTK XML files of unstructured grids.
 
 use super::register::register;
+use super::vtu_space::{blocks_text, forces_text};
 use super::writer::Writer;
 use crate::output::StudyOutput;
 use crate::postprocess::displaced_mesh::{DisplacedBlock, displaced_blocks};
@@ -24,6 +25,15 @@ impl Writer for Vtu {
         let mut list = String::from(MEANING);
         for (case, scene) in study.results.cases.iter().zip(&study.scenes) {
             let title = study.case_title(case);
+            if let Some(space) = scene.space {
+                let name = format!("case-{:04}.vtu", case.label.id);
+                list += &format!("{name}: {title}; blocks in space with the velocities of the mechanism\n");
+                sets += &format!("    <DataSet timestep=\"{}\" part=\"0\" file=\"{name}\"/>\n", case.label.id);
+                let forces = forces_text(space, case);
+                files.extend(forces.map(|text| (format!("vtu/points-{:04}.vtu", case.label.id), text)));
+                files.push((format!("vtu/{name}"), blocks_text(space, case)));
+                continue;
+            }
             match displaced_blocks(scene.assembly, scene.stages, case, scene.finite) {
                 Ok(blocks) => {
                     let name = format!("case-{:04}.vtu", case.label.id);
@@ -57,7 +67,7 @@ const MEANING: &str = "Blocks at the end of each path, for ParaView. cases.pvd o
     Outputs of plug-ins: cells of case-NNNN.vtu have those of materials (outputs of points as means); points-NNNN.vtu has the\n\
     contact and stress points with all outputs of points, joints and blocks; nan where there is no value.\n\n";
 
-fn array(text: &mut String, name: &str, kind: &str, components: usize, rows: impl Iterator<Item = String>) {
+pub(super) fn array(text: &mut String, name: &str, kind: &str, components: usize, rows: impl Iterator<Item = String>) {
     let _ = writeln!(
         text,
         "        <DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"ascii\">"
@@ -66,6 +76,19 @@ fn array(text: &mut String, name: &str, kind: &str, components: usize, rows: imp
         let _ = writeln!(text, "          {row}");
     }
     text.push_str("        </DataArray>\n");
+}
+
+/// The start of a file with one piece, up to its points.
+pub(super) fn head(points: usize, cells: usize) -> String {
+    format!(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\">\n  \
+         <UnstructuredGrid>\n    <Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">\n      <Points>\n"
+    )
+}
+
+/// The end of a file with one piece.
+pub(super) fn tail() -> &'static str {
+    "    </Piece>\n  </UnstructuredGrid>\n</VTKFile>\n"
 }
 
 /// The VTK cell type: quadrilaterals of order 1, 2, 3; a polygon for a rigid block.
@@ -120,10 +143,7 @@ fn points_text(case: &CaseResult) -> Option<String> {
         }
     }
     let count = places.len();
-    let mut text = format!(
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\">\n  \
-         <UnstructuredGrid>\n    <Piece NumberOfPoints=\"{count}\" NumberOfCells=\"{count}\">\n      <Points>\n"
-    );
+    let mut text = head(count, count);
     array(&mut text, "Points", "Float64", 3, places.iter().map(|[x, y]| format!("{x:e} {y:e} 0")));
     text.push_str("      </Points>\n      <Cells>\n");
     array(&mut text, "connectivity", "Int64", 1, (0..count).map(|i| i.to_string()));
@@ -134,7 +154,8 @@ fn points_text(case: &CaseResult) -> Option<String> {
         values.resize(count, None);
         array(&mut text, &escape(name), "Float64", 1, values.iter().map(|value| number(*value)));
     }
-    text.push_str("      </PointData>\n    </Piece>\n  </UnstructuredGrid>\n</VTKFile>\n");
+    text.push_str("      </PointData>\n");
+    text.push_str(tail());
     (count > 0).then_some(text)
 }
 
@@ -197,8 +218,7 @@ pub fn vtu_text(blocks: &[DisplacedBlock], factor: f64) -> String {
     }
     array(&mut text, "block", "Int64", 1, of_cells(&|b| b.block.to_string()).into_iter());
     array(&mut text, "deformable", "UInt8", 1, of_cells(&|b| u8::from(b.order > 0).to_string()).into_iter());
-    text.push_str("      </CellData>\n    </Piece>\n  </UnstructuredGrid>\n</VTKFile>\n");
-    text
+    text + "      </CellData>\n" + tail()
 }
 
 register!(
@@ -208,5 +228,6 @@ register!(
     "# `vtu`\n\nWith `[output] vtu = true`: `vtu/case-NNNN.vtu` for each case that a path solver followed, \
      `vtu/points-NNNN.vtu` with the outputs of plug-ins at contact and stress points, `vtu/cases.pvd` for all \
      of them, and `vtu/README.txt`, which says what the arrays are and which cases have none. Stresses are recovered from the \
-     contact forces and loads of the result by the elements that the path was computed with.\n"
+     contact forces and loads of the result by the elements that the path was computed with. Scenes in space: the faces of \
+     the blocks with the velocities of the mechanism, and the points of contacts with their forces.\n"
 );

@@ -13,6 +13,7 @@ use crate::solve::auto::path_solvers;
 use crate::solve::carried::carried_load;
 use crate::solve::load_entries::load_entries;
 use crate::solve::sensitivity::sensitivities;
+use crate::solve::space::solve_in_space;
 use crate::solve::statics::{falls_by_statics, stands_by_statics, stands_without_a_path};
 use crate::solve::{limit, path};
 use crate::study::{Case, Study};
@@ -25,6 +26,9 @@ use voussoir_core::plugin::{PluginKind, card};
 
 /// Solves a case; an observer gets the states of a path. The caller sets the label and `seconds`.
 pub fn solve_input(input: &CaseInput, observer: &mut dyn PathObserver) -> CaseResult {
+    if let Some(space) = input.space {
+        return solve_in_space(input, space);
+    }
     let solvers = path_solvers(input);
     if solvers.is_empty() {
         return limit::solve_by_limit_analysis(input);

@@ -3,7 +3,7 @@
 use crate::checks::findings::Findings;
 use crate::checks::misfits;
 use crate::checks::tolerances::GEOMETRY;
-use crate::checks::{carried, limit, outputs, path};
+use crate::checks::{carried, limit, outputs, path, space};
 use crate::results::{CaseResult, LoadEntry};
 use crate::solve::load_entries::load_entries;
 use crate::study::Case;
@@ -46,6 +46,9 @@ fn recompute(case: &Case, result: &CaseResult, findings: &mut Findings) -> Resul
     // No stored data can prove this case. It is solved again, and every number is compared.
     if !case.output_fields && result.has_no_fields() {
         return Ok(());
+    }
+    if let Some(space) = &case.space {
+        return space::verify(case, space, result, last, findings);
     }
     outputs::verify_origin(result, findings);
     carried::verify(case, result, findings)?;

@@ -1,7 +1,7 @@
 //! Checks that a stored case fits its scene, before any computation uses it: every index, name and length must fit, and
 //! every number must be in range. Later code indexes the scene with these entries and relies on this check.
 
-use crate::results::{CaseResult, FieldEntry, OutputEntry, StateEntry};
+use crate::results::{CaseResult, FieldEntry, OutputEntry, ProofFields, StateEntry};
 use crate::study::Case;
 use std::collections::BTreeSet;
 use voussoir_core::certificate::{Hinge, Mechanism, in_range};
@@ -18,6 +18,7 @@ pub fn misfits(case: &Case, result: &CaseResult) -> Vec<String> {
     let mut fit = Fit { case, found: BTreeSet::new() };
     fit.stages(result);
     fit.proof(result);
+    fit.space(result);
     fit.motions(result);
     result.mechanism.iter().for_each(|mechanism| fit.mechanism(mechanism));
     fit.path(result);
@@ -156,6 +157,33 @@ impl Fit<'_> {
         }
         for point in &result.non_associated.bracket {
             self.numbers("bracket", [point.work, point.lower].into_iter().chain(point.found));
+        }
+    }
+
+    /// Checks that forces and velocities have the dimension of the scene, and the entries of a scene in space.
+    fn space(&mut self, result: &CaseResult) {
+        let Some(case) = &self.case.space else {
+            let plane = result.proof.space.is_none();
+            return self.expect(plane, || "field or motion: entries in space, but the scene is plane".into());
+        };
+        let ProofFields { field, motion, ray, space, .. } = &result.proof;
+        let plane = field.is_some() || motion.is_some() || ray.is_some();
+        self.expect(!plane, || "field or motion: entries in the plane, but the scene is in space".into());
+        let Some(proof) = space else { return };
+        for (what, entries) in [("field", &proof.field), ("ray", &proof.ray)] {
+            for entry in entries.iter().flatten() {
+                let count = case.assembly.contacts.len();
+                self.expect(entry.joint < count, || {
+                    format!("{what}: there is no contact {}; the scene has {count} contacts, from 0", entry.joint)
+                });
+                self.numbers(what, entry.point.into_iter().chain(entry.force));
+            }
+        }
+        if let Some(motion) = &proof.motion {
+            let names = motion.iter().map(|entry| &entry.body);
+            let fits = names.eq(case.assembly.bodies.iter().map(|body| &body.name));
+            self.expect(fits, || "motion: there must be one entry for each block of the scene, in its order".into());
+            self.numbers("motion", motion.iter().flat_map(|entry| entry.velocity));
         }
     }
 

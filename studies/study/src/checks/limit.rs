@@ -101,7 +101,7 @@ pub(crate) fn verify(case: &Case, result: &CaseResult, last: usize, findings: &m
         }),
     };
     let verdict = certify(assembly, loads, &claim, case.solver.settings.tolerance);
-    verify_verdict(result, &verdict, findings);
+    compare_verdict(result, &verdict, findings);
     verify_factors(result, (stage, loads), &claim, last, findings);
     verify_bracket(result, findings);
     let reading = if own { FlowRule::NonAssociated } else { FlowRule::Associated };
@@ -126,7 +126,7 @@ fn same_fill(stored: &[FillEntry], expected: &[FillEntry]) -> bool {
 const EVIDENCE: &str = "the stored forces and motion give";
 
 /// Compares the stored status, certificate and bounds with those that the stored evidence proves.
-fn verify_verdict(result: &CaseResult, verdict: &Verdict, findings: &mut Findings) {
+pub(super) fn compare_verdict(result: &CaseResult, verdict: &Verdict, findings: &mut Findings) {
     let Verdict { certificate, status, bounds, greatest, .. } = verdict;
     findings.expect_entry(*status == result.status, "status", (result.status, EVIDENCE, status));
     findings.expect_entry(*greatest == result.greatest, "greatest", (result.greatest, EVIDENCE, greatest));
@@ -180,11 +180,10 @@ fn verify_factors(
     result: &CaseResult,
     (stage, loads): (&Stage, &StageLoads),
     claim: &Claim,
-    last: usize,
+    index: usize,
     findings: &mut Findings,
 ) {
-    let (start, last) = (claim.start, &result.stages[last]);
-    let entry = format!("the factor of stage \"{}\"", last.name);
+    let start = claim.start;
     if let Some([Some(low), Some(high)]) = result.feasible_interval {
         let apart = low <= high && !(low <= start && start <= high);
         let words = format!(
@@ -192,6 +191,21 @@ fn verify_factors(
         );
         findings.expect(apart, &words);
     }
+    let idle = loads.varying.iter().all(|w| *w == [0.0; 3]);
+    verify_reached(result, stage, (idle, claim.field_factor), index, findings);
+}
+
+/// Checks the factor that the last stage reached, and the factor of the field of a case that stands. `idle`: the loads of the
+/// stage do not grow.
+pub(super) fn verify_reached(
+    result: &CaseResult,
+    stage: &Stage,
+    (idle, field_factor): (bool, f64),
+    last: usize,
+    findings: &mut Findings,
+) {
+    let last = &result.stages[last];
+    let entry = format!("the factor of stage \"{}\"", last.name);
     if let (Some(reached), Target::Factor(factor)) = (last.factor, stage.target) {
         let found = matches!(result.status, Status::Collapse | Status::Open);
         let (source, expected) = match found {
@@ -209,13 +223,12 @@ fn verify_factors(
             Target::Factor(factor) => factor,
             Target::Collapse => stage.factor_max,
         };
-        let idle = loads.varying.iter().all(|w| *w == [0.0; 3]);
-        let there = idle || close(claim.field_factor, reached);
+        let there = idle || close(field_factor, reached);
         let entry = "field_factor";
         findings.expect_entry(
             there,
             entry,
-            (claim.field_factor, "the case stands, so it must be the target of the stage,", reached),
+            (field_factor, "the case stands, so it must be the target of the stage,", reached),
         );
     }
 }

@@ -15,6 +15,7 @@ mod mechanism;
 pub mod outputs;
 mod path;
 pub mod repeat;
+mod space;
 mod stored_state;
 mod texts;
 pub mod tolerances;

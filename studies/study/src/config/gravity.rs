@@ -12,7 +12,9 @@ pub fn gravity_of(root: &Node) -> f64 {
     let stages = root.table().and_then(|table| table.get("stages")?.array()).unwrap_or_default();
     let given = stages.iter().find_map(|stage| stage.table()?.get("gravity"));
     let size = given.and_then(|node| match node.array() {
-        Some([x, y]) => Some(number(x)?.hypot(number(y)?)),
+        Some(components @ ([_, _] | [_, _, _])) => {
+            components.iter().map(number).try_fold(0.0_f64, |size, component| Some(size.hypot(component?)))
+        }
         _ => number(node).map(f64::abs),
     });
     size.filter(|size| size.is_finite() && *size > 0.0).unwrap_or(STANDARD_GRAVITY)

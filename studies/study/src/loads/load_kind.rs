@@ -1,6 +1,7 @@
 //! The trait of a kind of load.
 
 use super::site::LoadSite;
+use super::space_site::{SpacePlaced, SpaceSite};
 use std::fmt::Debug;
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::model::{LoadSpread, PointForce};
@@ -30,6 +31,11 @@ impl From<Vec<PointForce>> for Placed {
 pub trait LoadKind: Debug + Send + Sync {
     /// Returns the forces and accelerations of the load. The error lists the mistakes in its keys for these blocks.
     fn place(&self, site: &LoadSite) -> Result<Placed, Vec<Diagnostic>>;
+
+    /// Returns the forces and accelerations of the load on blocks in space. `None` if the load exists in plane scenes only.
+    fn place_space(&self, _: &SpaceSite) -> Option<Result<SpacePlaced, Vec<Diagnostic>>> {
+        None
+    }
 }
 
 voussoir_core::inventory::submit! { Registered::of::<dyn LoadKind>(PluginKind::LoadKind) }

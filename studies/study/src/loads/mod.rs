@@ -9,10 +9,12 @@ mod load_kind;
 pub mod point;
 pub mod pressure;
 mod site;
+mod space_site;
 pub mod strip;
 #[cfg(test)]
 mod tests;
 mod track;
+mod vectors;
 pub mod vehicle;
 mod vehicle_axles;
 
@@ -20,5 +22,7 @@ pub use extrados::fill_layers;
 pub use keys::load_shape;
 pub use load_kind::{LoadKind, Placed};
 pub use site::{BlockName, LoadSite, LoadTables};
+pub use space_site::{SpacePlaced, SpaceSite};
 pub use track::{Track, footprints};
+pub use vectors::{Acceleration, Components, Force, Place};
 pub use vehicle_axles::{Axle, VehicleAxles};

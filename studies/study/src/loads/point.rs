@@ -4,9 +4,11 @@ use super::extrados::{dispersed, on_extrados, on_patch, x_at};
 use super::keys::LoadKeys;
 use super::load_kind::{LoadKind, Placed};
 use super::site::{BlockName, LoadSite};
+use super::space_site::{SpacePlaced, SpaceSite};
+use super::vectors::{Force, Place};
 use crate::scenes::dispersion::{Dispersion, Patch};
-use voussoir_core::model::geometry::Vec2;
 use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind, Sample};
+use voussoir_core::space::SpaceForce;
 
 /// A force at a point.
 #[derive(Debug, Keys)]
@@ -18,11 +20,10 @@ pub struct PointLoad {
     #[key(like = LoadKeys, optional = "span_fraction is given")]
     pub block: Option<BlockName>,
     /// point in or on the block
-    #[key(names = ["x", "y"], unit = "m", optional = "span_fraction is given")]
-    pub point: Option<[f64; 2]>,
-    /// force, x to the right and y upwards
-    #[key(names = ["x", "y"], unit = "N")]
-    pub force: [f64; 2],
+    #[key(optional = "span_fraction is given")]
+    pub point: Option<Place>,
+    /// force: x to the right and y upwards; in space x, y and z upwards
+    pub force: Force,
     /// Law of dispersion on the way to the extrados.
     #[key(like = LoadKeys)]
     pub dispersion: Option<Box<dyn Dispersion>>,
@@ -31,8 +32,7 @@ pub struct PointLoad {
 #[typetag::serde(name = "point")]
 impl LoadKind for PointLoad {
     fn place(&self, site: &LoadSite) -> Result<Placed, Vec<Diagnostic>> {
-        site.finite(&[("force", &self.force)])?;
-        let force = Vec2::from(self.force);
+        let force = site.vector("force", &self.force)?;
         match (self.span_fraction, &self.block, self.point) {
             (Some(fraction), None, None) => {
                 let x = x_at(site, fraction, "span_fraction")?;
@@ -51,11 +51,11 @@ impl LoadKind for PointLoad {
                 Ok(forces.into())
             }
             (None, Some(block), Some(point)) => {
-                site.finite(&[("point", &point)])?;
+                let point = site.vector("point", &point)?;
                 if self.dispersion.is_some() {
                     return site.fail("dispersion", "spreads a load above an arch: give span_fraction");
                 }
-                Ok(vec![site.on_block(block, Vec2::from(point), force)?].into())
+                Ok(vec![site.on_block(block, point, force)?].into())
             }
             (Some(_), _, _) => {
                 let key = if self.block.is_some() { "block" } else { "point" };
@@ -65,6 +65,25 @@ impl LoadKind for PointLoad {
             (None, None, Some(_)) => site.fail("block", "is missing: the block on which the force acts"),
             (None, None, None) => site.fail("", "needs span_fraction, or block and point"),
         }
+    }
+
+    fn place_space(&self, site: &SpaceSite) -> Option<Result<SpacePlaced, Vec<Diagnostic>>> {
+        Some(self.placed_in_space(site))
+    }
+}
+
+impl PointLoad {
+    fn placed_in_space(&self, site: &SpaceSite) -> Result<SpacePlaced, Vec<Diagnostic>> {
+        let force = site.vector("force", &self.force)?;
+        let given = [("span_fraction", self.span_fraction.is_some()), ("dispersion", self.dispersion.is_some())];
+        if let Some((key, _)) = given.iter().find(|(_, given)| *given) {
+            return site.fail(key, "belongs to plane scenes; in space give block and point");
+        }
+        let (Some(block), Some(point)) = (&self.block, self.point) else {
+            return site.fail("", "needs block and point");
+        };
+        let (body, point) = (site.block("block", block)?, site.vector("point", &point)?);
+        Ok(SpacePlaced { forces: vec![SpaceForce { body, point, force }], ..SpacePlaced::default() })
     }
 }
 

@@ -1,5 +1,6 @@
 //! The blocks on which a load is placed, with the key of the load in the study, for messages.
 
+use super::vectors::Components;
 use super::vehicle_axles::VehicleAxles;
 use crate::scenes::dispersion::Dispersion;
 use crate::scenes::unknown;
@@ -74,6 +75,13 @@ impl<'a> LoadSite<'a> {
         Err(vec![Diagnostic::new(self.key(key), message)])
     }
 
+    /// Returns the vector under a key, which must have two finite components.
+    pub fn vector(&self, key: &str, vector: &impl Components) -> Result<Vec2, Vec<Diagnostic>> {
+        self.finite(&[(key, vector.components())])?;
+        let wrong = "has three components, but the scene is plane: write [x, y] with y upwards";
+        vector.plane().map_or_else(|| self.fail(key, wrong), Ok)
+    }
+
     /// Refuses numbers that are not finite, by key.
     pub fn finite(&self, values: &[(&str, &[f64])]) -> Result<(), Vec<Diagnostic>> {
         let wrong: Vec<_> = values
@@ -99,12 +107,17 @@ impl<'a> LoadSite<'a> {
 
     /// Returns the index of a block that a load can move, by its name under the key `block`.
     pub fn block(&self, block: &BlockName) -> Result<usize, Vec<Diagnostic>> {
+        self.block_under("block", block)
+    }
+
+    /// Returns the index of a block that a load can move, by its name under a key.
+    pub fn block_under(&self, key: &str, block: &BlockName) -> Result<usize, Vec<Diagnostic>> {
         let name = block.text();
         let body = self.assembly.body(&name).ok_or_else(|| {
             let names = self.assembly.bodies.iter().filter(|body| !body.fixed).map(|body| body.name.as_str());
-            vec![unknown(&self.key("block"), "block", &name, names)]
+            vec![unknown(&self.key(key), "block", &name, names)]
         })?;
-        self.movable(body, "block")
+        self.movable(body, key)
     }
 
     /// Places a force at a point in or on a block.

@@ -1,12 +1,11 @@
 //! The result of a case, as stored in `results.json`.
 
 use super::carried::CarriedLoad;
-use super::entries::{
-    DisplacementEntry, EventEntry, FieldEntry, FillEntry, LoadEntry, MotionEntry, StateEntry, YieldedEntry,
-};
+use super::entries::{DisplacementEntry, EventEntry, LoadEntry, MotionEntry, StateEntry, YieldedEntry};
 use super::limit_points::{BranchEntry, FollowedTo, LimitPointEntry, StabilityEntry};
 use super::load_factor_error::LoadFactorError;
 use super::output_entry::OutputEntry;
+use super::proof_fields::ProofFields;
 use super::sensitivity::SensitivityEntry;
 use super::stored_path::StoredPath;
 use serde::{Deserialize, Serialize};
@@ -57,24 +56,6 @@ pub struct NonAssociatedAnswer {
     /// The lower and upper bound of the least load, against the work of the solvers that improved them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub bracket: Vec<BracketPoint>,
-}
-
-/// Forces and velocities that prove an answer.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct ProofFields {
-    /// The factor at which `field` is in equilibrium.
-    pub field_factor: Option<f64>,
-    /// Contact forces.
-    pub field: Option<Vec<FieldEntry>>,
-    /// Forces of the fill that belong to `field`, if the fill resists.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub fill: Vec<FillEntry>,
-    /// Velocities of the mechanism.
-    pub motion: Option<Vec<MotionEntry>>,
-    /// For `unbounded`: contact forces that balance the live load alone. Empty for supports that blocks cannot follow.
-    pub ray: Option<Vec<FieldEntry>>,
-    /// On arches: the point where the resultant crosses each joint \[m\]; `null` if a joint is not loaded.
-    pub thrust_line: Option<Vec<Option<[f64; 2]>>>,
 }
 
 /// Results that only paths have.
@@ -322,7 +303,8 @@ impl CaseResult {
 
     /// Returns true if the forces and motions that would prove it have been removed.
     pub fn has_no_fields(&self) -> bool {
-        self.proof.field.is_none() && self.proof.motion.is_none() && self.path.displacements.is_none()
+        let plane = self.proof.field.is_none() && self.proof.motion.is_none() && self.path.displacements.is_none();
+        plane && self.proof.space.is_none()
     }
 
     /// Creates an empty stalled result.

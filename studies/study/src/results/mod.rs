@@ -15,6 +15,7 @@ mod load_factor_error;
 mod origin;
 mod output_entry;
 pub mod path_state;
+mod proof_fields;
 mod rank;
 pub mod sealed_line;
 mod seismic_entry;
@@ -27,8 +28,7 @@ pub mod thrust_line;
 mod totals;
 
 pub use case_result::{
-    CaseLabel, CaseResult, EndProof, NonAssociatedAnswer, PathRecord, Proof, ProofFields, StageResult,
-    other_limit_point,
+    CaseLabel, CaseResult, EndProof, NonAssociatedAnswer, PathRecord, Proof, StageResult, other_limit_point,
 };
 pub use comparison::{Comparison, ComparisonCell, ComparisonRow, MapAxes};
 pub use entries::{
@@ -40,6 +40,7 @@ pub use limit_points::{BranchEntry, FollowedTo, LimitPointEntry, NextState, Stab
 pub use load_factor_error::LoadFactorError;
 pub use origin::{Build, FORMAT, HEAD, Origin, PluginCrate, head, this_program, without_origin, words};
 pub use output_entry::{OutputColumn, OutputEntry, kind_name};
+pub use proof_fields::{ProofFields, SpaceFieldEntry, SpaceMotionEntry, SpaceProof};
 pub use rank::{least_of, load_rank};
 pub use seismic_entry::{
     CheckedQuantity, DisplacementCapacity, Oscillator, PushDirection, SeismicCheck, SeismicEntry, acceleration_at,

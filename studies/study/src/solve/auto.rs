@@ -101,6 +101,15 @@ pub fn limit_solvers<'a>(
     named.into_iter().chain(willing.map(|(card, solver)| (card.tag, solver.as_ref())))
 }
 
+/// Returns the limit solvers to try for a scene in space, in order.
+pub fn space_solvers(selected: &SelectedSolver) -> Vec<(&str, Arc<dyn LimitSolver>)> {
+    if let SelectedSolver::Limit(tag, solver) = selected {
+        return vec![(tag, solver.clone())];
+    }
+    let cards = by_cost(PluginKind::LimitSolver).into_iter().filter(|card| card.offers(Capability::SPACE));
+    cards.filter_map(|card| Some((card.tag, Arc::from(built::<dyn LimitSolver>(card)?)))).collect()
+}
+
 /// Returns a solver with the defaults of its keys.
 fn built<T: ?Sized>(card: &Card) -> Option<Box<T>>
 where

@@ -38,7 +38,11 @@ pub(crate) fn carried_load(case: &Case, result: &CaseResult) -> CarriedLoad {
 
 /// Returns true if a result must describe its load.
 pub(crate) fn is_asked(case: &Case, result: &CaseResult) -> bool {
-    case.output_joints && !case.brief && result.status == Status::Stands && result.certificate.passed
+    case.output_joints
+        && case.space.is_none()
+        && !case.brief
+        && result.status == Status::Stands
+        && result.certificate.passed
 }
 
 /// Adds the interval of eccentricities to each joint, if it is requested or cheap to compute.

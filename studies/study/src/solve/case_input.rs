@@ -1,6 +1,6 @@
 //! The data that are needed to solve a case, without its study.
 
-use crate::study::{Case, SelectedSolver};
+use crate::study::{Case, SelectedSolver, SpaceCase};
 use voussoir_core::model::{Assembly, Stage};
 use voussoir_core::path::PathSettings;
 
@@ -9,6 +9,8 @@ use voussoir_core::path::PathSettings;
 pub struct CaseInput<'a> {
     /// Blocks and joints.
     pub assembly: &'a Assembly,
+    /// The scene in space with its loads; `None` for a plane scene.
+    pub space: Option<&'a SpaceCase>,
     /// Stages in order.
     pub stages: &'a [Stage],
     /// The solver of the case.
@@ -31,6 +33,7 @@ impl<'a> CaseInput<'a> {
     pub fn of(case: &'a Case) -> Self {
         CaseInput {
             assembly: &case.assembly,
+            space: case.space.as_deref(),
             stages: &case.stages,
             solver: &case.solver.solver,
             of_stages: &case.solver.of_stages,

@@ -1,10 +1,10 @@
 //! Explains a study: the problem that will be solved, without the parts that the scene does not need.
 
-use super::auto::{TaggedPathSolver, limit_solvers, path_solvers, willing};
+use super::auto::{TaggedPathSolver, limit_solvers, path_solvers, space_solvers, willing};
 use super::case_input::CaseInput;
 use super::explain_bridge::explain_bridge;
 use crate::results::stage_start::search_start;
-use crate::study::{Case, Study};
+use crate::study::{Case, SpaceCase, Study};
 use std::fmt::Write;
 use voussoir_core::law::Tangential;
 use voussoir_core::limit::LimitProblem;
@@ -28,6 +28,9 @@ pub fn explain_first(name: &str, kind: &str, cases: usize, first: Option<&Case>)
 }
 
 fn explain_case(case: &Case, text: &mut String) {
+    if let Some(space) = &case.space {
+        return explain_space(case, space, text);
+    }
     let assembly = &case.assembly;
     let bonded = assembly.joints.iter().filter(|joint| joint.bond == Bond::Bonded).count();
     let _ = writeln!(
@@ -85,6 +88,31 @@ fn explain_case(case: &Case, text: &mut String) {
         if let Some(card) = card(PluginKind::LimitSolver, &tag) {
             let _ = writeln!(text, "  {tag}: {}", card.summary);
         }
+    }
+}
+
+fn explain_space(case: &Case, space: &SpaceCase, text: &mut String) {
+    let bodies = &space.assembly.bodies;
+    let held = bodies.iter().filter(|body| body.fixed).count();
+    let points: usize = space.assembly.contacts.iter().map(|contact| contact.points.len()).sum();
+    let contacts = space.assembly.contacts.len();
+    let _ = writeln!(
+        text,
+        "case 0: {} bodies in space, {held} of them supports; {contacts} plane contacts with {points} points, each with three forces",
+        bodies.len()
+    );
+    let tag = space_solvers(&case.solver.solver).first().map_or("no solver", |(tag, _)| *tag).to_string();
+    for stage in &case.stages {
+        let until = match stage.target {
+            Target::Collapse => {
+                format!("checks that factor {} is carried, then finds the greatest factor", search_start(stage))
+            }
+            Target::Factor(factor) => format!("checks that factor {factor} is carried"),
+        };
+        let _ = writeln!(text, "stage \"{}\": {tag}: {until}", stage.name);
+    }
+    if let Some(card) = card(PluginKind::LimitSolver, &tag) {
+        let _ = writeln!(text, "  {tag}: {}", card.summary);
     }
 }
 

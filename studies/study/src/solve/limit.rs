@@ -15,14 +15,19 @@ use voussoir_core::model::{Assembly, Stage, StageLoads, Target, stage_loads};
 use voussoir_core::plugin::PluginKind;
 
 /// Returns the question of a stage: does it stand at its start, and up to which factor does it stand?
-fn ask(stage: &Stage, problem: &LimitProblem) -> LimitQuestion {
-    let idle = problem.magnitude(&problem.varying) == 0.0;
+/// `idle`: its loads do not grow.
+pub(super) fn ask(stage: &Stage, idle: bool) -> LimitQuestion {
     match stage.target {
         Target::Factor(factor) if idle || factor == 0.0 => LimitQuestion::Admissible(0.0),
         Target::Factor(factor) if factor < 0.0 => LimitQuestion::Admissible(factor),
         Target::Factor(factor) => LimitQuestion::Collapse { start: 0.0, max: factor },
         Target::Collapse => LimitQuestion::Collapse { start: search_start(stage), max: stage.factor_max },
     }
+}
+
+/// Returns true if the loads of a stage do not grow.
+fn is_idle(problem: &LimitProblem) -> bool {
+    problem.magnitude(&problem.varying) == 0.0
 }
 
 /// Returns true if the check of the next stage's start also answers this stage.
@@ -77,7 +82,7 @@ pub(crate) fn solve_by_limit_analysis(input: &CaseInput) -> CaseResult {
 }
 
 /// Adds the result of stage `index`, and the earlier stages that the check of its start also answers.
-fn record_stages(
+pub(super) fn record_stages(
     done: &mut Vec<StageResult>,
     stages: &[Stage],
     index: usize,
@@ -111,7 +116,7 @@ fn settled_hinges(
     (problem, loads): (&LimitProblem, &StageLoads),
     result: &mut CaseResult,
 ) -> Vec<Hinge> {
-    let idle = problem.magnitude(&problem.varying) == 0.0;
+    let idle = is_idle(problem);
     let stands = result.status == Status::Stands || (result.status == Status::Unbounded && idle);
     if !stands || !settles(input.stages, index) {
         return Vec::new();
@@ -148,7 +153,7 @@ fn read(
 fn solve_stage(input: &CaseInput, index: usize, problem: &LimitProblem, all_loads: &[StageLoads]) -> CaseResult {
     let loads = &all_loads[index];
     let stage = &input.stages[index];
-    let asked = ask(stage, problem);
+    let asked = ask(stage, is_idle(problem));
     let (result, start_is_carried) = asked_of_solvers(input, index, (problem, loads), asked);
     if let LimitQuestion::Collapse { start, .. } = asked
         && matches!(result.status, Status::Collapse | Status::Unbounded | Status::Open)
@@ -174,7 +179,7 @@ fn take_inner_field(
     (problem, loads): (&LimitProblem, &StageLoads),
     result: &mut CaseResult,
 ) {
-    let searched = matches!(ask(&input.stages[index], problem), LimitQuestion::Collapse { .. });
+    let searched = matches!(ask(&input.stages[index], is_idle(problem)), LimitQuestion::Collapse { .. });
     let Some(factor) = result.proof.field_factor.filter(|_| result.status == Status::Stands && searched) else {
         return;
     };

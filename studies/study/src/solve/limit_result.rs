@@ -104,6 +104,7 @@ pub(super) fn certified(
             field: field.as_deref().map(field_entries),
             ray: ray.as_deref().map(field_entries),
             motion: motion.map(|motion| motion_entries(assembly, motion)),
+            space: None,
         },
         non_associated: NonAssociatedAnswer {
             associated_load_factor: own.and_then(|own| own.associated_factor).filter(|_| believed),

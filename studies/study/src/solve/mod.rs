@@ -29,6 +29,7 @@ pub(crate) mod safe_theorem;
 pub mod sensitivity;
 mod settlement;
 mod solver_outputs;
+pub(crate) mod space;
 pub(crate) mod statics;
 mod stored_path;
 mod symmetric;

@@ -99,6 +99,9 @@ pub fn sensitivities(case: &Case, result: &CaseResult) -> Result<Vec<Sensitivity
 
 /// Returns the derivatives with respect to these numbers.
 fn of_numbers(case: &Case, result: &CaseResult, numbers: &[NumericKey]) -> Result<Vec<SensitivityEntry>, String> {
+    if case.space.is_some() {
+        return Err("they exist for plane scenes only".into());
+    }
     let factor = result.load_factor.filter(|_| result.status == Status::Collapse && result.certificate.passed);
     let factor = factor.ok_or("there is no collapse load to differentiate")?;
     if card(PluginKind::LimitSolver, &result.solver).is_none() {

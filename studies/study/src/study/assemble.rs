@@ -7,6 +7,7 @@ use serde_json::Value as Json;
 use std::sync::Arc;
 use voussoir_core::law::{BulkMaterial, InterfaceLaw};
 use voussoir_core::model::{Assembly, Catalogue, Scene};
+use voussoir_core::space::SpaceAssembly;
 
 /// Returns the plug-in that a checked table configures, or a diagnostic at `key`.
 pub fn read_plugin<T: serde::de::DeserializeOwned>(
@@ -46,8 +47,20 @@ pub fn catalogue(diagnostics: &mut DiagnosticList<'_>, resolved: &Resolved) -> O
     })
 }
 
-/// Returns the blocks and joints of the scene.
-pub fn assembly(diagnostics: &mut DiagnosticList<'_>, resolved: &Resolved, catalogue: &Catalogue) -> Option<Assembly> {
+/// Blocks of a scene: in the plane, or in space.
+pub enum Built {
+    /// Blocks and joints in the plane.
+    Plane(Assembly),
+    /// Blocks and contacts in space.
+    Space(SpaceAssembly),
+}
+
+/// Returns the blocks of the scene.
+pub fn built(diagnostics: &mut DiagnosticList<'_>, resolved: &Resolved, catalogue: &Catalogue) -> Option<Built> {
     let scene: Box<dyn Scene> = read_plugin(diagnostics, "scene", resolved.get("scene")?)?;
-    scene.build(catalogue).map_err(|wrong| diagnostics.extend(wrong)).ok()
+    let built = match scene.build_space(catalogue) {
+        Some(space) => space.map(Built::Space),
+        None => scene.build(catalogue).map(Built::Plane),
+    };
+    built.map_err(|wrong| diagnostics.extend(wrong)).ok()
 }

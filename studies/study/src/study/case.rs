@@ -1,6 +1,6 @@
 //! From one expanded case of a study file to bodies, joints, stages and the solver.
 
-use super::assemble::{assembly, catalogue};
+use super::assemble::{Built, built, catalogue};
 use super::diagnostics::DiagnosticList;
 use super::keys::{case_keys, study_keys};
 use super::model::{Case, SelectedSolver, ZoneOfThrust};
@@ -9,6 +9,7 @@ use super::partial_factors::{check, design, multiply_loads, note_of_yielding};
 use super::plausibility::warnings;
 use super::resolved::Resolved;
 use super::solver::{choose_solver, unused_by_limit_analysis};
+use super::space::{SpaceCase, check_space_solver, space_stages};
 use super::stages::build_stages;
 use super::tables::{OutputKeys, stage_tables};
 use crate::config::check::{Checker, Unused};
@@ -20,6 +21,7 @@ use crate::config::expand::{Expanded, Expansion};
 use crate::config::synonyms::nearest_name;
 use serde_json::Value as Json;
 use std::sync::Arc;
+use voussoir_core::model::Assembly;
 use voussoir_core::plugin::{PluginKind, card, cards_of};
 
 /// The load factor is not differentiated with respect to longer lists of numbers: they are data, not parameters.
@@ -45,14 +47,26 @@ pub(crate) fn build_case(id: usize, expanded: Expanded, known: &KnownKeys<'_>) -
     let written = stage_tables(&resolved);
     check(&mut diagnostics, &resolved, &tables, &written);
     let catalogue = catalogue(&mut diagnostics, &tables);
-    let assembly = catalogue.and_then(|catalogue| assembly(&mut diagnostics, &tables, &catalogue));
+    let (assembly, blocks) = match catalogue.and_then(|catalogue| built(&mut diagnostics, &tables, &catalogue)) {
+        Some(Built::Plane(assembly)) => (Some(assembly), None),
+        Some(Built::Space(blocks)) => (None, Some(blocks)),
+        None => (None, None),
+    };
     let mut stages = build_stages(&mut diagnostics, &tables, &written, assembly.as_ref(), &mut notes);
-    multiply_loads(stages.as_deref_mut().unwrap_or_default(), &resolved);
+    let mut space = blocks.map(|assembly| {
+        let stages = space_stages(&mut diagnostics, &written, stages.as_deref().unwrap_or_default(), &assembly);
+        SpaceCase { assembly, stages }
+    });
+    let in_space = space.as_mut().map_or(&mut [][..], |space| &mut space.stages);
+    multiply_loads(stages.as_deref_mut().unwrap_or_default(), in_space, &resolved);
     let solver = resolved
         .get("solver")
         .and_then(|solver| choose_solver(&mut diagnostics, solver, &resolved, &written, assembly.as_ref()));
+    if let (Some(space), Some(solver)) = (&space, resolved.get("solver")) {
+        check_space_solver(&mut diagnostics, solver, space);
+    }
     let limit = solver.as_ref().is_some_and(|choice| matches!(choice.solver, SelectedSolver::Limit(..)));
-    let rigid = assembly.as_ref().is_some_and(|assembly| !assembly.deforms());
+    let rigid = assembly.as_ref().is_some_and(|assembly| !assembly.deforms()) || space.is_some();
     if limit || rigid {
         notes.extend(unused_by_limit_analysis(&resolved, &written));
     }
@@ -60,6 +74,7 @@ pub(crate) fn build_case(id: usize, expanded: Expanded, known: &KnownKeys<'_>) -
     if output.is_none() && resolved.get("output").is_some() {
         diagnostics.wrong("output", "cannot be read", "correct this table");
     }
+    let assembly = assembly.or_else(|| Some(Assembly::without_blocks(space.as_ref()?.assembly.catalogue.clone())));
     match (assembly, stages, solver, output) {
         (Some(assembly), Some(stages), Some(solver), Some(output)) if diagnostics.found.is_empty() => {
             if !output.fields && output.vtu {
@@ -81,6 +96,7 @@ pub(crate) fn build_case(id: usize, expanded: Expanded, known: &KnownKeys<'_>) -
                 scene,
                 parameters,
                 assembly,
+                space: space.map(Arc::new),
                 stages,
                 solver,
                 output_curve: output.curve,

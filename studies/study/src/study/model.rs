@@ -3,6 +3,7 @@
 use super::numeric_keys::NumericKey;
 use super::outline::Outline;
 use super::resolved::Resolved;
+use super::space::SpaceCase;
 use super::tables::{DrawnWord, Figures, RecordTable};
 use crate::config::checked_keys::CheckedKeys;
 use crate::config::checked_value::hash_of;
@@ -47,8 +48,10 @@ pub struct Case {
     pub scene: Option<String>,
     /// Swept key → value.
     pub parameters: Map<String, Json>,
-    /// Bodies and joints.
+    /// Bodies and joints of a plane scene; without bodies if the scene is in space.
     pub assembly: Assembly,
+    /// The scene in space with its loads; `None` for a plane scene.
+    pub space: Option<Arc<SpaceCase>>,
     /// Loads, stage by stage.
     pub stages: Vec<Stage>,
     /// Solver and settings.

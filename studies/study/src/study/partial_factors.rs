@@ -13,6 +13,7 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use voussoir_core::model::{Assembly, Stage};
 use voussoir_core::plugin::{Keys, PluginKind, card, nearest};
+use voussoir_core::space::SpaceStage;
 
 /// Factors on loads.
 #[derive(Debug, Clone, Keys)]
@@ -182,14 +183,20 @@ pub(super) fn check(
     }
 }
 
-/// Multiplies the loads of stages.
-pub(super) fn multiply_loads(stages: &mut [Stage], resolved: &Resolved) {
+/// Multiplies the loads of stages; `in_space` are those of a scene in space.
+pub(super) fn multiply_loads(stages: &mut [Stage], in_space: &mut [SpaceStage], resolved: &Resolved) {
     let Some(loads) = resolved.read::<Factors>("factors").and_then(|factors| factors.loads) else { return };
+    let factor_of = |stage: &Stage| match &loads {
+        LoadFactors::All(factor) => *factor,
+        LoadFactors::Stages(of) => of.get(&stage.name).copied().unwrap_or(1.0),
+    };
+    for (stage, loads) in stages.iter().zip(in_space) {
+        let factor = factor_of(stage);
+        loads.forces.iter_mut().for_each(|force| force.force *= factor);
+        loads.accelerations.iter_mut().for_each(|acceleration| *acceleration *= factor);
+    }
     for stage in stages {
-        let factor = match &loads {
-            LoadFactors::All(factor) => *factor,
-            LoadFactors::Stages(of) => of.get(&stage.name).copied().unwrap_or(1.0),
-        };
+        let factor = factor_of(stage);
         stage.forces.iter_mut().for_each(|force| force.force *= factor);
         stage.accelerations.iter_mut().for_each(|acceleration| *acceleration *= factor);
     }

@@ -35,9 +35,13 @@ pub(super) fn build_stages(
         let Placed { forces, accelerations, spreads, notes: own } = placed;
         let stage = Stage {
             name: raw.name.clone(),
-            gravity: raw.gravity.map(|gravity| match gravity {
-                Gravity::Down(down) => Vec2::new(0.0, -down),
-                Gravity::Vector(vector) => Vec2::from(vector),
+            gravity: raw.gravity.and_then(|gravity| match gravity {
+                Gravity::Down(down) => Some(Vec2::new(0.0, -down)),
+                Gravity::Vector(vector) => Some(Vec2::from(vector)),
+                Gravity::Space(_) => {
+                    plane_gravity(diagnostics, assembly, &at);
+                    None
+                }
             }),
             forces,
             accelerations,
@@ -61,6 +65,14 @@ pub(super) fn build_stages(
         out.push(stage);
     }
     Some(out)
+}
+
+/// Reports a gravity with three components in a plane scene.
+fn plane_gravity(diagnostics: &mut DiagnosticList<'_>, assembly: Option<&Assembly>, at: &str) {
+    if assembly.is_some() {
+        let message = "has three components, but the scene is plane";
+        diagnostics.wrong(&join(at, "gravity"), message, "write [gx, gy] with y upwards, or one number");
+    }
 }
 
 /// Returns true if a stage continues until collapse but has no growing load.

@@ -29,6 +29,9 @@ pub enum Gravity {
     /// Components of gravity.
     #[key(names = ["x", "y"], unit = "m/s2")]
     Vector([f64; 2]),
+    /// Components of gravity in space.
+    #[key(names = ["x", "y", "z"], unit = "m/s2")]
+    Space([f64; 3]),
 }
 
 /// `until`: the end of a stage without a factor.
@@ -98,7 +101,7 @@ impl FieldTable {
 pub struct StageTable {
     /// name of the stage, unique in the study
     pub name: String,
-    /// gravity from this stage on: downwards, or a vector \[gx, gy\]
+    /// gravity from this stage on: downwards, or a vector \[gx, gy\], in space \[gx, gy, gz\]
     #[key(optional = "gravity stays as it was")]
     pub gravity: Option<Gravity>,
     /// loads, multiplied by the stage's factor

@@ -7,7 +7,7 @@ use super::point::Point;
 use super::samples::samples_of;
 use super::subject::Subject;
 use super::walk;
-use super::{energy, facets, outputs, sign, softening, units};
+use super::{cone, energy, facets, outputs, sign, softening, units};
 use voussoir_core::law::InterfaceLaw;
 use voussoir_core::plugin::{Capability, Card, PluginKind, Sample};
 
@@ -44,6 +44,7 @@ fn check_sample(
     if let Some(own) = &own {
         facets::check(recorder, card, own);
     }
+    cone::check(recorder, card, own.as_deref(), law.cone());
     let Some(response) = response else { return };
     let written = serde_json::to_value(law).ok().and_then(|table| PlugIn::read(card.kind, &table).ok());
     let again = match &written {

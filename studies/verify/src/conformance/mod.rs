@@ -7,6 +7,7 @@
 //! a consistent way. Therefore each law that answers at a point has a [known path](voussoir_core::plugin::KnownPath).
 
 mod assembly;
+mod cone;
 mod energy;
 mod facets;
 mod findings;
@@ -25,6 +26,7 @@ mod reproduce;
 mod samples;
 mod scaled;
 mod scene;
+mod scene_space;
 mod sign;
 mod site;
 mod softening;

@@ -6,11 +6,13 @@ use super::options::Options;
 use super::plug_in::PlugIn;
 use super::samples::samples_of;
 use super::scaled::LENGTH;
+use super::scene_space;
 use super::site::{catalogue, reversed_catalogue};
 use super::units::other_units;
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::model::{Assembly, Bond, Catalogue, Gap, Scene};
 use voussoir_core::plugin::{Card, PluginKind};
+use voussoir_core::space::SpaceAssembly;
 
 /// Greatest difference of coordinates, as a share of the size of the scene.
 const SAME: f64 = 1e-9;
@@ -24,16 +26,16 @@ pub(super) fn check(recorder: &mut Recorder, card: &Card, _: &Options) {
         recorder.sample(&sample);
         let PlugIn::Scene(scene) = plug_in else { continue };
         let Some(here) = built(recorder, "samples", scene.as_ref(), &catalogue()) else { continue };
-        assembly::check(recorder, &here);
+        here.check(recorder);
         if let Some(there) = built(recorder, "numbering", scene.as_ref(), &reversed_catalogue()) {
-            recorder.hold("numbering", described(&here) == described(&there), || {
+            recorder.hold("numbering", here.described() == there.described(), || {
                 "with materials and laws in another order it is another scene".into()
             });
         }
         if let Some(PlugIn::Scene(other)) = other_units(recorder, card, &table)
             && let Some(there) = built(recorder, "units", other.as_ref(), &catalogue())
         {
-            let (here, there) = (lengths(&here), lengths(&there));
+            let (here, there) = (here.lengths(), there.lengths());
             let size = here.iter().fold(0.0, |a: f64, x| a.max(x.abs()));
             let near = |(a, b): (&f64, &f64)| (a - b / LENGTH).abs() <= SAME * size;
             recorder.hold("units", here.len() == there.len() && here.iter().zip(&there).all(near), || {
@@ -43,9 +45,41 @@ pub(super) fn check(recorder: &mut Recorder, card: &Card, _: &Options) {
     }
 }
 
+/// The blocks of a scene.
+enum Built {
+    Plane(Assembly),
+    Space(SpaceAssembly),
+}
+
+impl Built {
+    fn check(&self, recorder: &mut Recorder) {
+        match self {
+            Built::Plane(assembly) => assembly::check(recorder, assembly),
+            Built::Space(assembly) => scene_space::check(recorder, assembly),
+        }
+    }
+
+    fn described(&self) -> Vec<String> {
+        match self {
+            Built::Plane(assembly) => described(assembly),
+            Built::Space(assembly) => scene_space::described(assembly),
+        }
+    }
+
+    fn lengths(&self) -> Vec<f64> {
+        match self {
+            Built::Plane(assembly) => lengths(assembly),
+            Built::Space(assembly) => scene_space::lengths(assembly),
+        }
+    }
+}
+
 /// Builds a scene; a refusal is a finding of a check.
-fn built(recorder: &mut Recorder, check: &'static str, scene: &dyn Scene, catalogue: &Catalogue) -> Option<Assembly> {
-    let built = scene.build(catalogue);
+fn built(recorder: &mut Recorder, check: &'static str, scene: &dyn Scene, catalogue: &Catalogue) -> Option<Built> {
+    let built = match scene.build_space(catalogue) {
+        Some(space) => space.map(Built::Space),
+        None => scene.build(catalogue).map(Built::Plane),
+    };
     let refused = built.as_ref().err().and_then(|wrong| wrong.first()).map(ToString::to_string);
     recorder.hold(check, built.is_ok(), || format!("is refused: {}", refused.unwrap_or_default()));
     built.ok()

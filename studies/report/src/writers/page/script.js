@@ -81,7 +81,7 @@ for (const plot of document.querySelectorAll('svg .plot')) {
     if (point.id !== undefined) {
       tip.append(`, case ${point.id}`);
       const own = cases.get(point.id);
-      if (own) {
+      if (own && own.bodies) {
         draw(make('svg', {}, tip), own, own.motion && twists(own, 0.6), own.motion ? [] : pieces(own.thrust));
       }
     }

@@ -1,6 +1,6 @@
 //! Pictures of cases: an animated drawing of each case, and its load-displacement curve.
 
-use crate::figures::{curve_svg, mechanism_svg, scene_svg};
+use crate::figures::curve_svg;
 use crate::output::StudyOutput;
 use crate::writers::page::figure;
 use maud::{Markup, PreEscaped, html};
@@ -23,11 +23,17 @@ pub(super) fn of_case(study: &StudyOutput, place: usize) -> Markup {
     let Some((assembly, stages)) = study.scene(place) else { return html! {} };
     let case = &study.results.cases[place];
     let (own, id) = (study.case_title(case), case.label.id);
-    let scene = own_ids(&scene_svg(&own, assembly, stages, case), &format!("scene-{id}"));
-    let mechanism = mechanism_svg(&own, assembly, case).map(|svg| own_ids(&svg, &format!("mechanism-{id}")));
+    let scene = study.scene_svg(place).map(|svg| own_ids(&svg, &format!("scene-{id}"))).unwrap_or_default();
+    let mechanism = study.mechanism_svg(place).map(|svg| own_ids(&svg, &format!("mechanism-{id}")));
     let moves = case.proof.motion.is_some() || !case.path.states.is_empty();
+    let turns = study.scenes.get(place).is_some_and(|scene| scene.space.is_some());
     html! {
         div class="case" {
+            @if turns {
+                figure class="space" data-case=(id) hidden {
+                    figcaption { "The blocks. Drag them, or use the arrow keys, to turn them." }
+                }
+            }
             figure class="scene" data-case=[moves.then_some(id)] {
                 (PreEscaped(scene))
                 figcaption { "The scene with its loads, forces and joints that move." }

@@ -1,0 +1,240 @@
+//! Solves a case in space by limit analysis, stage by stage, each with its certificate.
+
+use super::auto::space_solvers;
+use super::case_input::CaseInput;
+use super::limit::{ask, record_stages};
+use super::ours::is_ours;
+use crate::results::{CaseResult, ProofFields, SpaceFieldEntry, SpaceMotionEntry, SpaceProof};
+use crate::study::SpaceCase;
+use voussoir_core::certificate::Verdict;
+use voussoir_core::limit::{Counters, LimitQuestion, Status};
+use voussoir_core::model::{Stage, Target};
+use voussoir_core::space::{
+    Cone, SpaceAnswer, SpaceBody, SpaceClaim, SpaceContact, SpaceField, SpaceLoads, SpaceProblem, SpaceVelocity, Vec3,
+    certify_space,
+};
+
+/// Returns the problem of limit analysis of one stage.
+pub(crate) fn space_problem(space: &SpaceCase, loads: &SpaceLoads) -> Result<SpaceProblem, String> {
+    let cones: Vec<Cone> = space.cones()?.iter().map(|cone| Cone { friction: cone.friction }).collect();
+    Ok(SpaceProblem::new(&space.assembly, &cones, &loads.fixed, &loads.varying))
+}
+
+/// Solves all stages of a case in space.
+pub(crate) fn solve_in_space(input: &CaseInput, space: &SpaceCase) -> CaseResult {
+    let (mut done, mut counters) = (Vec::new(), Counters::new());
+    let loads = space.loads(input.stages);
+    for (index, (stage, loads)) in input.stages.iter().zip(&loads).enumerate() {
+        let problem = match space_problem(space, loads) {
+            Ok(problem) => problem,
+            Err(why) => return CaseResult::stalled(why),
+        };
+        let mut result = solve_stage(input, space, stage, &problem);
+        for (name, count) in std::mem::take(&mut result.counters) {
+            *counters.entry(name).or_default() += count;
+        }
+        record_stages(&mut done, input.stages, index, (&result, Vec::new()));
+        if result.status != Status::Stands || index + 1 == input.stages.len() {
+            let flow = (result.status != Status::Stalled && space.non_associated()).then(|| "associated".to_string());
+            result.notes.extend(flow.iter().map(|_| FLOW_READ_AS.to_string()));
+            return CaseResult { stages: done, counters, flow_read_as: flow, ..result };
+        }
+    }
+    CaseResult::stalled("the study has no stage")
+}
+
+/// The note of a law whose flow is not associated.
+const FLOW_READ_AS: &str = "a joint law whose slip is non-associated is read with associated flow (slip opens the joint by its \
+     friction angle): every load factor is an upper bound";
+
+/// Returns the first certified answer of the solvers to try, or otherwise the best that is proved.
+fn solve_stage(input: &CaseInput, space: &SpaceCase, stage: &Stage, problem: &SpaceProblem) -> CaseResult {
+    let idle = problem.varying.iter().flatten().all(|component| *component == 0.0);
+    let asked = ask(stage, idle);
+    let (mut notes, mut best): (Vec<String>, Option<CaseResult>) = (Vec::new(), None);
+    for (tag, solver) in space_solvers(input.solver) {
+        let Some(answer) = solver.solve_space(problem, asked) else {
+            notes.push(format!("{tag}: the solver knows plane scenes only"));
+            continue;
+        };
+        let answer = well_formed(problem, answer);
+        let result = certified(input, space, (stage, problem), asked, (tag, answer));
+        if result.certificate.passed {
+            return result;
+        }
+        notes.extend(result.certificate.failures.iter().map(|failure| format!("{tag}: {failure}")));
+        notes.extend(result.notes.iter().cloned());
+        if best.as_ref().is_none_or(|best| best.status == Status::Stalled) {
+            best = Some(result);
+        }
+    }
+    let best = best.unwrap_or_else(|| CaseResult::stalled("no solver supports scenes in space"));
+    CaseResult { notes, ..best }
+}
+
+/// Returns an answer whose lists have the lengths of the problem; otherwise one that decides nothing.
+fn well_formed(problem: &SpaceProblem, answer: SpaceAnswer) -> SpaceAnswer {
+    let field = |field: &Option<SpaceField>| {
+        field.as_ref().is_none_or(|field| {
+            let lengths = problem.contacts.iter().map(|contact| contact.points.len());
+            field.iter().map(Vec::len).eq(lengths) && field.iter().flatten().flatten().all(|x| x.is_finite())
+        })
+    };
+    let motion = answer.motion.as_ref().is_none_or(|motion| {
+        motion.len() == problem.bodies && motion.iter().flatten().all(|velocity| velocity.is_finite())
+    });
+    if field(&answer.field) && field(&answer.ray) && motion {
+        return answer;
+    }
+    SpaceAnswer::stalled(
+        "the answer of the solver does not have one finite force for each point or one motion for each body",
+    )
+}
+
+/// Returns the certified result of one stage.
+fn certified(
+    input: &CaseInput,
+    space: &SpaceCase,
+    (stage, problem): (&Stage, &SpaceProblem),
+    asked: LimitQuestion,
+    (tag, answer): (&str, SpaceAnswer),
+) -> CaseResult {
+    let (start, target) = match asked {
+        LimitQuestion::Admissible(factor) => (factor, factor),
+        LimitQuestion::Collapse { start, max } => (start, max),
+    };
+    let claim = SpaceClaim {
+        hint: answer.status,
+        target,
+        start,
+        factor: answer.factor,
+        field_factor: answer.field_factor,
+        field: answer.field.as_ref(),
+        motion: answer.motion.as_deref(),
+        ray: answer.ray.as_ref(),
+    };
+    let Verdict { certificate, status, bounds, greatest, .. } =
+        certify_space(problem, &claim, input.settings.tolerance);
+    let shows = |statuses: &[Status]| statuses.contains(&status);
+    let field = answer.field.filter(|_| shows(&[Status::Stands, Status::Collapse, Status::Unbounded, Status::Open]));
+    let motion = answer.motion.filter(|_| shows(&[Status::Collapse, Status::NoEquilibrium, Status::Open]));
+    let ray = answer.ray.filter(|_| shows(&[Status::Unbounded]));
+    let mut notes = answer.notes;
+    if answer.self_stress && status == Status::Unbounded && is_ours(tag) {
+        notes.push(SELF_STRESS.to_string());
+    }
+    if status == Status::Stands && stage.target == Target::Collapse {
+        notes.push(format!("no collapse up to factor_max = {}", stage.factor_max));
+    }
+    CaseResult {
+        status,
+        solver: tag.to_string(),
+        load_factor: match status {
+            Status::Collapse => answer.factor.or(bounds[0]),
+            Status::Open => bounds[0],
+            _ => None,
+        },
+        bounds: (bounds != [None; 2]).then_some(bounds),
+        greatest,
+        proof: ProofFields {
+            field_factor: field.is_some().then_some(answer.field_factor),
+            space: Some(Box::new(SpaceProof {
+                field: field.map(|field| field_entries(space, problem, &field)),
+                motion: motion.map(|motion| motion_entries(space, problem, &motion)),
+                ray: ray.map(|ray| field_entries(space, problem, &ray)),
+            })),
+            ..ProofFields::default()
+        },
+        certificate,
+        counters: answer.counters,
+        notes,
+        ..CaseResult::empty()
+    }
+}
+
+/// The note of blocks that interlock.
+const SELF_STRESS: &str = "self-stress: forces strictly inside all friction cones are in balance without any load, because blocks \
+     interlock. Every load is then in equilibrium with some forces, so equilibrium alone proves nothing about this scene";
+
+/// Converts forces to entries, one for each point of each contact of the problem.
+fn field_entries(space: &SpaceCase, problem: &SpaceProblem, field: &SpaceField) -> Vec<SpaceFieldEntry> {
+    let of_contact = |(contact, forces): (&SpaceContact, &Vec<[f64; 3]>)| {
+        let (joint, points) = (contact.contact, &space.assembly.contacts[contact.contact].points);
+        let entry =
+            |(point, force): (&Vec3, &[f64; 3])| SpaceFieldEntry { joint, point: (*point).into(), force: *force };
+        points.iter().zip(forces).map(entry).collect::<Vec<_>>()
+    };
+    problem.contacts.iter().zip(field).flat_map(of_contact).collect()
+}
+
+/// Converts velocities about the pole to entries at the centroids of all bodies.
+fn motion_entries(space: &SpaceCase, problem: &SpaceProblem, motion: &[SpaceVelocity]) -> Vec<SpaceMotionEntry> {
+    let entry = |(index, body): (usize, &SpaceBody)| {
+        let [x, y, z, a, b, c] = problem.free[index].map_or([0.0; 6], |free| motion[free]);
+        let arm = body.shape.volume_and_centroid().1 - problem.pole;
+        let v = Vec3::new(x, y, z) + Vec3::new(a, b, c).cross(&arm);
+        SpaceMotionEntry { body: body.name.clone(), velocity: [v.x, v.y, v.z, a, b, c] }
+    };
+    space.assembly.bodies.iter().enumerate().map(entry).collect()
+}
+
+/// Stored forces and velocities in the form of the problem.
+pub(crate) struct StoredInSpace {
+    pub field: Option<SpaceField>,
+    pub motion: Option<Vec<SpaceVelocity>>,
+    pub ray: Option<SpaceField>,
+}
+
+impl StoredInSpace {
+    /// Reads the entries of a result. An error names the first entry that is not at a point of its contact.
+    pub(crate) fn read(space: &SpaceCase, problem: &SpaceProblem, proof: &SpaceProof) -> Result<Self, String> {
+        let forces = |what: &str, entries: &Option<Vec<SpaceFieldEntry>>| {
+            entries.as_ref().map(|entries| read_field(space, problem, what, entries)).transpose()
+        };
+        let motion = proof.motion.as_ref().map(|entries| read_motion(space, problem, entries));
+        Ok(StoredInSpace { field: forces("field", &proof.field)?, motion, ray: forces("ray", &proof.ray)? })
+    }
+}
+
+/// Greatest distance of a stored point from its contact point, as a share of the scene's size.
+const SAME_POINT: f64 = 1e-9;
+
+fn read_field(
+    space: &SpaceCase,
+    problem: &SpaceProblem,
+    what: &str,
+    entries: &[SpaceFieldEntry],
+) -> Result<SpaceField, String> {
+    let mut rest = entries.iter();
+    let mut field = Vec::with_capacity(problem.contacts.len());
+    for contact in &problem.contacts {
+        let mut forces = Vec::new();
+        for point in &space.assembly.contacts[contact.contact].points {
+            let there = |entry: &&SpaceFieldEntry| {
+                let apart = (Vec3::from(entry.point) - point).norm();
+                entry.joint == contact.contact && apart <= SAME_POINT * problem.length
+            };
+            let entry = rest.next().filter(there);
+            let missing = || format!("{what}: the entries are not the points of the contacts in their order");
+            forces.push(entry.ok_or_else(missing)?.force);
+        }
+        field.push(forces);
+    }
+    match rest.next() {
+        None => Ok(field),
+        Some(_) => Err(format!("{what}: there are more entries than points of contacts")),
+    }
+}
+
+fn read_motion(space: &SpaceCase, problem: &SpaceProblem, entries: &[SpaceMotionEntry]) -> Vec<SpaceVelocity> {
+    let bodies = space.assembly.bodies.iter().zip(entries).zip(&problem.free);
+    let velocity = |((body, entry), free): ((&SpaceBody, &SpaceMotionEntry), &Option<usize>)| {
+        free.map(|_| {
+            let [x, y, z, a, b, c] = entry.velocity;
+            let arm = body.shape.volume_and_centroid().1 - problem.pole;
+            let v = Vec3::new(x, y, z) - Vec3::new(a, b, c).cross(&arm);
+            [v.x, v.y, v.z, a, b, c]
+        })
+    };
+    bodies.filter_map(velocity).collect()
+}
