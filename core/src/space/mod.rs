@@ -13,15 +13,24 @@
 mod answer;
 mod assembly;
 mod certificate;
+mod clip;
+mod contacts;
+mod hull;
 mod limit;
 mod loads;
+mod patch;
+mod plane;
 mod polyhedron;
+mod predicate;
 
 pub use self::answer::{SpaceAnswer, SpaceField, SpaceVelocity, power};
 pub use self::assembly::{Contact, SpaceAssembly, SpaceBody};
 pub use self::certificate::{SpaceClaim, certify_space};
+pub use self::contacts::{ContactBody, ContactTolerances, FoundContacts, NearMiss, find_contacts, near_misses};
+pub use self::hull::hull;
 pub use self::limit::{Cone, SpaceContact, SpaceProblem, Wrench};
 pub use self::loads::{SpaceForce, SpaceLoads, SpaceStage, add_space_force, space_loads};
+pub use self::plane::tangents;
 pub use self::polyhedron::Polyhedron;
 
 /// Point or vector \[m\].

@@ -21,4 +21,5 @@ pub mod results;
 pub mod scenes;
 pub mod side_by_side;
 pub mod solve;
+pub mod space;
 pub mod study;

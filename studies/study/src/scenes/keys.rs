@@ -24,7 +24,7 @@ impl From<PlaneState> for Plane {
 
 /// Keys that scenes share.
 #[derive(Debug, Keys)]
-pub(super) struct SceneKeys {
+pub(crate) struct SceneKeys {
     /// width out of plane
     #[key(unit = "m", range = "> 0")]
     width: f64,

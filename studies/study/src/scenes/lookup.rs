@@ -6,14 +6,14 @@ use voussoir_core::plugin::keys::like;
 use voussoir_core::plugin::{Diagnostic, Keys, Range, Shape};
 
 /// Returns the index of a material, or a mistake at `path`.
-pub(super) fn material(catalogue: &Catalogue, name: &str, path: &str) -> Result<usize, Diagnostic> {
+pub(crate) fn material(catalogue: &Catalogue, name: &str, path: &str) -> Result<usize, Diagnostic> {
     catalogue
         .material(name)
         .ok_or_else(|| unknown(path, "material", name, catalogue.materials.iter().map(|(name, _)| name.as_str())))
 }
 
 /// Returns the index of an interface law, or a mistake at `path`.
-pub(super) fn law(catalogue: &Catalogue, name: &str, path: &str) -> Result<usize, Diagnostic> {
+pub(crate) fn law(catalogue: &Catalogue, name: &str, path: &str) -> Result<usize, Diagnostic> {
     catalogue
         .law(name)
         .ok_or_else(|| unknown(path, "joint law", name, catalogue.laws.iter().map(|(name, _)| name.as_str())))
@@ -29,7 +29,7 @@ pub(crate) fn unknown<'a>(path: &str, kind: &str, name: &str, names: impl Iterat
 }
 
 /// Returns a diagnostic for a number outside a range; `None` if it is inside.
-pub(super) fn outside(range: Range, path: &str, value: f64) -> Option<Diagnostic> {
+pub(crate) fn outside(range: Range, path: &str, value: f64) -> Option<Diagnostic> {
     (!range.contains(value)).then(|| Diagnostic::new(path, format!("{value} must be {}", range.describe())))
 }
 
@@ -37,7 +37,7 @@ pub(super) fn outside(range: Range, path: &str, value: f64) -> Option<Diagnostic
 ///
 /// # Panics
 /// The table `T` has no such key, or the key is no number.
-pub(super) fn out_of_range<T: Keys>(path: &str, value: f64) -> Option<Diagnostic> {
+pub(crate) fn out_of_range<T: Keys>(path: &str, value: f64) -> Option<Diagnostic> {
     let name = path.rsplit('.').find(|word| word.parse::<usize>().is_err()).unwrap_or(path);
     match &like(T::PARAMETERS, name).shape {
         Shape::Number(_, range) | Shape::Tuple([(_, Shape::Number(_, range)), ..]) => outside(*range, path, value),
@@ -46,12 +46,12 @@ pub(super) fn out_of_range<T: Keys>(path: &str, value: f64) -> Option<Diagnostic
 }
 
 /// Returns the value, or adds its mistake to the list.
-pub(super) fn take<T>(result: Result<T, Diagnostic>, diagnostics: &mut Vec<Diagnostic>) -> Option<T> {
+pub(crate) fn take<T>(result: Result<T, Diagnostic>, diagnostics: &mut Vec<Diagnostic>) -> Option<T> {
     result.map_err(|diagnostic| diagnostics.push(diagnostic)).ok()
 }
 
 /// Returns diagnostics with paths from the scene's table in the form of a card's check.
-pub(super) fn pairs_of(diagnostics: Vec<Diagnostic>) -> Vec<(String, String)> {
+pub(crate) fn pairs_of(diagnostics: Vec<Diagnostic>) -> Vec<(String, String)> {
     let words = |diagnostic: Diagnostic| match diagnostic.help {
         Some(help) => (diagnostic.path, format!("{}; {help}", diagnostic.message)),
         None => (diagnostic.path, diagnostic.message),
@@ -60,6 +60,6 @@ pub(super) fn pairs_of(diagnostics: Vec<Diagnostic>) -> Vec<(String, String)> {
 }
 
 /// Converts paths from the scene's table into paths from the study's root.
-pub(super) fn from_root(diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
+pub(crate) fn from_root(diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
     diagnostics.into_iter().map(|wrong| wrong.below("scene")).collect()
 }

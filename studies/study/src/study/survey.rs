@@ -1,13 +1,16 @@
 //! Surveyed profiles: `profile = { shape = …, file = "survey.csv" }` becomes the points in the file, so that the resolved
-//! study does not need the file. The file can also be a drawing, `survey.dxf`; a scene of blocks can have a drawing too.
+//! study does not need the file. The file can also be a drawing, `survey.dxf`; a scene of blocks can have a drawing too. The
+//! file of a scene `assembly` becomes its blocks and interfaces in the same way.
 
 use super::drawing::{Drawing, DrawnBlock};
 use super::dxf::read_drawing;
 use crate::config::diagnostic::{LocatedDiagnostic, suggest};
-use crate::config::document::{Entry, Node, Table, Value};
+use crate::config::document::{Entry, Node, Table, Value, from_json};
 use crate::config::limits::MAX_FILE_BYTES;
 use crate::config::origin::Origin;
 use crate::regular_file::open_regular;
+use crate::space::import;
+use flate2::read::GzDecoder;
 use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
@@ -23,8 +26,13 @@ pub fn no_files(_: &str) -> Result<String, String> {
 
 /// Reads a whole file of at most [`MAX_FILE_BYTES`]. A longer one, such as a device that never ends, is an error.
 pub fn read_bounded(path: &Path) -> std::io::Result<Vec<u8>> {
+    at_most(File::open(path)?)
+}
+
+/// Reads at most [`MAX_FILE_BYTES`]; more is an error.
+fn at_most(source: impl Read) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    File::open(path)?.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes)?;
+    source.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > MAX_FILE_BYTES {
         let message = format!("it is larger than {} MiB", MAX_FILE_BYTES >> 20);
         return Err(std::io::Error::new(ErrorKind::FileTooLarge, message));
@@ -38,6 +46,7 @@ pub fn beside(study: &Path) -> impl Fn(&str) -> Result<String, String> {
     move |file| {
         let path = folder.join(file);
         let bytes = open_regular(&path, MAX_FILE_BYTES).and_then(|_| read_bounded(&path));
+        let bytes = bytes.and_then(|bytes| if is_compressed(file) { decompressed(&bytes) } else { Ok(bytes) });
         let bytes = bytes.map_err(|error| error.to_string())?;
         match String::from_utf8(bytes) {
             Ok(text) => Ok(text),
@@ -46,6 +55,15 @@ pub fn beside(study: &Path) -> impl Fn(&str) -> Result<String, String> {
             Err(error) => Err(error.to_string()),
         }
     }
+}
+
+fn is_compressed(file: &str) -> bool {
+    file.to_lowercase().ends_with(".gz")
+}
+
+/// Returns the content of a gzip file of at most [`MAX_FILE_BYTES`].
+fn decompressed(bytes: &[u8]) -> std::io::Result<Vec<u8>> {
+    at_most(GzDecoder::new(bytes))
 }
 
 fn is_drawing(file: &str) -> bool {
@@ -62,11 +80,12 @@ pub fn import(root: &mut Node, read: ReadFile, mistakes: &mut Vec<LocatedDiagnos
     Import { read, materials, mistakes }.node(root);
 }
 
-/// The purpose of a file: points of a profile, or blocks.
+/// The purpose of a file: points of a profile, plane blocks, or an assembly in space.
 #[derive(Clone, Copy)]
 enum Wanted {
     Profile,
     Blocks,
+    Assembly,
 }
 
 impl Wanted {
@@ -76,6 +95,7 @@ impl Wanted {
         match (word("shape"), word("scene")) {
             (Some(shape), _) if SHAPES.contains(&shape) => Some(Wanted::Profile),
             (_, Some("blocks")) => Some(Wanted::Blocks),
+            (_, Some("assembly")) => Some(Wanted::Assembly),
             _ => None,
         }
     }
@@ -85,6 +105,15 @@ impl Wanted {
         match self {
             Wanted::Profile => &CURVES,
             Wanted::Blocks => &["blocks"],
+            Wanted::Assembly => &import::KEYS,
+        }
+    }
+
+    /// Returns the keys that have no meaning after the file has been read.
+    fn replaced(self) -> &'static [&'static str] {
+        match self {
+            Wanted::Profile | Wanted::Blocks => &["file", "unit"],
+            Wanted::Assembly => &["file"],
         }
     }
 }
@@ -101,7 +130,8 @@ impl Import<'_> {
             Value::Array(nodes) => nodes.iter_mut().for_each(|node| self.node(node)),
             Value::Table(table) => match self.imported(table) {
                 Some(Ok(entries)) => {
-                    table.entries.retain(|entry| !["file", "unit"].contains(&entry.key.as_str()));
+                    let replaced = Wanted::of(table).map_or(&[][..], Wanted::replaced);
+                    table.entries.retain(|entry| !replaced.contains(&entry.key.as_str()));
                     table.entries.extend(entries);
                 }
                 Some(Err(found)) => self.mistakes.extend(found),
@@ -118,7 +148,7 @@ impl Import<'_> {
         let (file, origin) = (node.text()?, node.origin.clone());
         let key = match wanted {
             Wanted::Profile => "profile.file",
-            Wanted::Blocks => "scene.file",
+            Wanted::Blocks | Wanted::Assembly => "scene.file",
         };
         let wrong = |message: String| LocatedDiagnostic::new(&origin, key, message);
         let besides = wanted.keys().iter().filter(|key| table.get(key).is_some());
@@ -131,13 +161,17 @@ impl Import<'_> {
             Ok(text) => text,
             Err(why) => return Some(Err(vec![wrong(format!("\"{file}\" cannot be read: {why}"))])),
         };
+        if let Wanted::Assembly = wanted {
+            let found = assembly_entries(file, &text, &origin);
+            return Some(found.map_err(|all| all.into_iter().map(|why| wrong(format!("\"{file}\": {why}"))).collect()));
+        }
         if is_drawing(file) {
             let found = self.of_drawing(wanted, &text, table.get("unit"), &origin);
             return Some(found.map_err(|all| all.into_iter().map(|why| wrong(format!("\"{file}\": {why}"))).collect()));
         }
         match wanted {
             Wanted::Profile => Some(Survey::read(&text, file).map(|survey| survey.entries(&origin))),
-            Wanted::Blocks => Some(Err(vec![wrong(format!("\"{file}\" is no drawing (.dxf)"))])),
+            Wanted::Blocks | Wanted::Assembly => Some(Err(vec![wrong(format!("\"{file}\" is no drawing (.dxf)"))])),
         }
     }
 
@@ -175,12 +209,23 @@ fn drawn(
     };
     match wanted {
         Wanted::Profile => Ok(Survey { curves: drawing.profile(unit)? }.entries(origin)),
-        Wanted::Blocks => {
+        Wanted::Blocks | Wanted::Assembly => {
             let blocks = drawing.blocks(unit, materials)?;
             let list = Value::Array(blocks.into_iter().map(|block| block_node(block, origin)).collect());
             Ok(vec![entry("blocks", list, origin)])
         }
     }
+}
+
+/// Returns the entries of a file of an assembly in space.
+fn assembly_entries(file: &str, text: &str, origin: &Origin) -> Result<Vec<Entry>, Vec<String>> {
+    let keys = import::keys_of_file(file, text).map_err(|why| vec![why])?;
+    let one = |(key, value): (String, serde_json::Value)| {
+        let mut node = from_json(&value).map_err(|all| all.iter().map(ToString::to_string).collect::<Vec<_>>())?;
+        node.set_origin(origin);
+        Ok(Entry { key, origin: origin.clone(), node })
+    };
+    keys.into_iter().map(one).collect()
 }
 
 fn entry(key: &str, value: Value, origin: &Origin) -> Entry {
