@@ -1,5 +1,6 @@
 //! Solvers of limit analysis (`limit`: chains, conic programs, sequences of them, non-associated flow), of paths
-//! (`path`: from event to event, and steps by Newton's method) and of one point of a law (`point`).
+//! (`path`: from event to event, and steps by Newton's method), of limit analysis in space (`space`) and of one point of a law
+//! (`point`).
 //!
 //! They use four folders that do not depend on assemblies: `optimise` (dense simplex, complementarity problems, cutting planes, line
 //! search), `linear` (sparse rows, factorisations that follow changes of few rows), `contact` (modes, yield polygon and
@@ -16,6 +17,7 @@ pub mod path;
 pub mod point;
 mod rate;
 mod settings;
+pub mod space;
 
 /// Tags of the solvers and continuation strategies of this crate. Two plug-ins with one tag are refused at start-up, so a
 /// tag in this list cannot belong to anyone else.
@@ -26,6 +28,7 @@ pub const TAGS: &[&str] = &[
     "dissipation",
     "event_path",
     "limit_chain",
+    "limit_cones",
     "limit_conic",
     "limit_least",
     "limit_sequential",

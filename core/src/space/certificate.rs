@@ -1,34 +1,531 @@
-//! Certificate.
-use super::*;
-use crate::certificate::{Certificate, Verdict};
+//! Certificates of limit analysis in space: the proof of an answer, recomputed from the problem alone.
+//!
+//! This code shares nothing with solvers. Equilibrium is summed body by body from the stored forces. Forces are compared
+//! with the cone |(s, t)| ≤ μ n point by point. The rates of a motion are compared with the dual cone v_n ≥ μ |v_t| of
+//! associated flow; inside it forces do no negative work, and nothing is dissipated. For a field at the factor λ and a
+//! motion with varying·q = 1, virtual power gives
+//!
+//! ```text
+//! λ ≤ −fixed·q,   fixed·q + λ varying·q = −Σ f·v ≤ 0
+//! ```
+//!
+//! so that a field proves a lower bound and a motion an upper bound of the greatest factor. Source: Drucker, Prager and
+//! Greenberg (1952), *Q. Appl. Math.* 9, 381–389.
+
+use super::{SpaceContact, SpaceField, SpaceProblem, SpaceVelocity, Vec3, Wrench, power};
+use crate::certificate::{Certificate, ROUNDING};
 use crate::limit::{Greatest, Status};
-/// Claim.
+use std::collections::BTreeMap;
+
+/// Greatest relative distance between the factor of a field and the target of its stage.
+const REACHED: f64 = 1e-12;
+
+/// Least excess of power, relative to load times greatest jump, that is significant.
+const EXCESS: f64 = 1e-13;
+
+/// Greatest error of the power of the varying loads on a motion, which must be 1.
+const UNIT_POWER: f64 = 1e-9;
+
+/// Greatest jump, relative to the greatest speed, that counts as none: a body without contact moves.
+const NO_JUMP: f64 = 1e-9;
+
+/// Factor, relative to the ratio of fixed and varying loads, below which the gap is compared with the loads.
+const LEAST_FACTOR: f64 = 1e-3;
+
+/// The statement of an answer, with its evidence.
 #[derive(Debug, Clone, Copy)]
 pub struct SpaceClaim<'a> {
-    /// hint
+    /// The status in the solver's answer: the proof that is tried first.
     pub hint: Status,
-    /// target
+    /// The factor to which the stage goes; infinite for a search for collapse without an end.
     pub target: f64,
-    /// start
-    pub start: f64,
-    /// factor
+    /// The collapse factor.
     pub factor: Option<f64>,
-    /// field factor
+    /// The factor at which the field is in equilibrium.
     pub field_factor: f64,
-    /// field
+    /// The factor at which the stage starts.
+    pub start: f64,
+    /// Forces at the points of each contact of the problem \[N\].
     pub field: Option<&'a SpaceField>,
-    /// motion
+    /// Velocity of each free body about the problem's pole.
     pub motion: Option<&'a [SpaceVelocity]>,
-    /// ray
+    /// Forces that balance the varying loads alone \[N\].
     pub ray: Option<&'a SpaceField>,
 }
-/// Stub.
-pub fn certify_space(_: &SpaceProblem, _: &SpaceClaim, _: f64) -> Verdict {
-    Verdict {
-        certificate: Certificate { passed: false, residuals: Default::default(), failures: vec![] },
-        status: Status::Stalled,
-        bounds: [None; 2],
-        greatest: Greatest::Open,
-        start_is_carried: false,
+
+/// The result of checking a claim.
+#[derive(Debug, Clone)]
+pub struct SpaceVerdict {
+    /// Residuals; `passed` if the status is neither open nor stalled.
+    pub certificate: Certificate,
+    /// The status that is proved.
+    pub status: Status,
+    /// Proved ends of the greatest factor, from the field and from the motion. Both `None` if there is no such number.
+    pub bounds: [Option<f64>; 2],
+    /// The proof of the greatest factor.
+    pub greatest: Greatest,
+}
+
+/// Checks a claim about a problem and returns the status that its evidence proves. The hint is tried first; if it fails,
+/// every other statement that the evidence could prove is tried. `gap` is the greatest relative distance of the bounds
+/// of a collapse.
+pub fn certify_space(problem: &SpaceProblem, claim: &SpaceClaim, gap: f64) -> SpaceVerdict {
+    if let Some(why) = misfit(problem, claim) {
+        return SpaceVerdict {
+            certificate: Certificate { passed: false, residuals: BTreeMap::new(), failures: vec![why] },
+            status: Status::Stalled,
+            bounds: [None; 2],
+            greatest: Greatest::Open,
+        };
+    }
+    Check::new(problem).decide(claim, gap)
+}
+
+/// Returns the reason why the evidence does not match the problem.
+fn misfit(problem: &SpaceProblem, claim: &SpaceClaim) -> Option<String> {
+    let SpaceProblem { bodies, contacts, fixed, varying, .. } = problem;
+    let known = |body: Option<usize>| body.is_none_or(|body| body < *bodies);
+    if fixed.len() != *bodies
+        || varying.len() != *bodies
+        || !contacts.iter().all(|contact| known(contact.minus) && known(contact.plus))
+    {
+        return Some("the problem does not have one wrench for each free body".into());
+    }
+    let fits = |field: &SpaceField| {
+        let same = |(contact, forces): (&SpaceContact, &Vec<[f64; 3]>)| contact.points.len() == forces.len();
+        field.len() == contacts.len() && contacts.iter().zip(field).all(same)
+    };
+    let fields = || [claim.field, claim.ray].into_iter().flatten();
+    if !fields().all(fits) {
+        return Some("the field does not have one force for each point of each contact".into());
+    }
+    if claim.motion.is_some_and(|motion| motion.len() != *bodies) {
+        return Some("the motion does not have one velocity for each free body".into());
+    }
+    let velocities = claim.motion.unwrap_or_default().iter().flatten();
+    if !fields().flatten().flatten().flatten().chain(velocities).all(|x| x.is_finite()) {
+        return Some("a force or velocity is not finite".into());
+    }
+    None
+}
+
+/// Returns the size of wrenches \[N\]: forces, and moments divided by a length.
+fn size(wrenches: &[Wrench], length: f64) -> f64 {
+    let of = |[x, y, z, mx, my, mz]: &Wrench| Vec3::new(*x, *y, *z).norm() + Vec3::new(*mx, *my, *mz).norm() / length;
+    wrenches.iter().map(of).sum()
+}
+
+struct Check<'a> {
+    problem: &'a SpaceProblem,
+    /// Length by which moments are divided \[m\].
+    length: f64,
+    /// Sizes of the fixed and of the varying loads \[N\].
+    sizes: [f64; 2],
+    certificate: Certificate,
+}
+
+impl<'a> Check<'a> {
+    fn new(problem: &'a SpaceProblem) -> Self {
+        let length = if problem.length > 0.0 { problem.length } else { 1.0 };
+        let sizes = [size(&problem.fixed, length), size(&problem.varying, length)];
+        Check { problem, length, sizes, certificate: blank() }
+    }
+
+    /// Tries the hint, then every other statement, and returns the first that is proved.
+    fn decide(&mut self, claim: &SpaceClaim, gap: f64) -> SpaceVerdict {
+        let all = [Status::Stands, Status::Collapse, Status::Unbounded, Status::NoEquilibrium];
+        let others = all.into_iter().filter(|status| *status != claim.hint);
+        let mut first = None;
+        for status in std::iter::once(claim.hint).filter(|hint| all.contains(hint)).chain(others) {
+            self.certificate = blank();
+            let bounds = self.proves(status, claim, gap);
+            let certificate = std::mem::replace(&mut self.certificate, blank());
+            match bounds {
+                Some(bounds) if certificate.passed => {
+                    let greatest = if status == Status::Stands { Greatest::Open } else { Greatest::ProvedOptimal };
+                    return SpaceVerdict { certificate, status, bounds, greatest };
+                }
+                _ if status == claim.hint => first = Some(certificate),
+                _ => {}
+            }
+        }
+        self.open(claim, first.unwrap_or_else(blank))
+    }
+
+    /// Returns the verdict with the ends that field and motion prove by themselves.
+    fn open(&mut self, claim: &SpaceClaim, mut certificate: Certificate) -> SpaceVerdict {
+        self.certificate = blank();
+        let lower = self.field(claim).filter(|lower| *lower > claim.start);
+        self.certificate = blank();
+        let upper = self.upper_bound(claim);
+        let consistent = lower.zip(upper).is_none_or(|(lower, upper)| lower <= upper);
+        let bounds = if consistent { [lower, upper] } else { [None; 2] };
+        let status = if bounds == [None; 2] { Status::Stalled } else { Status::Open };
+        certificate.passed = false;
+        if certificate.failures.is_empty() {
+            certificate.failures.push("not proven".into());
+        }
+        SpaceVerdict { certificate, status, bounds, greatest: Greatest::Open }
+    }
+
+    /// Checks the evidence for one status and returns the bounds. `None` if a part of the evidence is missing or fails.
+    fn proves(&mut self, status: Status, claim: &SpaceClaim, gap: f64) -> Option<[Option<f64>; 2]> {
+        match status {
+            Status::Stands => self.stands(claim).map(|()| [None; 2]),
+            Status::Collapse => self.collapse(claim, gap).map(|bounds| bounds.map(Some)),
+            Status::Unbounded => self.field(claim).and(self.ray(claim)).map(|()| [None; 2]),
+            Status::NoEquilibrium => self.refutation(claim).map(|()| [None; 2]),
+            Status::LimitPoint | Status::Open | Status::Stalled => None,
+        }
+    }
+
+    fn stands(&mut self, claim: &SpaceClaim) -> Option<()> {
+        let (at, target) = (claim.field_factor, claim.target);
+        let near = target.is_finite() && (self.sizes[1] == 0.0 || (at - target).abs() <= REACHED * target.abs());
+        if !near {
+            self.fail(format!("the field is at the factor {at}, not at the target {target} of the stage"));
+            return None;
+        }
+        self.field(claim).map(|_| ())
+    }
+
+    fn collapse(&mut self, claim: &SpaceClaim, gap: f64) -> Option<[f64; 2]> {
+        let (Some(lower), Some(upper)) = (self.field(claim), self.upper_bound(claim)) else {
+            self.fail("a collapse needs a factor, an admissible field and a mechanism");
+            return None;
+        };
+        let factor = claim.factor.unwrap_or(lower);
+        let scale = lower.abs().max(upper.abs()).max(self.factor_scale());
+        self.residual("gap", (upper - lower).abs().max((factor - lower).abs()) / scale, gap);
+        if lower > claim.target && claim.target >= claim.start {
+            self.fail(format!("the collapse lies beyond the target {} of the stage", claim.target));
+        }
+        Some([lower.min(upper), upper.max(lower)])
+    }
+
+    /// Checks the field and returns its factor.
+    fn field(&mut self, claim: &SpaceClaim) -> Option<f64> {
+        let Some(field) = claim.field else {
+            self.fail("no field");
+            return None;
+        };
+        let scale = self.load_scale(claim.field_factor, field);
+        let imbalance = self.imbalance(field, [1.0, claim.field_factor]);
+        let balanced = self.residual("equilibrium", imbalance / scale, ROUNDING);
+        let admissible = self.residual("strength", self.violation(field) / scale, ROUNDING);
+        (balanced && admissible && claim.field_factor.is_finite()).then_some(claim.field_factor)
+    }
+
+    /// Checks that forces balance the varying loads alone.
+    fn ray(&mut self, claim: &SpaceClaim) -> Option<()> {
+        let Some(ray) = claim.ray else {
+            self.fail("no ray proves that every factor is carried");
+            return None;
+        };
+        // A ray cannot be too small: the varying loads are its scale.
+        let scale = if self.sizes[1] > 0.0 { self.sizes[1] } else { 1.0 };
+        let balanced = self.residual("ray_equilibrium", self.imbalance(ray, [0.0, 1.0]) / scale, ROUNDING);
+        let admissible = self.residual("ray_strength", self.violation(ray) / scale, ROUNDING);
+        (balanced && admissible).then_some(())
+    }
+
+    /// Checks that the loads at the start do more work on the motion than nothing, although forces do none.
+    fn refutation(&mut self, claim: &SpaceClaim) -> Option<()> {
+        let (largest, flow) = self.flow(claim.motion)?;
+        let motion = claim.motion?;
+        let (fixed, varying) = (power(&self.problem.fixed, motion), power(&self.problem.varying, motion));
+        let excess = fixed + claim.start * varying;
+        let scale = (self.sizes[0] + claim.start.abs() * self.sizes[1]) * largest;
+        // Rates outside the dual cones, though within rounding, could do this work with forces as great as the loads.
+        let significant = excess > EXCESS.max(flow) * scale;
+        if !significant {
+            self.fail(format!("the loads do no positive work on the motion: excess {excess:.3e}"));
+        }
+        self.certificate.residuals.insert("excess_power".into(), excess / scale);
+        significant.then_some(())
+    }
+
+    /// Returns the factor that the motion proves to be the greatest possible one.
+    fn upper_bound(&mut self, claim: &SpaceClaim) -> Option<f64> {
+        self.flow(claim.motion)?;
+        let motion = claim.motion?;
+        let (fixed, varying) = (power(&self.problem.fixed, motion), power(&self.problem.varying, motion));
+        self.residual("motion_scale", (varying - 1.0).abs(), UNIT_POWER).then_some(-fixed / varying)
+    }
+
+    /// Checks the rates of a motion. Returns the greatest jump, and the greatest distance from the dual cones relative
+    /// to it.
+    fn flow(&mut self, motion: Option<&[SpaceVelocity]>) -> Option<(f64, f64)> {
+        let Some(motion) = motion else {
+            self.fail("no motion");
+            return None;
+        };
+        let (mut largest, mut worst) = (0.0f64, 0.0f64);
+        for contact in &self.problem.contacts {
+            for point in &contact.points {
+                let [n, s, t] = jump(contact, point, motion);
+                let friction = contact.cone.friction;
+                largest = largest.max(n.hypot(s).hypot(t));
+                worst = worst.max((friction * s.hypot(t) - n) / 1.0f64.hypot(friction));
+            }
+        }
+        let speed = motion
+            .iter()
+            .map(|v| Vec3::new(v[0], v[1], v[2]).norm() + self.length * Vec3::new(v[3], v[4], v[5]).norm());
+        let speed = speed.fold(0.0, f64::max);
+        let largest = if largest > NO_JUMP * speed { largest } else { speed };
+        let flow = if largest > 0.0 { worst / largest } else { f64::NAN };
+        self.residual("flow", flow, ROUNDING).then_some((largest, flow))
+    }
+
+    /// Returns the greatest unbalanced force or moment per length on any body \[N\] from contact forces and
+    /// `fixed × shares[0] + varying × shares[1]`. Moments are about the mean of the points of the body's contacts.
+    fn imbalance(&self, field: &SpaceField, shares: [f64; 2]) -> f64 {
+        let poles = self.poles();
+        let load = |body: usize| {
+            let wrench: [f64; 6] = std::array::from_fn(|i| {
+                shares[0] * self.problem.fixed[body][i] + shares[1] * self.problem.varying[body][i]
+            });
+            let force = Vec3::new(wrench[0], wrench[1], wrench[2]);
+            (force, Vec3::new(wrench[3], wrench[4], wrench[5]) - poles[body].cross(&force))
+        };
+        let mut sums: Vec<(Vec3, Vec3)> = (0..self.problem.bodies).map(load).collect();
+        for (contact, forces) in self.problem.contacts.iter().zip(field) {
+            let [n, s, t] = &contact.frame;
+            for (point, force) in contact.points.iter().zip(forces) {
+                let force = n * force[0] + s * force[1] + t * force[2];
+                for (body, sign) in [(contact.plus, 1.0), (contact.minus, -1.0)] {
+                    let Some(body) = body else { continue };
+                    sums[body].0 += force * sign;
+                    sums[body].1 += (point - poles[body]).cross(&force) * sign;
+                }
+            }
+        }
+        let greatest = |(force, moment): &(Vec3, Vec3)| force.norm().max(moment.norm() / self.length);
+        // NaN must not be lost.
+        sums.iter().map(greatest).fold(0.0, |most, x| if x > most || x.is_nan() { x } else { most })
+    }
+
+    /// Returns the mean of the points of the contacts of each body.
+    fn poles(&self) -> Vec<Vec3> {
+        let mut sums = vec![(Vec3::zeros(), 0.0); self.problem.bodies];
+        for contact in &self.problem.contacts {
+            for body in [contact.plus, contact.minus].into_iter().flatten() {
+                sums[body].0 += contact.points.iter().sum::<Vec3>();
+                sums[body].1 += contact.points.len() as f64;
+            }
+        }
+        sums.into_iter().map(|(sum, count)| if count > 0.0 { sum / count } else { sum }).collect()
+    }
+
+    /// Returns the greatest force outside the cones \[N\].
+    fn violation(&self, field: &SpaceField) -> f64 {
+        let of = |(contact, forces): (&SpaceContact, &Vec<[f64; 3]>)| {
+            let beyond = |[n, s, t]: &[f64; 3]| (s.hypot(*t) - contact.cone.friction * n).max(-n);
+            forces.iter().map(beyond).fold(0.0, f64::max)
+        };
+        self.problem.contacts.iter().zip(field).map(of).fold(0.0, f64::max)
+    }
+
+    /// Returns the scale of the residuals of a field \[N\]: the loads at the factor, or the greatest force without loads.
+    fn load_scale(&self, factor: f64, field: &SpaceField) -> f64 {
+        let loads = self.sizes[0] + factor.abs() * self.sizes[1];
+        if loads > 0.0 {
+            return loads;
+        }
+        let greatest = field.iter().flatten().flatten().fold(0.0f64, |most, f| most.max(f.abs()));
+        if greatest > 0.0 { greatest } else { 1.0 }
+    }
+
+    /// Returns the least size of factors with which a gap is compared.
+    fn factor_scale(&self) -> f64 {
+        let [fixed, varying] = self.sizes;
+        if fixed == 0.0 {
+            1.0
+        } else if varying > 0.0 {
+            LEAST_FACTOR * fixed / varying
+        } else {
+            0.0
+        }
+    }
+
+    fn fail(&mut self, why: impl Into<String>) {
+        self.certificate.passed = false;
+        self.certificate.failures.push(why.into());
+    }
+
+    /// Records a residual; NaN fails.
+    fn residual(&mut self, name: &str, value: f64, tolerance: f64) -> bool {
+        self.certificate.residuals.insert(name.into(), value);
+        let fine = value <= tolerance;
+        if !fine {
+            self.fail(format!("{name}: {value:.3e} exceeds {tolerance:.1e}"));
+        }
+        fine
+    }
+}
+
+/// Returns a certificate without residuals and failures.
+fn blank() -> Certificate {
+    Certificate { passed: true, residuals: BTreeMap::new(), failures: Vec::new() }
+}
+
+/// Returns the rate of the gap (n, s, t) at a point of a contact.
+fn jump(contact: &SpaceContact, point: &Vec3, motion: &[SpaceVelocity]) -> [f64; 3] {
+    let at = |body: Option<usize>| {
+        let Some([x, y, z, a, b, c]) = body.map(|body| motion[body]) else { return Vec3::zeros() };
+        Vec3::new(x, y, z) + Vec3::new(a, b, c).cross(point)
+    };
+    let rate = at(contact.plus) - at(contact.minus);
+    contact.frame.map(|axis| axis.dot(&rate))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Cone;
+    use super::*;
+
+    /// A cube of side 1 and weight 1 on a plane with μ = 0.4, pushed along x at its centroid: it slides at λ = 0.4.
+    fn cube() -> SpaceProblem {
+        let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        let contact = SpaceContact {
+            contact: 0,
+            minus: None,
+            plus: Some(0),
+            points: corners.iter().map(|[x, y]| Vec3::new(*x, *y, 0.0)).collect(),
+            frame: [Vec3::z(), Vec3::x(), Vec3::y()],
+            cone: Cone { friction: 0.4 },
+        };
+        let centroid = Vec3::new(0.5, 0.5, 0.5);
+        SpaceProblem {
+            free: vec![None, Some(0)],
+            bodies: 1,
+            contacts: vec![contact],
+            fixed: vec![SpaceContact::wrench(&centroid, &-Vec3::z())],
+            varying: vec![SpaceContact::wrench(&centroid, &Vec3::x())],
+            pole: Vec3::zeros(),
+            length: 2.0,
+        }
+    }
+
+    /// The forces at collapse, by hand: the moment about y of the push is 0.2.
+    fn forces() -> SpaceField {
+        let [near, far] = [0.15, 0.35];
+        vec![[near, far, far, near].map(|n| [n, -0.4 * n, 0.0]).to_vec()]
+    }
+
+    /// Slip along x with the opening of normality.
+    const SLIP: [SpaceVelocity; 1] = [[1.0, 0.0, 0.4, 0.0, 0.0, 0.0]];
+
+    fn claim<'a>(field: &'a SpaceField, motion: &'a [SpaceVelocity]) -> SpaceClaim<'a> {
+        SpaceClaim {
+            hint: Status::Collapse,
+            target: f64::INFINITY,
+            factor: Some(0.4),
+            field_factor: 0.4,
+            start: 0.0,
+            field: Some(field),
+            motion: Some(motion),
+            ray: None,
+        }
+    }
+
+    /// The claim of the sliding cube passes with both bounds at μ.
+    #[test]
+    fn a_sliding_cube_is_certified() {
+        let (problem, forces) = (cube(), forces());
+        let verdict = certify_space(&problem, &claim(&forces, &SLIP), 1e-8);
+        assert_eq!(verdict.status, Status::Collapse, "{:?}", verdict.certificate);
+        assert!(verdict.bounds.iter().all(|bound| (bound.unwrap() - 0.4).abs() < 1e-15));
+        assert_eq!(verdict.greatest, Greatest::ProvedOptimal);
+    }
+
+    /// A changed force, velocity or factor leaves at most one end of the factor.
+    #[test]
+    fn forged_evidence_of_a_collapse_is_refused() {
+        let problem = cube();
+        let mut heavy = forces();
+        heavy[0][0][0] += 1e-8;
+        let mut rough = forces();
+        (rough[0][0][1], rough[0][1][1]) = (rough[0][0][1] - 1e-8, rough[0][1][1] + 1e-8);
+        for field in [&heavy, &rough] {
+            let verdict = certify_space(&problem, &claim(field, &SLIP), 1e-8);
+            assert_eq!(verdict.status, Status::Open);
+            assert!(verdict.bounds[0].is_none() && verdict.bounds[1].is_some());
+        }
+        let forces = forces();
+        for k in [0, 2, 4] {
+            let mut motion = SLIP;
+            motion[0][k] += if k == 2 { -1e-7 } else { 1e-7 };
+            let verdict = certify_space(&problem, &claim(&forces, &motion), 1e-8);
+            assert_eq!(verdict.status, Status::Open, "{k}");
+            assert_eq!(verdict.bounds, [Some(0.4), None]);
+        }
+        let high = SpaceClaim { factor: Some(0.4001), ..claim(&forces, &SLIP) };
+        assert_eq!(certify_space(&problem, &high, 1e-8).status, Status::Open);
+        let shifted = SpaceClaim { field_factor: 0.39, ..claim(&forces, &SLIP) };
+        assert_eq!(certify_space(&problem, &shifted, 1e-8).bounds[0], None);
+    }
+
+    /// A motion that opens more than normality proves a greater bound, so that the bounds do not meet.
+    #[test]
+    fn a_worse_mechanism_leaves_the_factor_open() {
+        let (problem, forces) = (cube(), forces());
+        let verdict = certify_space(&problem, &claim(&forces, &[[1.0, 0.0, 0.5, 0.0, 0.0, 0.0]]), 1e-8);
+        assert_eq!((verdict.status, verdict.bounds), (Status::Open, [Some(0.4), Some(0.5)]));
+        assert!(!verdict.certificate.passed);
+    }
+
+    /// A field at the target proves that the cube stands, whatever the hint; a field elsewhere does not.
+    #[test]
+    fn a_field_at_the_target_stands() {
+        let (problem, forces) = (cube(), forces());
+        let field = SpaceClaim { target: 0.4, motion: None, ..claim(&forces, &[]) };
+        assert_eq!(certify_space(&problem, &field, 1e-8).status, Status::Stands);
+        let beyond = SpaceClaim { target: 0.41, ..field };
+        assert_eq!(certify_space(&problem, &beyond, 1e-8).status, Status::Open);
+    }
+
+    /// A forged status is replaced by the one that the evidence proves: above μ the slip refutes equilibrium, below it not.
+    #[test]
+    fn a_refutation_needs_positive_work() {
+        let problem = cube();
+        let at = |start: f64, hint| {
+            let none = SpaceClaim { field: None, start, hint, ..claim(const { &Vec::new() }, &SLIP) };
+            certify_space(&problem, &none, 1e-8).status
+        };
+        assert_eq!(at(0.5, Status::Stands), Status::NoEquilibrium);
+        assert_eq!(at(0.3, Status::NoEquilibrium), Status::Open);
+    }
+
+    /// A load into the ground is carried at every factor: forces that balance it alone prove it; forged ones do not.
+    #[test]
+    fn a_ray_proves_that_every_factor_is_carried() {
+        let mut problem = cube();
+        problem.varying = problem.fixed.clone();
+        let field = vec![vec![[0.25, 0.0, 0.0]; 4]];
+        let ray = SpaceClaim {
+            field_factor: 0.0,
+            ray: Some(&field),
+            motion: None,
+            hint: Status::Unbounded,
+            ..claim(&field, &[])
+        };
+        assert_eq!(certify_space(&problem, &ray, 1e-8).status, Status::Unbounded);
+        let forged = vec![vec![[0.25, 0.0, 0.0], [0.25, 0.0, 0.0], [0.5, 0.0, 0.0], [0.0; 3]]];
+        let forged = SpaceClaim { ray: Some(&forged), ..ray };
+        assert_ne!(certify_space(&problem, &forged, 1e-8).status, Status::Unbounded);
+    }
+
+    /// Evidence of the wrong size and numbers that are not finite are refused without a panic.
+    #[test]
+    fn evidence_that_does_not_fit_is_refused() {
+        let (problem, forces) = (cube(), forces());
+        let short: SpaceField = vec![forces[0][..3].to_vec()];
+        let wrong = [[f64::NAN, 0.0, 0.4, 0.0, 0.0, 0.0]];
+        for claim in [claim(&short, &SLIP), claim(&forces, &[]), claim(&forces, &wrong)] {
+            let verdict = certify_space(&problem, &claim, 1e-8);
+            assert_eq!((verdict.status, verdict.bounds), (Status::Stalled, [None; 2]));
+        }
     }
 }

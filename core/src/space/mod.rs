@@ -25,7 +25,7 @@ mod predicate;
 
 pub use self::answer::{SpaceAnswer, SpaceField, SpaceVelocity, power};
 pub use self::assembly::{Contact, SpaceAssembly, SpaceBody};
-pub use self::certificate::{SpaceClaim, certify_space};
+pub use self::certificate::{SpaceClaim, SpaceVerdict, certify_space};
 pub use self::contacts::{ContactBody, ContactTolerances, FoundContacts, NearMiss, find_contacts, near_misses};
 pub use self::hull::hull;
 pub use self::limit::{Cone, SpaceContact, SpaceProblem, Wrench};

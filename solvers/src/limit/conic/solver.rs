@@ -3,12 +3,14 @@
 use super::engine::ConicEngine;
 use super::envelope::EnvelopeEngine;
 use crate::limit::settlement::settle;
+use crate::space::solve_by_clarabel;
 use voussoir_core::law::FlowRule;
 use voussoir_core::limit::{
     Engine, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, SettlementAnswer, answer_by,
 };
 use voussoir_core::model::Wrenches;
 use voussoir_core::plugin::{Capability, Card, Keys, PluginKind};
+use voussoir_core::space::{SpaceAnswer, SpaceProblem};
 
 /// Limit analysis of any scene.
 #[derive(Debug, Clone, Default, Keys)]
@@ -24,6 +26,10 @@ impl LimitSolver for LimitConic {
         settle(problem, loads, openings, FlowRule::Associated)
     }
 
+    fn solve_space(&self, problem: &SpaceProblem, question: LimitQuestion) -> Option<SpaceAnswer> {
+        Some(solve_by_clarabel(problem, question))
+    }
+
     fn refuses(&self, _: &LimitProblem) -> Option<String> {
         None
     }
@@ -35,6 +41,7 @@ voussoir_core::inventory::submit! {
         tag: "limit_conic",
         summary: "limit analysis of any scene by sparse conic programming, polished to rounding",
         requires: &[&[Capability::FACETS], &[Capability::RIGID_LIMIT]],
+        provides: &[Capability::SPACE],
         cost: Some(30),
         sources: &["Goulart & Chen 2024, Clarabel", "Stellato et al. 2020, OSQP (polishing)"],
         file: file!(),

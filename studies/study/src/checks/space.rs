@@ -6,9 +6,10 @@ use crate::results::CaseResult;
 use crate::results::stage_start::search_start;
 use crate::solve::space::{StoredInSpace, space_problem};
 use crate::study::{Case, SpaceCase};
+use voussoir_core::certificate::Verdict;
 use voussoir_core::limit::Status;
 use voussoir_core::model::Target;
-use voussoir_core::space::{SpaceClaim, certify_space};
+use voussoir_core::space::{SpaceClaim, SpaceVerdict, certify_space};
 
 /// Checks the result of a case in space that ended in stage `last`.
 pub(crate) fn verify(
@@ -37,7 +38,9 @@ pub(crate) fn verify(
         motion: stored.motion.as_deref(),
         ray: stored.ray.as_ref(),
     };
-    let verdict = certify_space(&problem, &claim, case.solver.settings.tolerance);
+    let SpaceVerdict { certificate, status, bounds, greatest } =
+        certify_space(&problem, &claim, case.solver.settings.tolerance);
+    let verdict = Verdict { certificate, status, bounds, greatest, start_is_carried: false };
     compare_verdict(result, &verdict, findings);
     let idle = problem.varying.iter().flatten().all(|component| *component == 0.0);
     verify_reached(result, stage, (idle, field_factor), last, findings);

@@ -6,11 +6,10 @@ use super::limit::{ask, record_stages};
 use super::ours::is_ours;
 use crate::results::{CaseResult, ProofFields, SpaceFieldEntry, SpaceMotionEntry, SpaceProof};
 use crate::study::SpaceCase;
-use voussoir_core::certificate::Verdict;
 use voussoir_core::limit::{Counters, LimitQuestion, Status};
 use voussoir_core::model::{Stage, Target};
 use voussoir_core::space::{
-    Cone, SpaceAnswer, SpaceBody, SpaceClaim, SpaceContact, SpaceField, SpaceLoads, SpaceProblem, SpaceVelocity, Vec3,
+    Cone, SpaceAnswer, SpaceBody, SpaceClaim, SpaceContact, SpaceField, SpaceLoads, SpaceProblem, SpaceVelocity, SpaceVerdict, Vec3,
     certify_space,
 };
 
@@ -113,7 +112,7 @@ fn certified(
         motion: answer.motion.as_deref(),
         ray: answer.ray.as_ref(),
     };
-    let Verdict { certificate, status, bounds, greatest, .. } =
+    let SpaceVerdict { certificate, status, bounds, greatest } =
         certify_space(problem, &claim, input.settings.tolerance);
     let shows = |statuses: &[Status]| statuses.contains(&status);
     let field = answer.field.filter(|_| shows(&[Status::Stands, Status::Collapse, Status::Unbounded, Status::Open]));

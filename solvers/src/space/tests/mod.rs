@@ -1,0 +1,7 @@
+//! Tests of limit analysis in space: closed forms, invariance, the second route.
+
+mod closed_forms;
+mod invariance;
+mod random;
+mod scenes;
+mod statuses;

@@ -1,0 +1,109 @@
+//! Every status with its proof, and questions at the border of what has an answer.
+
+use super::scenes::{COLLAPSE, Scene, certified, collapse, rectangle};
+use crate::space::{solve, solve_by_clarabel};
+use voussoir_core::limit::{LimitQuestion, Status};
+use voussoir_core::space::{SpaceProblem, Vec3};
+
+/// A unit cube on the ground with μ = 0.4.
+fn cube() -> Scene {
+    let mut scene = Scene::default();
+    let cube = scene.add_box([0.0, 1.0], [0.0, 1.0], [0.0, 1.0]);
+    scene.contacts.push((None, Some(cube), rectangle([0.0, 1.0], [0.0, 1.0], 0.0), Vec3::z(), 0.4));
+    scene
+}
+
+fn vertical(x: f64) -> Vec<Vec3> {
+    [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[y, z]| Vec3::new(x, y, z)).to_vec()
+}
+
+/// Returns the certified status of an answer, which must be the hint.
+fn status(problem: &SpaceProblem, question: LimitQuestion) -> Status {
+    let answer = solve(problem, question);
+    let verdict = certified(problem, &answer, question);
+    assert_eq!(verdict.status, answer.status, "{:?} {:?}", answer.notes, verdict.certificate);
+    verdict.status
+}
+
+/// Below the collapse factor the cube stands, above it a motion refutes equilibrium; a search that ends below the
+/// collapse factor stands at its end.
+#[test]
+fn a_cube_stands_below_its_collapse_factor_only() {
+    let problem = cube().problem(&Vec3::x());
+    assert_eq!(status(&problem, LimitQuestion::Admissible(0.39)), Status::Stands);
+    assert_eq!(status(&problem, LimitQuestion::Admissible(0.41)), Status::NoEquilibrium);
+    assert_eq!(status(&problem, LimitQuestion::Collapse { start: 0.5, max: 1.0 }), Status::NoEquilibrium);
+    assert_eq!(status(&problem, LimitQuestion::Collapse { start: -0.2, max: 0.3 }), Status::Stands);
+    assert_eq!(status(&problem, LimitQuestion::Collapse { start: -0.5, max: 0.3 }), Status::NoEquilibrium);
+    let answer = solve(&problem, LimitQuestion::Collapse { start: -0.2, max: 0.5 });
+    assert!((answer.factor.unwrap() - 0.4).abs() < 1e-9);
+}
+
+/// Loads into the ground and loads on nothing but the ground are carried at every factor, without a self-stress.
+#[test]
+fn a_load_into_the_ground_is_unbounded() {
+    let problem = cube().problem(&-Vec3::z());
+    assert_eq!(status(&problem, COLLAPSE), Status::Unbounded);
+    assert!(!solve(&problem, COLLAPSE).self_stress);
+    let mut idle = cube().problem(&Vec3::x());
+    idle.varying = vec![[0.0; 6]];
+    assert_eq!(status(&idle, COLLAPSE), Status::Unbounded);
+}
+
+/// A cube between two walls jams: a self-stress strictly inside the cones makes every load carried. With one wall
+/// the factor is finite: with associated flow at least μ √(1 + μ²), because friction on the ground presses the cube on it.
+#[test]
+fn a_jammed_cube_has_a_self_stress() {
+    let mut jammed = cube();
+    jammed.contacts.push((Some(0), None, vertical(1.0), Vec3::x(), 0.4));
+    assert!(collapse(&jammed.problem(&Vec3::y())) > 0.4 * 1.16f64.sqrt());
+    jammed.contacts.push((Some(0), None, vertical(0.0), -Vec3::x(), 0.4));
+    jammed.contacts[0].2.iter_mut().for_each(|point| point.x = 0.5 * point.x + 0.25);
+    let top = jammed.contacts[0].2.iter().map(|x| x + Vec3::z()).collect();
+    jammed.contacts.push((Some(0), None, top, Vec3::z(), 0.4));
+    for direction in [Vec3::x(), Vec3::y(), Vec3::z()] {
+        let problem = jammed.problem(&direction);
+        assert_eq!(status(&problem, COLLAPSE), Status::Unbounded);
+        assert!(solve(&problem, COLLAPSE).self_stress);
+        assert!(solve_by_clarabel(&problem, COLLAPSE).self_stress);
+    }
+}
+
+/// Without friction a side wall presses only if the load pushes against it; it can carry no force before.
+#[test]
+fn contacts_that_cannot_be_loaded_do_not_spoil_the_proof() {
+    let mut scene = cube();
+    scene.contacts[0].4 = 0.0;
+    assert_eq!(status(&scene.problem(&Vec3::x()), LimitQuestion::Admissible(0.0)), Status::Stands);
+    scene.contacts.push((Some(0), None, vertical(1.0), Vec3::x(), 0.0));
+    assert_eq!(status(&scene.problem(&Vec3::x()), LimitQuestion::Admissible(0.0)), Status::Stands);
+    assert_eq!(status(&scene.problem(&-Vec3::x()), LimitQuestion::Admissible(0.1)), Status::NoEquilibrium);
+    // The push at mid-height is met by the wall at the same height.
+    assert_eq!(status(&scene.problem(&Vec3::x()), COLLAPSE), Status::Unbounded);
+}
+
+/// A block without contact falls; a block on an edge stands only if its weight is above the edge.
+#[test]
+fn loose_blocks_have_no_equilibrium() {
+    let mut loose = cube();
+    loose.add_box([2.0, 3.0], [0.0, 1.0], [0.0, 1.0]);
+    assert_eq!(status(&loose.problem(&Vec3::x()), COLLAPSE), Status::NoEquilibrium);
+    let mut edge = cube();
+    edge.contacts[0].2 = vec![Vec3::new(0.2, 0.0, 0.0), Vec3::new(0.2, 1.0, 0.0)];
+    assert_eq!(status(&edge.problem(&Vec3::x()), COLLAPSE), Status::NoEquilibrium);
+}
+
+/// Problems without bodies, and wrong ones, are answered without a panic.
+#[test]
+fn empty_and_wrong_problems_do_not_panic() {
+    let empty = Scene::default().problem(&Vec3::x());
+    assert_eq!(solve(&empty, COLLAPSE).status, Status::Unbounded);
+    assert_eq!(solve(&empty, LimitQuestion::Admissible(1.0)).status, Status::Stands);
+    let mut wrong = cube().problem(&Vec3::x());
+    wrong.fixed[0][2] = f64::NAN;
+    assert_eq!(solve(&wrong, COLLAPSE).status, Status::Stalled);
+    wrong.fixed.clear();
+    assert_eq!(solve(&wrong, COLLAPSE).status, Status::Stalled);
+    let free = Scene { bodies: vec![(1.0, Vec3::zeros())], contacts: Vec::new() };
+    assert_eq!(solve(&free.problem(&Vec3::x()), COLLAPSE).status, Status::NoEquilibrium);
+}
