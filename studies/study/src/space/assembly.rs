@@ -246,3 +246,140 @@ normal = [0, 0, 1]"#),
         ..Card::of::<FileAssembly>()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::import::keys_of_file;
+    use super::super::parts::tests::{built, counts, wrong};
+    use crate::study::beside;
+    use serde_json::{Value, json};
+    use std::path::{Path, PathBuf};
+    use voussoir_core::space::{SpaceAssembly, Vec3};
+
+    fn cuboid(name: &str, low: [f64; 3], high: [f64; 3]) -> Value {
+        let corner = |k: usize| [0, 1, 2].map(|axis| if k >> axis & 1 == 1 { high[axis] } else { low[axis] });
+        json!({
+            "name": name, "vertices": (0..8).map(corner).collect::<Vec<_>>(),
+            "faces": [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]],
+        })
+    }
+
+    /// Three cubes in a row with stored interfaces; the points of the second repeat a corner and have the middle of a side.
+    fn row(extra: Value) -> Value {
+        let square = |x: f64| json!([[x, 0, 0], [x, 0, 1], [x, 1, 1], [x, 1, 0], [x, 1.0, 1e-12], [x, 0.5, 0]]);
+        let cube = |k: i32| cuboid(&k.to_string(), [f64::from(k), 0.0, 0.0], [f64::from(k + 1), 1.0, 1.0]);
+        let mut keys = json!({
+            "blocks": ([0, 1, 2].map(cube)),
+            "contacts": [
+                { "between": ["0", "1"], "points": square(1.0), "normal": [2, 0, 0] },
+                { "between": ["2", "1"], "points": square(2.0), "normal": [-1, 0, 0] },
+            ],
+            "supports": ["0"],
+        });
+        for (key, value) in extra.as_object().unwrap() {
+            keys[key] = value.clone();
+        }
+        keys
+    }
+
+    #[test]
+    fn stored_interfaces_keep_their_order_and_lose_points_that_are_no_corners() {
+        let scene =
+            built("assembly", &row(json!({ "scale": 0.5, "groups": [{ "blocks": ["2"], "material": "elastic" }] })));
+        let scene = scene.unwrap();
+        assert_eq!(counts(&scene), [2, 2, 8]);
+        let contact = &scene.contacts[1];
+        assert_eq!((contact.minus, contact.plus, contact.normal), (2, 1, -Vec3::x()));
+        assert!(contact.points.iter().all(|point| point.x == 1.0 && point.y.max(point.z) <= 0.5));
+        assert_eq!([0, 1, 2].map(|body| scene.bodies[body].material), [0, 0, 1]);
+        assert!((scene.bodies[1].shape.volume_and_centroid().0 - 0.125).abs() < 1e-15);
+        let found = built("assembly", &row(json!({ "interfaces": false, "scale": 0.5 }))).unwrap();
+        assert_eq!(counts(&found), [2, 2, 8]);
+        let held = built("assembly", &row(json!({ "supports": ["0", "1"] }))).unwrap();
+        assert_eq!(counts(&held), [1, 1, 4], "two supports have no contact");
+    }
+
+    #[test]
+    fn mistakes_are_reported_at_their_keys() {
+        let paths = |extra: Value| wrong("assembly", &row(extra));
+        assert_eq!(paths(json!({ "supports": ["3"] })), ["scene.supports.0", "scene.supports"]);
+        assert_eq!(paths(json!({ "supports": [] })), ["scene.supports"]);
+        assert_eq!(paths(json!({ "contacts": [] })), ["scene.interfaces"]);
+        assert_eq!(paths(json!({ "blocks": [] })), ["scene.file"]);
+        let contact = |a: &str, normal: [f64; 3], points: Value| {
+            paths(json!({ "contacts": [{ "between": [a, "1"], "normal": normal, "points": points }] }))
+        };
+        let square = || json!([[1, 0, 0], [1, 0, 1], [1, 1, 1]]);
+        assert_eq!(contact("7", [1.0, 0.0, 0.0], square()), ["scene.contacts.0.between.0"]);
+        assert_eq!(contact("1", [1.0, 0.0, 0.0], square()), ["scene.contacts.0.between"]);
+        assert_eq!(contact("0", [0.0; 3], square()), ["scene.contacts.0.normal"]);
+        assert_eq!(
+            contact("0", [1.0, 0.0, 0.0], json!([[1, 0, 0], [1, 1, 1], [1, 2, 2]])),
+            ["scene.contacts.0.points"]
+        );
+        let groups = json!({ "groups": [
+            { "blocks": ["1"], "joint": "dry" }, { "blocks": ["2"], "joint": "wet" }, { "blocks": ["9"] }] });
+        assert_eq!(paths(groups), ["scene.groups.2.blocks.0"]);
+    }
+
+    /// Returns the folder of published assemblies, which is not part of the repository.
+    fn published() -> Option<PathBuf> {
+        let folders = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().map(|folder| folder.join("shared/space/data"));
+        folders.into_iter().find(|folder| folder.is_dir())
+    }
+
+    fn read(folder: &Path, file: &str, extra: &Value) -> SpaceAssembly {
+        let text = beside(&folder.join("study.toml"))(file).unwrap();
+        let mut keys = Value::Object(keys_of_file(file, &text).unwrap());
+        for (key, value) in extra.as_object().unwrap() {
+            keys[key] = value.clone();
+        }
+        built("assembly", &keys).unwrap()
+    }
+
+    /// Free blocks, contacts and hull vertices of published files; contacts between two supports are left out. A hull with
+    /// a tolerance on the cross product has fewer vertices in the cross vault (1954 of 2033 points) and the vault
+    /// `armadillo` (4819 of 5031).
+    #[test]
+    fn published_assemblies_have_their_numbers_of_contacts_and_vertices() {
+        let Some(folder) = published() else { return };
+        for (file, numbers) in [
+            ("arch_assembly.json", [28, 29, 116]),
+            ("wall_assembly.json", [42, 80, 480]),
+            ("crossvault_assembly.json.gz", [180, 488, 1954]),
+            ("armadillo_cra.json.gz", [366, 1014, 4819]),
+        ] {
+            assert_eq!(counts(&read(&folder, file, &json!({}))), numbers, "{file}");
+        }
+        let dome = counts(&read(&folder, "dome_assembly.json.gz", &json!({})));
+        assert_eq!(dome[..2], [496, 1519 - 31]);
+        let held = json!({ "supports": ["0"] });
+        assert_eq!(counts(&read(&folder, "curve-3-blocks.json", &held)), [2, 40, 160]);
+        assert_eq!(counts(&read(&folder, "concave-long.json", &held)), [1, 7, 28]);
+    }
+
+    /// Without the stored interfaces the same contacts are found. The faces of the cross vault are up to 4e-4 m apart.
+    #[test]
+    fn published_interfaces_are_found_again() {
+        let Some(folder) = published() else { return };
+        for (file, extra) in [
+            ("arch_assembly.json", json!({})),
+            ("wall_assembly.json", json!({})),
+            ("crossvault_assembly.json.gz", json!({ "tolerance": 1e-3 })),
+            ("concave-short.json", json!({ "supports": ["0"] })),
+            ("concave-long.json", json!({ "supports": ["0"] })),
+        ] {
+            let mut search = extra.clone();
+            search["interfaces"] = json!(false);
+            let (stored, found) = (read(&folder, file, &extra), read(&folder, file, &search));
+            assert_eq!(counts(&stored), counts(&found), "{file}");
+            let area = |scene: &SpaceAssembly| -> f64 {
+                let fan = |points: &[Vec3]| -> Vec3 {
+                    points[1..].windows(2).map(|pair| (pair[0] - points[0]).cross(&(pair[1] - points[0]))).sum()
+                };
+                scene.contacts.iter().map(|contact| fan(&contact.points).norm() / 2.0).sum()
+            };
+            assert!((area(&stored) / area(&found) - 1.0).abs() < 1e-7, "{file}");
+        }
+    }
+}
