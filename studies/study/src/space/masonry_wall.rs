@@ -176,7 +176,7 @@ impl MasonryWall {
         let course = |[blocks, wall]: [usize; 2], course: usize| match (corner.joint, wall) {
             (CornerJoint::Toothed, _) if course % 2 == wall => through(blocks),
             (CornerJoint::Toothed, _) => behind(blocks),
-            (CornerJoint::Straight, 0) if course % 2 == 0 => through(blocks),
+            (CornerJoint::Straight, 0) if course.is_multiple_of(2) => through(blocks),
             (CornerJoint::Straight, 0) => shifted(blocks),
             (CornerJoint::Straight, _) => running(thickness, length, blocks, course % 2 == 1),
         };
