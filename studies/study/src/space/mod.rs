@@ -8,6 +8,7 @@ pub mod cross_vault;
 pub mod dome;
 pub(crate) mod import;
 pub mod masonry_wall;
+pub mod near;
 mod obj;
 mod parts;
 mod shell_block;
