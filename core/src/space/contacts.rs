@@ -288,7 +288,7 @@ mod tests {
         assert_eq!(find(&shapes, 2).contacts.len(), 2, "two fixed bodies have no contact");
     }
 
-    /// A tenon in a mortise: concave faces, whose triangles are merged where they fill a rectangle.
+    /// A tenon in a mortise: concave faces, whose triangles are merged if they fill a rectangle.
     #[test]
     fn a_tenon_touches_its_mortise_on_three_sides() {
         // A U and a T in the plane x z, extruded along y.

@@ -15,6 +15,6 @@ pub(crate) fn keys_of_file(file: &str, text: &str) -> Result<Map<String, Json>, 
     } else if ends(".json") {
         stored_assembly::read(text)
     } else {
-        Err("its ending is none of .json, .json.gz, .obj, .obj.gz".into())
+        Err("its ending is not one of .json, .json.gz, .obj, .obj.gz".into())
     }
 }

@@ -17,7 +17,7 @@ pub(super) struct Parts {
 }
 
 impl Parts {
-    /// Looks up a material and a law. The mistakes of the names are added to those of the geometry.
+    /// Looks up a material and a law. Mistakes of the names are added to mistakes of the geometry.
     pub fn new(
         catalogue: &Catalogue,
         names: [&str; 2],
