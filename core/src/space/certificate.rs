@@ -13,9 +13,13 @@
 //! Greenberg (1952), *Q. Appl. Math.* 9, 381–389.
 
 use super::{SpaceContact, SpaceField, SpaceProblem, SpaceVelocity, Vec3, Wrench, power};
-use crate::certificate::{Certificate, ROUNDING};
+use crate::certificate::Certificate;
 use crate::limit::{Greatest, Status};
 use std::collections::BTreeMap;
+
+/// Tolerance of residuals that are zero except for rounding. It is below that of plane scenes, because a bound may be wrong by
+/// a residual times the sum of the forces that a mechanism prices, which is thousands of block weights in vaults.
+const ROUNDING: f64 = 1e-12;
 
 /// Greatest relative distance between the factor of a field and the target of its stage.
 const REACHED: f64 = 1e-12;

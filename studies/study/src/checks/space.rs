@@ -4,7 +4,7 @@ use crate::checks::findings::Findings;
 use crate::checks::limit::{compare_verdict, verify_reached};
 use crate::results::CaseResult;
 use crate::results::stage_start::search_start;
-use crate::solve::space::{StoredInSpace, space_problem};
+use crate::solve::space::{StoredInSpace, gap_in_space, space_problem};
 use crate::study::{Case, SpaceCase};
 use voussoir_core::certificate::Verdict;
 use voussoir_core::limit::Status;
@@ -39,7 +39,7 @@ pub(crate) fn verify(
         ray: stored.ray.as_ref(),
     };
     let SpaceVerdict { certificate, status, bounds, greatest } =
-        certify_space(&problem, &claim, case.solver.settings.tolerance);
+        certify_space(&problem, &claim, gap_in_space(case.solver.settings.tolerance));
     let verdict = Verdict { certificate, status, bounds, greatest, start_is_carried: false };
     compare_verdict(result, &verdict, findings);
     let idle = problem.varying.iter().flatten().all(|component| *component == 0.0);

@@ -9,9 +9,18 @@ use crate::study::SpaceCase;
 use voussoir_core::limit::{Counters, LimitQuestion, Status};
 use voussoir_core::model::{Stage, Target};
 use voussoir_core::space::{
-    Cone, SpaceAnswer, SpaceBody, SpaceClaim, SpaceContact, SpaceField, SpaceLoads, SpaceProblem, SpaceVelocity, SpaceVerdict, Vec3,
-    certify_space,
+    Cone, SpaceAnswer, SpaceBody, SpaceClaim, SpaceContact, SpaceField, SpaceLoads, SpaceProblem, SpaceVelocity,
+    SpaceVerdict, Vec3, certify_space,
 };
+
+/// Least relative distance of the bounds of a collapse that a study can ask for. In space bounds come from an interior-point
+/// method, whose last digits are lost where many mechanisms have nearly the same factor.
+const GAP: f64 = 1e-8;
+
+/// Returns the greatest relative distance of the bounds of a collapse, from the tolerance of the study.
+pub(crate) fn gap_in_space(tolerance: f64) -> f64 {
+    tolerance.max(GAP)
+}
 
 /// Returns the problem of limit analysis of one stage.
 pub(crate) fn space_problem(space: &SpaceCase, loads: &SpaceLoads) -> Result<SpaceProblem, String> {
@@ -113,7 +122,7 @@ fn certified(
         ray: answer.ray.as_ref(),
     };
     let SpaceVerdict { certificate, status, bounds, greatest } =
-        certify_space(problem, &claim, input.settings.tolerance);
+        certify_space(problem, &claim, gap_in_space(input.settings.tolerance));
     let shows = |statuses: &[Status]| statuses.contains(&status);
     let field = answer.field.filter(|_| shows(&[Status::Stands, Status::Collapse, Status::Unbounded, Status::Open]));
     let motion = answer.motion.filter(|_| shows(&[Status::Collapse, Status::NoEquilibrium, Status::Open]));

@@ -16,7 +16,7 @@ pub struct Block3d {
     #[key(names = ["x", "y", "z"], unit = "m", len = ">= 4")]
     pub vertices: Vec<[f64; 3]>,
     /// corners of each face, counted from 0, in order around the face; all faces are seen from outside or all from inside
-    #[key(len = ">= 4")]
+    #[key(len = ">= 3")]
     pub faces: Vec<Vec<usize>>,
     /// held by the ground
     #[key(default = false)]

@@ -19,6 +19,7 @@ use crate::config::diagnostic::{LocatedDiagnostic, suggest};
 use crate::config::document::Node;
 use crate::config::expand::{Expanded, Expansion};
 use crate::config::synonyms::nearest_name;
+use crate::space::near::near_miss_warnings;
 use serde_json::Value as Json;
 use std::sync::Arc;
 use voussoir_core::model::Assembly;
@@ -86,6 +87,7 @@ pub(crate) fn build_case(id: usize, expanded: Expanded, known: &KnownKeys<'_>) -
                 _ => ZoneOfThrust::Never,
             };
             notes.extend(warnings(&resolved, &assembly, &stages));
+            notes.extend(space.iter().flat_map(|space| near_miss_warnings(&space.assembly)));
             note_of_yielding(&assembly, &resolved, &mut notes);
             let numbers = || numeric_keys(study_keys(), &resolved.to_json(), LONGEST);
             let output_sensitivities = if output.sensitivities { numbers() } else { Vec::new() };
