@@ -67,6 +67,7 @@ const PARTS: [(&str, &[(&str, &str)]); 6] = [
         "Theory",
         &[
             ("theory/limit_analysis.md", "Limit analysis"),
+            ("theory/space.md", "Limit analysis in space"),
             ("theory/flow_rule.md", "Non-associated friction"),
             ("theory/sensitivities.md", "Sensitivities of limit loads"),
             ("theory/carried_loads.md", "Loads that are carried"),

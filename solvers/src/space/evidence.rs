@@ -1,6 +1,6 @@
 //! Repair of iterates to exact evidence: fields inside the cones and in equilibrium, motions inside the dual cones.
 //!
-//! Forces are corrected to equilibrium in the metric of their own flexibilities. Points near the boundary are soft and
+//! Forces are corrected to equilibrium in the metric of the flexibilities. Points near the boundary are soft and
 //! move little, so that a field inside the cones stays inside. Rounding may prevent this close to the optimum. Then the
 //! correction of least norm is used, and the field is mixed with an earlier one that is strictly inside. Motions have
 //! exact rates Aᵀ q. If some are outside the cones, an earlier opening mechanism is added.
@@ -20,14 +20,14 @@ const MAX_REPAIRS: usize = 12;
 pub struct Field {
     /// Factor above the start, in units of the program.
     pub lambda: f64,
-    /// Forces.
+    /// Forces of all points.
     pub y: Vec<Cone>,
 }
 
 /// A motion with rates inside the dual cones.
 #[derive(Debug, Clone)]
 pub struct Opening {
-    /// Velocities.
+    /// Velocities of all bodies.
     pub q: Bodies,
     /// Its rates.
     z: Vec<Cone>,
@@ -162,7 +162,10 @@ impl Evidence {
         };
         let Some(found) = found else { return };
         let (work, power) = (dot(&program.base, &found.q), dot(&program.varying, &found.q));
-        if self.refutation.is_none() && work > 0.0 && (held || power >= 0.0) {
+        let loads: f64 = program.base.iter().map(|w| w.abs()).sum();
+        let fastest = found.z.iter().map(|z| greatest(z)).fold(0.0, f64::max);
+        let significant = SETTINGS.worked * loads * fastest;
+        if self.refutation.is_none() && work > significant && (held || power >= 0.0) {
             self.refutation = Some(found.q.clone());
         }
         if self.upper.as_ref().is_none_or(|upper| found.bound < upper.bound) {

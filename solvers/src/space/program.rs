@@ -30,7 +30,7 @@ pub struct Member {
 /// Data of a problem in units of the program.
 #[derive(Clone)]
 pub struct Program {
-    /// Contacts.
+    /// All contacts of the problem.
     pub members: Vec<Member>,
     /// Points relative to the centre of their contact, in its frame.
     pub points: Vec<Vec3>,
@@ -133,7 +133,7 @@ impl Program {
         self.members.iter().map(|member| y[member.points.clone()].iter().map(|y| force(member, y)).collect()).collect()
     }
 
-    /// Returns velocities about the pole of the problem; their scale is that of the program.
+    /// Returns velocities about the pole of the problem; they have the scale of the program.
     pub fn motion(&self, q: &[f64]) -> Vec<[f64; 6]> {
         let about = |(q, pole): (&[f64], &Vec3)| {
             let omega = Vec3::new(q[3], q[4], q[5]) / self.length;

@@ -33,6 +33,8 @@ pub struct SpaceSettings {
     pub negligible: f64,
     /// Relative distance of the bounds of a collapse. A certificate allows 1e-8.
     pub closed: f64,
+    /// Work of the loads on a motion, relative to loads times the greatest rate, that refutes equilibrium.
+    pub worked: f64,
     /// Excess of the shares of a mixture over the least one: rounding of margins.
     pub mixed: f64,
 }
@@ -54,5 +56,6 @@ pub const SETTINGS: SpaceSettings = SpaceSettings {
     repairable: 10.0,
     negligible: 1e-6,
     closed: 9e-9,
+    worked: 1e-11,
     mixed: 1e-9,
 };

@@ -11,7 +11,7 @@ use voussoir_core::space::{SpaceAnswer, SpaceContact, SpaceProblem, SpaceVelocit
 /// Greatest number of steps of a program.
 const MAX_STEPS: u64 = 100;
 
-const IDLE: &str = "every load of this stage acts on what the ground holds";
+const IDLE: &str = "every load of this stage acts on bodies that the ground holds";
 const SELF_STRESS: &str = "the blocks interlock: forces strictly inside all cones are in balance without loads, so that every load is in equilibrium";
 const NOT_CLOSED: &str = "the proved bounds of the factor do not meet";
 

@@ -1,4 +1,4 @@
-//! Every status with its proof, and questions at the border of what has an answer.
+//! Every status with its proof, and questions without an answer.
 
 use super::scenes::{COLLAPSE, Scene, certified, collapse, rectangle};
 use crate::space::{solve, solve_by_clarabel};
@@ -69,6 +69,24 @@ fn a_jammed_cube_has_a_self_stress() {
     }
 }
 
+/// Beside a jammed cube, which no mechanism moves, a free cube slides at μ; a cube on the jammed one does too.
+#[test]
+fn a_jammed_part_does_not_spoil_the_proof_of_the_rest() {
+    let mut scene = cube();
+    for (x, normal) in [(1.0, Vec3::x()), (0.0, -Vec3::x())] {
+        scene.contacts.push((Some(0), None, vertical(x), normal, 0.4));
+    }
+    let top = [[0.0, 0.0], [0.5, 0.0], [0.5, 1.0], [0.0, 1.0]].map(|[x, y]| Vec3::new(x, y, 1.0)).to_vec();
+    scene.contacts.push((Some(0), None, top, Vec3::z(), 0.4));
+    let beside = scene.add_box([3.0, 4.0], [0.0, 1.0], [0.0, 1.0]);
+    scene.contacts.push((None, Some(beside), rectangle([3.0, 4.0], [0.0, 1.0], 0.0), Vec3::z(), 0.4));
+    let above = scene.add_box([0.5, 1.0], [0.0, 1.0], [1.0, 1.4]);
+    scene.contacts.push((Some(0), Some(above), rectangle([0.5, 1.0], [0.0, 1.0], 1.0), Vec3::z(), 0.3));
+    for (direction, expected) in [(Vec3::x(), 0.3), (Vec3::y(), 0.3)] {
+        assert!((collapse(&scene.problem(&direction)) - expected).abs() < 1e-9);
+    }
+}
+
 /// Without friction a side wall presses only if the load pushes against it; it can carry no force before.
 #[test]
 fn contacts_that_cannot_be_loaded_do_not_spoil_the_proof() {
@@ -93,7 +111,7 @@ fn loose_blocks_have_no_equilibrium() {
     assert_eq!(status(&edge.problem(&Vec3::x()), COLLAPSE), Status::NoEquilibrium);
 }
 
-/// Problems without bodies, and wrong ones, are answered without a panic.
+/// Problems without bodies, and wrong ones, cause no panic.
 #[test]
 fn empty_and_wrong_problems_do_not_panic() {
     let empty = Scene::default().problem(&Vec3::x());
