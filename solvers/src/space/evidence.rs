@@ -48,6 +48,8 @@ pub struct Evidence {
     pub ray: Option<Vec<Cone>>,
     /// A motion on which the loads at the start do work.
     pub refutation: Option<Bodies>,
+    /// True if the motion is the only mechanism.
+    pub unique: Option<bool>,
     /// Motions and fields inside the cones, with the mean product at their time; the products fall from one to the next.
     openings: Vec<(f64, Opening)>,
     /// As `openings`.

@@ -17,5 +17,6 @@ mod solver;
 mod stiffness;
 #[cfg(test)]
 mod tests;
+mod uniqueness;
 
 pub use self::solve::{solve, solve_by_clarabel};

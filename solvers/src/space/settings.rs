@@ -35,6 +35,10 @@ pub struct SpaceSettings {
     pub closed: f64,
     /// Work of the loads on a motion, relative to loads times the greatest rate, that refutes equilibrium.
     pub worked: f64,
+    /// Ratio of the stiffness of the next motion to that of the mechanism above which the mechanism is the only one.
+    pub stiffer: f64,
+    /// The same ratio below which there is another mechanism.
+    pub as_soft: f64,
     /// Excess of the shares of a mixture over the least one: rounding of margins.
     pub mixed: f64,
 }
@@ -57,5 +61,7 @@ pub const SETTINGS: SpaceSettings = SpaceSettings {
     negligible: 1e-6,
     closed: 9e-9,
     worked: 1e-11,
+    stiffer: 1e6,
+    as_soft: 1e3,
     mixed: 1e-9,
 };

@@ -5,6 +5,7 @@ use super::evidence::{Evidence, Field};
 use super::interior_point::{InteriorPoint, greatest};
 use super::program::Program;
 use super::settings::SETTINGS;
+use super::uniqueness;
 use voussoir_core::limit::{Counters, LimitQuestion, Status};
 use voussoir_core::space::{SpaceAnswer, SpaceContact, SpaceProblem, SpaceVelocity, power};
 
@@ -191,6 +192,7 @@ impl Case<'_> {
         SpaceAnswer {
             factor: Some(self.factor(lower.lambda)),
             motion: Some(self.scaled(&upper.q)),
+            unique: evidence.unique.filter(|_| closed),
             notes,
             ..self.with_field(status, lower)
         }
@@ -240,6 +242,9 @@ fn run(program: &Program, held: bool, counters: &mut Counters) -> Option<Evidenc
         if method.step() < SETTINGS.least_step {
             break;
         }
+    }
+    if evidence.gap().is_finite() && ended(&evidence, &method) {
+        evidence.unique = uniqueness::unique(&mut method);
     }
     if !ended(&evidence, &method) {
         let lambda = if held { 0.0 } else { method.state.lambda / method.state.tau };

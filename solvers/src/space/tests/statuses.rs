@@ -87,6 +87,28 @@ fn a_jammed_part_does_not_spoil_the_proof_of_the_rest() {
     }
 }
 
+/// One mechanism is unique; two equal cubes that can move apart, and a block at the corner between two edges, have several.
+#[test]
+fn uniqueness_of_mechanisms() {
+    let unique = |scene: &Scene, direction: Vec3| {
+        let answer = solve(&scene.problem(&direction), COLLAPSE);
+        assert_eq!(answer.status, Status::Collapse);
+        answer.unique
+    };
+    let diagonal = Vec3::new(1.0, 1.0, 0.0);
+    assert_eq!(unique(&cube(), Vec3::new(1.0, 0.3, 0.0)), Some(true));
+    let mut tall = cube();
+    tall.bodies[0].1.z = 2.0;
+    assert_eq!(unique(&tall, Vec3::new(1.0, 0.3, 0.0)), Some(true));
+    assert_eq!(unique(&tall, diagonal), Some(false));
+    let mut two = cube();
+    let other = two.add_box([3.0, 4.0], [0.0, 1.0], [0.0, 1.0]);
+    two.contacts.push((None, Some(other), rectangle([3.0, 4.0], [0.0, 1.0], 0.0), Vec3::z(), 0.4));
+    assert_eq!(unique(&two, Vec3::x()), Some(false));
+    two.contacts[1].4 = 0.41;
+    assert_eq!(unique(&two, Vec3::x()), Some(true));
+}
+
 /// Without friction a side wall presses only if the load pushes against it; it can carry no force before.
 #[test]
 fn contacts_that_cannot_be_loaded_do_not_spoil_the_proof() {
