@@ -34,6 +34,7 @@ const PARTS: [(&str, &[(&str, &str)]); 6] = [
             ("how_to/rise_fill.md", "Find the best rise with fill"),
             ("how_to/rise_softening.md", "Find the best rise of softening stone"),
             ("how_to/walls.md", "Describe a wall"),
+            ("how_to/space.md", "Analyse blocks in space"),
             ("how_to/seismic.md", "Check a mechanism under earthquakes"),
             ("how_to/drawings.md", "Use a drawing as scene"),
             ("how_to/one_point.md", "Test a law at one point"),

@@ -38,6 +38,7 @@ mod settled;
 mod settlements;
 mod snap_through;
 mod softening;
+mod space;
 mod statuses;
 mod uplift;
 mod walls;

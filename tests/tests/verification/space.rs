@@ -1,0 +1,107 @@
+//! Limit analysis in space: published brackets and closed forms on scenes that the project generates, and forged results.
+
+use serde_json::Value;
+use voussoir::core::limit::Status;
+use voussoir_tests::{answered, assert_close, written};
+
+/// Returns a study of a scene that an acceleration of 1 × weight pushes, with this friction.
+fn pushed(scene: &str, friction: f64, push: [f64; 3]) -> String {
+    format!(
+        "name = \"space\"\n[scene]\n{scene}\nmaterial = \"stone\"\njoint = \"dry\"\n[materials.stone]\nlaw = \"rigid\"\n\
+         density = 1.0\n[joints.dry]\nlaw = \"coulomb_associated\"\nfriction = {friction:?}\n[[stages]]\nname = \"weight\"\n\
+         gravity = 1.0\n[[stages]]\nname = \"push\"\nuntil = \"collapse\"\nloads = [{{ kind = \"body\", acceleration = {push:?} }}]\n"
+    )
+}
+
+fn factor(scene: &str, friction: f64, push: [f64; 3]) -> f64 {
+    let result = answered(&pushed(scene, friction, push));
+    assert_eq!(result.status, Status::Collapse, "{:?} {:?}", result.notes, result.certificate);
+    result.load_factor.expect("a factor")
+}
+
+const DOME: &str = "scene = \"dome\"\nradius = 1.0\nthickness = 0.1\nrings = 8\nmeridians = 16\noculus = 10.0";
+const CORNER: &str =
+    "scene = \"masonry_wall\"\nblock = [2.0, 1.0, 0.5]\ncourses = 8\nblocks = 4\ncorner = { blocks = 4 }";
+
+/// A dome of 128 blocks has the factors that an independent program proved, for two directions and two frictions.
+#[test]
+fn a_dome_has_the_published_factors() {
+    for (friction, azimuth, known) in
+        [(0.7, 0.0, 0.504872781), (0.7, 11.25, 0.505477786), (0.5, 0.0, 0.382930476), (0.5, 11.25, 0.383297948)]
+    {
+        let found = factor(&format!("{DOME}\nazimuth = {azimuth:?}"), friction, [1.0, 0.0, 0.0]);
+        assert_close(found, known, 2e-9);
+    }
+}
+
+/// A toothed corner of two walls has the factors that an independent program proved, in four directions.
+#[test]
+fn a_corner_has_the_published_factors() {
+    let half = 0.5f64.sqrt();
+    for (friction, push, known) in [
+        (0.7, [1.0, 0.0, 0.0], 0.56691654),
+        (0.7, [-1.0, 0.0, 0.0], 0.530009476),
+        (0.7, [half, half, 0.0], 0.577794393),
+        (0.7, [-half, -half, 0.0], 0.639477975),
+        (0.5, [1.0, 0.0, 0.0], 0.44101490),
+        (0.5, [-1.0, 0.0, 0.0], 0.435121373),
+        (0.5, [half, half, 0.0], 0.48315109),
+        (0.5, [-half, -half, 0.0], 0.5),
+    ] {
+        assert_close(factor(CORNER, friction, push), known, 2e-8);
+    }
+}
+
+/// A wall of any length that is pushed across its plane overturns at thickness over height, or slides at μ.
+#[test]
+fn a_wall_across_its_plane_has_its_closed_form() {
+    let wall = "scene = \"masonry_wall\"\nblock = [2.0, 1.0, 0.5]\ncourses = 8\nblocks = 5";
+    assert_close(factor(wall, 0.7, [0.0, 1.0, 0.0]), 0.25, 1e-9);
+    assert_close(factor(wall, 0.2, [0.0, 1.0, 0.0]), 0.2, 1e-8);
+}
+
+/// A straight barrel of one strip has the factors that an independent program proved, across and along its axis.
+#[test]
+fn a_barrel_has_the_published_factors() {
+    // The mean radius is 1: the intrados has 0.925.
+    let barrel = "scene = \"barrel_vault\"\nprofile = { shape = \"segmental\", span = 1.85, rise = 0.925 }\nthickness = 0.15\n\
+                  voussoirs = 15\nlength = 2.0";
+    let across = factor(barrel, 0.7, [1.0, 0.0, 0.0]);
+    let along = factor(barrel, 0.7, [0.0, 1.0, 0.0]);
+    let mut found = [across, along];
+    found.sort_by(f64::total_cmp);
+    assert_close(found[0], 0.150465309, 1e-8);
+    assert_close(found[1], 0.607152508, 1e-8);
+}
+
+/// A stored result in space is confirmed, and each altered number or word is found.
+#[test]
+fn forged_results_in_space_are_found() {
+    let (study, results) = written::results(&pushed(DOME, 0.7, [1.0, 0.0, 0.0]));
+    assert_eq!(written::findings(&study, &results), Vec::<String>::new());
+    let forge = |change: &dyn Fn(&mut Value)| {
+        let mut forged = results.clone();
+        change(&mut forged["cases"][0]);
+        let found = written::findings(&study, &forged);
+        assert!(!found.is_empty(), "a forged result passes");
+    };
+    forge(&|case| case["load_factor"] = 0.51.into());
+    forge(&|case| case["bounds"] = serde_json::json!([0.5048, 0.5049]));
+    forge(&|case| case["status"] = "stands".into());
+    forge(&|case| case["field"][40]["force"][0] = 0.0.into());
+    forge(&|case| case["field"][40]["point"][2] = 0.0.into());
+    forge(&|case| case["motion"][60]["velocity"][2] = (-0.3).into());
+    forge(&|case| case["motion"][60]["body"] = "another".into());
+    forge(&|case| case["motion"] = Value::Null);
+    forge(&|case| case["field"] = Value::Null);
+    forge(&|case| case["flow_read_as"] = "associated".into());
+    forge(&|case| case["field"][0]["force"] = serde_json::json!([1.0, 0.0]));
+}
+
+/// A law without dilatancy is solved with associated flow, and the result says so.
+#[test]
+fn friction_without_dilatancy_is_read_as_associated() {
+    let result = answered(&pushed(DOME, 0.7, [1.0, 0.0, 0.0]).replace("coulomb_associated", "coulomb"));
+    assert_eq!(result.flow_read_as.as_deref(), Some("associated"));
+    assert_close(result.load_factor.expect("a factor"), 0.504872781, 2e-9);
+}
