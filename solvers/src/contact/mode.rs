@@ -97,6 +97,11 @@ impl ContactMode {
     }
 }
 
+/// Returns the part by forces and the part by gaps of each of the two equations of a point.
+pub fn parts(rows: &[[f64; 4]; 2], force: [f64; 2], gap: [f64; 2]) -> [[f64; 2]; 2] {
+    rows.map(|row| [row[0] * force[0] + row[1] * force[1], row[2] * gap[0] + row[3] * gap[1]])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

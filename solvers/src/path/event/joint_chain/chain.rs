@@ -5,7 +5,7 @@ use super::joint::joints;
 use super::rates::ChainRates;
 use super::redundants::{MOST_WEAK, Open, closing};
 use super::sections::Sections;
-use crate::contact::mode::ContactMode;
+use crate::contact::mode::{ContactMode, parts};
 use crate::linear::dense::add_product;
 use crate::path::event::piece::rates::Rates;
 use crate::path::system::{Load, System};
@@ -160,11 +160,8 @@ impl JointChain {
                 let column = |e: usize| column(&self.columns.responses[e], j);
                 let (own, gap) = (column(e), factor.joint.gaps(e, &column));
                 for (p, rows) in factor.rows.iter().enumerate() {
-                    for (i, row) in rows.iter().enumerate() {
-                        let (force, gap) = (&own[2 * p..2 * p + 2], &gap[2 * p..2 * p + 2]);
-                        right[e][(2 * p + i, j)] -=
-                            row[0] * force[0] + row[1] * force[1] + row[2] * gap[0] + row[3] * gap[1];
-                    }
+                    let left = left_of(rows, pair(own, p), pair(&gap, p));
+                    (0..2).for_each(|i| right[e][(2 * p + i, j)] += left[i]);
                 }
                 for i in 0..3 {
                     let twist = if factor.weak { factor.joint.spring[i] * own[m + i] } else { 0.0 };
@@ -192,14 +189,13 @@ impl JointChain {
             if j == 3 * self.sections.cycles {
                 (0..2).for_each(|i| gap[i] += load.gap[c][i]);
             }
-            let force = [self.columns.responses[e][(2 * p, j)], self.columns.responses[e][(2 * p + 1, j)]];
+            let force = pair(column(&self.columns.responses[e], j), p);
             left.column_mut(j).copy_from_slice(&left_of(&rows, force, gap));
         }
         let kept = self.rates.as_ref().map(|rates| {
             let gap = self.factors.all[e].joint.gap(e, p, &|e: usize| &rates.own[e]);
             let gap = [gap[0] + load.gap[c][0], gap[1] + load.gap[c][1]];
-            let force = [rates.own[e][2 * p], rates.own[e][2 * p + 1]];
-            left_of(&rows, force, gap)
+            left_of(&rows, pair(&rates.own[e], p), gap)
         });
         self.respond(e, 2 * p, &left, kept.as_ref().map_or(&[], |kept| kept));
         if matches!(mode, ContactMode::Open | ContactMode::Corner(..)) {
@@ -295,7 +291,7 @@ impl JointChain {
                 moving.for_each(|(p, c)| gaps[*c] = factor.joint.gap(e, p, &own));
             } else {
                 let all = factor.joint.gaps(e, &own);
-                moving.for_each(|(p, c)| gaps[*c] = [all[2 * p], all[2 * p + 1]]);
+                moving.for_each(|(p, c)| gaps[*c] = pair(&all, p));
             }
             contacts.iter().filter(|c| self.modes[**c] != ContactMode::Stick).for_each(|c| {
                 (0..2).for_each(|i| gaps[*c][i] += load.gap[*c][i]);
@@ -330,9 +326,7 @@ impl JointChain {
             gap.iter_mut().zip(joint.contacts.iter().flat_map(|c| load.gap[*c])).for_each(|(g, load)| *g += load);
             let mut all = vec![0.0; m + 3];
             for (p, rows) in factor.rows.iter().enumerate() {
-                let (force, gap) = ([own[2 * p], own[2 * p + 1]], [gap[2 * p], gap[2 * p + 1]]);
-                for (i, row) in rows.iter().enumerate() {
-                    let (by_force, by_gap) = (row[0] * force[0] + row[1] * force[1], row[2] * gap[0] + row[3] * gap[1]);
+                for (i, [by_force, by_gap]) in parts(rows, pair(own, p), pair(&gap, p)).into_iter().enumerate() {
                     worst = worst.max(by_force.abs() / forces).max(by_gap.abs() / motions);
                     all[2 * p + i] = -(by_force + by_gap);
                 }
@@ -387,7 +381,12 @@ impl JointChain {
 
 /// Returns the residual of the two equations of a point for a force and a gap.
 fn left_of(rows: &[[f64; 4]; 2], force: [f64; 2], gap: [f64; 2]) -> [f64; 2] {
-    rows.map(|row| -(row[0] * force[0] + row[1] * force[1] + row[2] * gap[0] + row[3] * gap[1]))
+    parts(rows, force, gap).map(|[by_force, by_gap]| -(by_force + by_gap))
+}
+
+/// Returns the two components of a point of a joint.
+fn pair(of: &[f64], point: usize) -> [f64; 2] {
+    [of[2 * point], of[2 * point + 1]]
 }
 
 /// Returns a component of the resultant for given redundants and load.

@@ -9,8 +9,7 @@
 //! bodies  Gᵀ ṙ = −λ̇ p
 //! ```
 
-use crate::contact::facet::across;
-use crate::contact::mode::ContactMode;
+use crate::contact::mode::{ContactMode, parts};
 use crate::linear::condensed::{Condensed, Elimination};
 use crate::linear::updated::UpdatedFactorisation;
 use crate::path::system::{Load, System};
@@ -36,28 +35,17 @@ impl FactorisedModes {
     pub fn new(system: &System, modes: Vec<ContactMode>, refine_columns: bool) -> Option<Self> {
         let nc = system.contacts;
         let (mut entries, mut regularisation): (Entries, Entries) = (Vec::new(), Vec::new());
-        let gap_row = |c: usize, i: usize, row: usize, factor: f64, entries: &mut Entries| {
-            entries.extend(system.flexibility.row(2 * c + i).iter().map(|&(j, v)| (row, j, factor * v)));
-            entries.extend(system.kinematics.row(2 * c + i).iter().map(|&(j, v)| (row, 2 * nc + j, factor * v)));
-        };
         for (c, mode) in modes.iter().enumerate() {
-            match mode {
-                ContactMode::Stick => {
-                    for i in 0..2 {
-                        gap_row(c, i, 2 * c + i, 1.0, &mut entries);
-                        regularisation.push((2 * c + i, 2 * c + i, SETTINGS.shift()));
-                    }
+            for (k, own) in system.rows(c, *mode)?.into_iter().enumerate() {
+                let row = 2 * c + k;
+                entries.extend((0..2).filter(|t| own[*t] != 0.0).map(|t| (row, 2 * c + t, own[t])));
+                for (t, by) in [own[2], own[3]].into_iter().enumerate().filter(|(_, by)| *by != 0.0) {
+                    let (forces, motions) = (system.flexibility.row(2 * c + t), system.kinematics.row(2 * c + t));
+                    entries.extend(forces.iter().map(|&(j, v)| (row, j, by * v)));
+                    entries.extend(motions.iter().map(|&(j, v)| (row, 2 * nc + j, by * v)));
                 }
-                ContactMode::Open | ContactMode::Corner(..) => {
-                    entries.extend((0..2).map(|i| (2 * c + i, 2 * c + i, 1.0)))
-                }
-                ContactMode::Facet(f) => {
-                    let facet = &system.facets[c].as_ref()?[*f as usize];
-                    entries.extend((0..2).map(|i| (2 * c, 2 * c + i, -facet.normal[i])));
-                    let n = across(facet.flow);
-                    for (i, n) in n.into_iter().enumerate() {
-                        gap_row(c, i, 2 * c + 1, n, &mut entries);
-                    }
+                if *mode == ContactMode::Stick {
+                    regularisation.push((row, row, SETTINGS.shift()));
                 }
             }
         }
@@ -114,17 +102,9 @@ impl FactorisedModes {
 
     fn right(&self, system: &System, load: &Load) -> Vec<f64> {
         let mut right = vec![0.0; system.size()];
-        for (c, mode) in self.modes.iter().enumerate() {
-            match mode {
-                ContactMode::Stick => (0..2).for_each(|i| right[2 * c + i] = -load.gap[c][i]),
-                ContactMode::Facet(f) => {
-                    if let Some(facets) = &system.facets[c] {
-                        let n = across(facets[*f as usize].flow);
-                        right[2 * c + 1] = -(n[0] * load.gap[c][0] + n[1] * load.gap[c][1]);
-                    }
-                }
-                _ => {}
-            }
+        for (c, (mode, gap)) in self.modes.iter().zip(&load.gap).enumerate() {
+            let parts = system.rows(c, *mode).map(|rows| parts(&rows, [0.0; 2], *gap)).unwrap_or_default();
+            (0..2).for_each(|k| right[2 * c + k] = -parts[k][1]);
         }
         for (b, wrench) in load.wrench.iter().enumerate() {
             (0..3).for_each(|i| right[2 * system.contacts + 3 * b + i] = -wrench[i]);

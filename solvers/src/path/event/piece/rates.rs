@@ -1,7 +1,7 @@
 //! Rates of all unknowns in given modes: their residuals, and the points that they move out of their modes.
 
 use super::point::{Point, active_points};
-use crate::contact::mode::ContactMode;
+use crate::contact::mode::{ContactMode, parts};
 use crate::linear::largest;
 use crate::path::system::{Load, System};
 use crate::settings::SETTINGS;
@@ -86,20 +86,11 @@ pub fn residual(system: &System, rates: &Rates, load: &Load, modes: &[ContactMod
     let mut worst: f64 = 0.0;
     let mut left = Vec::with_capacity(x.len());
     for (c, mode) in modes.iter().enumerate() {
-        let (force, gap) = ([x[2 * c], x[2 * c + 1]], rates.gaps[c]);
-        let (pair, sizes) = match mode {
-            ContactMode::Stick => (gap, [motions; 2]),
-            ContactMode::Open | ContactMode::Corner(..) => (force, [forces; 2]),
-            ContactMode::Facet(_) => match system.rows(c, *mode) {
-                Some([yields, across]) => (
-                    [yields[0] * force[0] + yields[1] * force[1], across[2] * gap[0] + across[3] * gap[1]],
-                    [forces, motions],
-                ),
-                None => ([0.0; 2], [1.0; 2]),
-            },
-        };
-        worst = worst.max(pair[0].abs() / sizes[0]).max(pair[1].abs() / sizes[1]);
-        left.extend([-pair[0], -pair[1]]);
+        let rows = system.rows(c, *mode).unwrap_or_default();
+        for [by_force, by_gap] in parts(&rows, [x[2 * c], x[2 * c + 1]], rates.gaps[c]) {
+            worst = worst.max(by_force.abs() / forces).max(by_gap.abs() / motions);
+            left.push(-(by_force + by_gap));
+        }
     }
     for (sum, p) in system.resultants(x).iter().zip(load.wrench.iter().flatten()) {
         let rest = sum + rates.factor * p;
