@@ -41,29 +41,24 @@ impl Systems {
     /// Returns the force variables and θ nearest to `start` in equilibrium with these pairs on their yield surface, and
     /// the greatest residual or violation of any pair.
     pub fn field(&self, yielding: &[usize], start: Vec<f64>) -> Option<(Vec<f64>, f64)> {
-        let theta = self.forces;
-        let mut rows: Vec<SparseRow> = self.equilibrium.clone();
-        rows.iter_mut().zip(&self.varying).for_each(|(row, &p)| row.push((theta, p)));
-        let mut right: Vec<f64> = self.fixed.iter().map(|w| -w).collect();
-        for &i in yielding {
-            rows.push(self.pairs[i].normal.clone());
-            right.push(self.pairs[i].bound);
-        }
-        let (z, error) = nearest(&rows, &right, start)?;
-        let violation = (0..self.pairs.len()).map(|i| -self.slack(i, &z)).fold(error, f64::max);
-        Some((z, violation))
+        self.nearest_field(yielding.iter().map(|&i| (i, 0.0)), start)
     }
 
     /// Returns the force variables and θ in equilibrium with these slacks s_i, and the greatest residual or violation.
     pub fn field_with(&self, slacks: &[f64]) -> Option<(Vec<f64>, f64)> {
+        self.nearest_field(slacks.iter().copied().enumerate(), vec![0.0; self.forces + 1])
+    }
+
+    /// Returns the field nearest to `start` with these slacks of some pairs, and its greatest residual or violation.
+    fn nearest_field(&self, slacks: impl Iterator<Item = (usize, f64)>, start: Vec<f64>) -> Option<(Vec<f64>, f64)> {
         let mut rows: Vec<SparseRow> = self.equilibrium.clone();
         rows.iter_mut().zip(&self.varying).for_each(|(row, &p)| row.push((self.forces, p)));
         let mut right: Vec<f64> = self.fixed.iter().map(|w| -w).collect();
-        for (pair, slack) in self.pairs.iter().zip(slacks) {
-            rows.push(pair.normal.clone());
-            right.push(pair.bound - slack);
+        for (i, slack) in slacks {
+            rows.push(self.pairs[i].normal.clone());
+            right.push(self.pairs[i].bound - slack);
         }
-        let (z, error) = nearest(&rows, &right, vec![0.0; self.forces + 1])?;
+        let (z, error) = nearest(&rows, &right, start)?;
         let violation = (0..self.pairs.len()).map(|i| -self.slack(i, &z)).fold(error, f64::max);
         Some((z, violation))
     }

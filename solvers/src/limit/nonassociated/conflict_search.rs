@@ -53,10 +53,6 @@ pub struct Search {
     pub conflicts: u64,
     /// Number of feasibility questions.
     pub programs: u64,
-    /// Number of decisions.
-    pub decisions: u64,
-    /// Number of questions that rounding left undecided; they refute nothing.
-    pub doubts: u64,
     empty: bool,
 }
 
@@ -84,8 +80,6 @@ impl Search {
             bump: 1.0,
             conflicts: 0,
             programs: 0,
-            decisions: 0,
-            doubts: 0,
             empty: false,
         }
     }
@@ -335,27 +329,17 @@ impl Search {
             if self.work() >= most {
                 return Ending::Limit;
             }
-            self.programs += 1;
-            match self.statics.feasible() {
-                Feasibility::Reason(reason) => {
-                    if !self.refuse(reason, true) {
-                        return Ending::Exhausted;
-                    }
-                    continue;
+            // A question that rounding leaves undecided refutes nothing.
+            let refuted = [true, false].into_iter().find_map(|statics| {
+                self.programs += 1;
+                let system = if statics { &mut self.statics } else { &mut self.kinematics };
+                if let Feasibility::Reason(reason) = system.feasible() { Some((reason, statics)) } else { None }
+            });
+            if let Some((reason, statics)) = refuted {
+                if !self.refuse(reason, statics) {
+                    return Ending::Exhausted;
                 }
-                Feasibility::Undecided => self.doubts += 1,
-                Feasibility::Point => {}
-            }
-            self.programs += 1;
-            match self.kinematics.feasible() {
-                Feasibility::Reason(reason) => {
-                    if !self.refuse(reason, false) {
-                        return Ending::Exhausted;
-                    }
-                    continue;
-                }
-                Feasibility::Undecided => self.doubts += 1,
-                Feasibility::Point => {}
+                continue;
             }
             let gamma: Vec<f64> = (0..self.pairs).map(|i| self.kinematics.value(i).max(0.0)).collect();
             let greatest = gamma.iter().fold(0.0f64, |m, g| m.max(*g));
@@ -366,7 +350,6 @@ impl Search {
                 moving.iter().copied().filter(|&i| self.value[i].is_none()).max_by(|&a, &b| key(a).total_cmp(&key(b)));
             match chosen {
                 Some(pair) => {
-                    self.decisions += 1;
                     self.limits.push(self.trail.len());
                     self.assign(literal(pair, true), None);
                 }
