@@ -2,6 +2,8 @@
 
 use super::simplex::{Column, Program};
 use crate::limit::settings::SETTINGS;
+use crate::limit::systems::PIVOTS;
+use crate::optimise::dense_simplex::{Equations, Feasibility};
 use nalgebra::{DMatrix, DVector};
 
 /// Returns the analytic centre of all optimal multipliers {y ≥ 0 : Σ y_i a_i = c} over the rows active at `point`, and
@@ -78,62 +80,24 @@ fn clearly_independent(columns: &DMatrix<f64>) -> bool {
 }
 
 /// Returns a point of {y ≥ 0 : A y = A start} with the greatest number of positive entries: the mean of points that
-/// each increase one entry as far as possible.
+/// each increase one entry as far as possible. `None` if an entry has no bound, or if rounding prevents an answer.
 fn interior_point(matrix: &DMatrix<f64>, start: &DVector<f64>) -> Option<DVector<f64>> {
     let k = matrix.ncols();
-    let mut sum = start.clone();
-    let mut count = 1.0;
+    let rows = matrix.row_iter().map(|row| row.iter().copied().collect()).collect();
+    let right = (matrix * start).as_slice().to_vec();
+    let mut program = Equations { free: 0, variables: k, rows, right }.dictionary()?;
+    if program.feasible() != Feasibility::Point {
+        return None;
+    }
+    let (mut sum, mut count) = (start.clone(), 1.0);
     for target in 0..k {
-        if sum[target] > SETTINGS.active * sum.amax() {
-            continue;
+        if sum[target] <= SETTINGS.active * sum.amax() {
+            program.minimise(&[(target, -1.0)], PIVOTS)?;
+            sum += DVector::from_fn(k, |i, _| program.value(i).max(0.0));
+            count += 1.0;
         }
-        sum += carry(matrix, start, target)?;
-        count += 1.0;
     }
     Some(sum / count)
-}
-
-/// Increases entry `target` of a feasible point along null directions of the matrix as far as
-/// positivity allows: a small simplex method with Bland's rule on the rows of the null space.
-fn carry(matrix: &DMatrix<f64>, start: &DVector<f64>, target: usize) -> Option<DVector<f64>> {
-    let k = matrix.ncols();
-    // A basis of independent columns that contains the positive ones.
-    let mut order: Vec<usize> = (0..k).collect();
-    order.sort_by(|&a, &b| start[b].total_cmp(&start[a]).then(a.cmp(&b)));
-    let mut basis: Vec<usize> = Vec::new();
-    for index in order {
-        let mut trial = basis.clone();
-        trial.push(index);
-        if rank(&matrix.select_columns(&trial)) == trial.len() {
-            basis = trial;
-        }
-    }
-    let mut y = start.clone();
-    for _ in 0..200 {
-        let b = matrix.select_columns(&basis);
-        let pseudo = b.clone().svd(true, true);
-        let entering = (0..k).filter(|i| !basis.contains(i)).find_map(|i| {
-            let change = pseudo.solve(&matrix.column(i).into_owned(), SETTINGS.balanced).ok()?;
-            let gain =
-                f64::from(i == target) - basis.iter().position(|&j| j == target).map_or(0.0, |place| change[place]);
-            (gain > SETTINGS.negligible).then_some((i, change))
-        });
-        let Some((entering, change)) = entering else {
-            return Some(y);
-        };
-        let ratio = |place: usize| y[basis[place]].max(0.0) / change[place];
-        let place = (0..basis.len())
-            .filter(|&place| change[place] > SETTINGS.negligible)
-            .min_by(|&a, &b| ratio(a).total_cmp(&ratio(b)).then(basis[a].cmp(&basis[b])))?;
-        let step = ratio(place);
-        for (p, &j) in basis.iter().enumerate() {
-            y[j] = (y[j] - step * change[p]).max(0.0);
-        }
-        y[entering] = step;
-        y[basis[place]] = 0.0;
-        basis[place] = entering;
-    }
-    Some(y)
 }
 
 /// Newton's method on max Σ log y_i with A y fixed, from a positive start.
@@ -193,14 +157,11 @@ mod tests {
         assert_eq!(rank(&DMatrix::zeros(0, 0)), 0);
     }
 
-    /// On y_1 + … + y_n = 1 an entry increases up to 1, an interior point has only positive entries, and the analytic
-    /// centre is 1/n.
+    /// On y_1 + … + y_n = 1 an interior point has only positive entries, and the analytic centre is 1/n.
     #[test]
     fn the_centre_of_a_simplex_is_its_middle() {
         let matrix = DMatrix::from_element(1, 4, 1.0);
         let corner = DVector::from_vec(vec![0.0, 1.0, 0.0, 0.0]);
-        let carried = carry(&matrix, &corner, 3).expect("a way");
-        assert!((carried[3] - 1.0).abs() < 1e-12 && carried[1].abs() < 1e-12, "{carried}");
         let interior = interior_point(&matrix, &corner).expect("a point");
         assert!(interior.min() > 0.1 && (interior.sum() - 1.0).abs() < 1e-12, "{interior}");
         let centre = analytic_centre(&matrix, interior);
