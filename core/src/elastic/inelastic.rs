@@ -26,16 +26,17 @@
 //! and the middle point follows with half of its strain, so that 13/18 of the element take part. Softening is therefore
 //! only for elements of order 1.
 
-use super::element::{bilinear, strain_operators};
+use super::element::{bilinear, stiffness_of_strains, strain_operators};
 use super::mesh::Mesh;
 use super::shape::{Place, Placement, Response, Shape, at_places};
 use super::stress::Recovered;
 use crate::law::{Elasticity, PlanarPoint, PlanarUpdate, Plane, UpdateContext, Voigt};
+use crate::linear::Analysis;
 use crate::model::geometry::{Vec2, area_and_centroid};
 use crate::model::{Assembly, MeshDensity};
 use nalgebra::{DMatrix, Matrix2};
 use std::fmt;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 /// Returns √A of the greatest element \[m\] of a polygon's mesh. An error gives the reason why there is no mesh.
 fn largest_element(vertices: &[Vec2], density: &MeshDensity) -> Result<f64, String> {
@@ -65,16 +66,20 @@ pub(super) struct Strains {
     pub(super) operators: Vec<Vec<(DMatrix<f64>, f64)>>,
     /// √A of each element.
     lengths: Vec<f64>,
+    /// Stiffness of each element while it is elastic.
+    pub(super) elastic: Vec<DMatrix<f64>>,
+    /// Order of elimination of the tangents, which all have the same pattern.
+    pub(super) analysis: Mutex<Analysis>,
 }
 
 impl Strains {
-    /// Computes B, weights and lengths of all elements of a shape.
+    /// Computes B, weights, lengths and elastic stiffness of all elements of a shape.
     pub fn new(shape: &Shape, plane: Plane) -> Self {
         let corners = (0..shape.mesh.elements.len()).map(|e| shape.mesh.corners(e));
-        Strains {
-            operators: corners.clone().map(|c| strain_operators(&shape.reference, &c, plane)).collect(),
-            lengths: corners.map(|c| area_and_centroid(&c).0.sqrt()).collect(),
-        }
+        let operators: Vec<_> = corners.clone().map(|c| strain_operators(&shape.reference, &c, plane)).collect();
+        let elastic = operators.iter().map(|own| stiffness_of_strains(own, &shape.elasticity.stiffness)).collect();
+        let lengths = corners.map(|c| area_and_centroid(&c).0.sqrt()).collect();
+        Strains { operators, lengths, elastic, analysis: Mutex::default() }
     }
 }
 

@@ -1,7 +1,6 @@
 //! A body of a yielding material, linearised at displacements of its nodes: stresses, energies, tangent, and the
 //! condensation of the tangent onto its points. The module `inelastic` has the equations.
 
-use super::element::stiffness_of_strains;
 use super::inelastic::{InelasticBody, InelasticState};
 use super::shape::{SPRINGS, at_places, placed};
 use crate::law::{Effect, PlanarPoint};
@@ -12,6 +11,8 @@ use std::sync::Arc;
 
 /// Greatest residual of the equations of a tangent, relative to loads and stiffness × displacement.
 const RESIDUAL: f64 = 1e-10;
+/// Residual of these equations, relative to the same, that is rounding.
+const ROUNDING: f64 = 1e-14;
 /// Share of the elastic stiffness that is added to yielding points if the tangent has no inverse. It makes the
 /// iteration slower but does not change its result.
 const SOFTEST: f64 = 1e-3;
@@ -54,6 +55,20 @@ pub struct Linearisation {
     pub changed: bool,
     /// Number of matrices factorised for it.
     pub factorisations: u64,
+}
+
+/// Returns the greatest residual of the equations of a tangent without its springs, relative to loads and stiffness ×
+/// displacement.
+fn unsolved(factors: &SparseLu, stiffest: f64, right: &[Vec<f64>], all: &DMatrix<f64>) -> f64 {
+    // A number that is not one remains the greatest.
+    let larger = |a: f64, b: f64| if a >= b || a.is_nan() { a } else { b };
+    let greatest = |v: &[f64]| v.iter().fold(0.0, |a, x| larger(a, x.abs()));
+    let of_one = |((right, mut left), x): ((&Vec<f64>, Vec<f64>), nalgebra::DVectorView<f64>)| {
+        SPRINGS.iter().for_each(|&dof| left[dof] += x[dof]);
+        greatest(&left) / (greatest(right) + stiffest * x.amax()).max(f64::MIN_POSITIVE)
+    };
+    let errors = right.iter().zip(factors.left(right, all)).zip(all.column_iter()).map(of_one);
+    errors.fold(0.0, larger)
 }
 
 impl InelasticBody {
@@ -220,62 +235,86 @@ impl InelasticBody {
         point.branch.is_elastic() && (0..3).all(|i| (0..3).all(|j| same(i, j)))
     }
 
-    /// Returns P K⁺ Pᵀ Nᵀ and P K⁺ f_int with the tangents of yielding points and the elastic stiffness elsewhere.
-    fn solve(&self, points: &[PlanarPoint], internal: &[f64], share: f64) -> Option<(DMatrix<f64>, Vec<f64>)> {
-        let size = internal.len();
-        let mut entries: Entries = Vec::new();
+    /// Returns the number of Gauss points at which something irreversible happens in a step from `start` to displacements of the
+    /// nodes.
+    ///
+    /// # Errors
+    /// If stresses cannot be computed.
+    pub fn yielding(&self, displacement: &[f64], start: &InelasticState) -> Result<usize, String> {
+        let mut history = start.history.clone();
+        let points = self.stresses(&self.strains_at(displacement), &start.history, &mut history)?;
+        Ok(points.iter().filter(|point| !point.branch.is_elastic()).count())
+    }
+
+    /// Returns the entries of K with the tangents of yielding points and the elastic stiffness elsewhere; `share` of the elastic
+    /// stiffness is added at yielding points.
+    fn tangent_entries(&self, points: &[PlanarPoint], share: f64) -> Entries {
+        let elements = &self.shape.mesh.elements;
+        let mut entries: Entries = Vec::with_capacity(SPRINGS.len() + elements.len() * (2 * elements[0].len()).pow(2));
         entries.extend(SPRINGS.map(|dof| (dof, dof, 1.0)));
         let mut first = 0;
-        let elastic = &self.shape.elasticity.stiffness;
-        for (nodes, operators) in self.shape.mesh.elements.iter().zip(&self.strains.operators) {
+        for ((nodes, operators), elastic) in elements.iter().zip(&self.strains.operators).zip(&self.strains.elastic) {
             let here = &points[first..first + operators.len()];
             first += operators.len();
-            let k = if here.iter().all(|point| self.is_unchanged(point)) {
-                stiffness_of_strains(operators, elastic)
-            } else {
-                let mut k = DMatrix::zeros(2 * nodes.len(), 2 * nodes.len());
-                for ((b, weight), point) in operators.iter().zip(here) {
-                    let mut d = nalgebra::Matrix3::from_fn(|i, j| point.tangent[i][j] / self.modulus);
-                    if !self.is_unchanged(point) {
-                        d += elastic * share;
-                    }
-                    k += b.transpose() * (d * *weight) * b;
-                }
-                k
-            };
+            let changed = !here.iter().all(|point| self.is_unchanged(point));
+            let own = changed.then(|| self.tangent_of_element(operators, here, share));
+            let k = own.as_ref().unwrap_or(elastic);
             let row = |i: usize| 2 * nodes[i / 2] + i % 2;
-            for j in 0..k.ncols() {
-                entries.extend((0..k.nrows()).map(|i| (row(i), row(j), k[(i, j)])));
+            for (j, column) in k.column_iter().enumerate() {
+                entries.extend(column.iter().enumerate().map(|(i, value)| (row(i), row(j), *value)));
             }
         }
+        entries
+    }
+
+    /// Returns K of an element with these points.
+    fn tangent_of_element(
+        &self,
+        operators: &[(DMatrix<f64>, f64)],
+        points: &[PlanarPoint],
+        share: f64,
+    ) -> DMatrix<f64> {
+        let elastic = &self.shape.elasticity.stiffness;
+        let columns = operators[0].0.ncols();
+        let mut k = DMatrix::zeros(columns, columns);
+        for ((b, weight), point) in operators.iter().zip(points) {
+            let mut d = nalgebra::Matrix3::from_fn(|i, j| point.tangent[i][j] / self.modulus);
+            if !self.is_unchanged(point) {
+                d += elastic * share;
+            }
+            k += b.transpose() * (d * *weight) * b;
+        }
+        k
+    }
+
+    /// Returns P K⁺ Pᵀ Nᵀ and P K⁺ f_int with the tangents of yielding points and the elastic stiffness elsewhere. The solution
+    /// is refined only if its residual is more than rounding.
+    fn solve(&self, points: &[PlanarPoint], internal: &[f64], share: f64) -> Option<(DMatrix<f64>, Vec<f64>)> {
+        let size = internal.len();
+        let entries = self.tangent_entries(points, share);
         let stiffest = entries.iter().fold(0.0f64, |max, entry| max.max(entry.2.abs()));
-        let factors = SparseLu::new(size, &entries)?;
+        let factors = SparseLu::analysed_together(size, &entries, &self.strains.analysis)?;
         let mut loads = self.shape.loads_at(&self.places);
         self.shape.balanced(&mut loads);
         let mut right: Vec<Vec<f64>> = loads.column_iter().map(|c| c.iter().copied().collect()).collect();
         right.push(internal.to_vec());
-        let all = factors.solve(&right, 1)?;
-        let mut all = DMatrix::from_fn(size, all.len(), |i, j| all[j][i]);
-        self.shape.without_rigid_motion(&mut all);
-        let largest = all.columns(0, right.len() - 1).amax();
-        if largest.is_nan() || largest > LARGEST * self.response.amax() {
-            return None;
-        }
-        let mut left = DMatrix::from_fn(size, right.len(), |i, j| right[j][i]);
-        for &(i, j, value) in entries.iter().skip(SPRINGS.len()) {
-            for c in 0..left.ncols() {
-                left[(i, c)] -= value * all[(j, c)];
+        for refinements in [0, 1] {
+            let all = factors.solve(&right, refinements)?;
+            let mut all = DMatrix::from_fn(size, all.len(), |i, j| all[j][i]);
+            self.shape.without_rigid_motion(&mut all);
+            let error = unsolved(&factors, stiffest, &right, &all);
+            if refinements == 0 && (error.is_nan() || error > ROUNDING) {
+                continue;
             }
-        }
-        for (c, right) in right.iter().enumerate() {
-            let load = right.iter().fold(0.0f64, |a, x| a.max(x.abs()));
-            let error = left.column(c).amax() / (load + stiffest * all.column(c).amax()).max(f64::MIN_POSITIVE);
-            if error.is_nan() || error > RESIDUAL {
+            let largest = all.columns(0, right.len() - 1).amax();
+            let singular = largest.is_nan() || largest > LARGEST * self.response.amax();
+            if singular || error.is_nan() || error > RESIDUAL {
                 return None;
             }
+            let own = all.column(right.len() - 1).iter().copied().collect();
+            return Some((all.columns(0, right.len() - 1).into_owned(), own));
         }
-        let own = all.column(right.len() - 1).iter().copied().collect();
-        Some((all.columns(0, right.len() - 1).into_owned(), own))
+        None
     }
 
     /// Returns ∂(energy dissipated in the step)/∂(forces on the points) \[J/N\]; `start` is the state at the start of the step.

@@ -5,6 +5,8 @@ use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
 use faer::sparse::{SparseColMat, SymbolicSparseColMat};
 use faer::{Mat, MatMut};
+use nalgebra::{DMatrix, DVectorView};
+use std::sync::{Mutex, PoisonError};
 
 /// L U of a square sparse matrix with partial pivoting, with the matrix itself for refinement.
 pub struct SparseLu {
@@ -98,7 +100,21 @@ impl SparseLu {
     /// replaced. `None` as for [`SparseLu::new`].
     pub fn analysed(size: usize, entries: &Entries, analysis: &mut Analysis) -> Option<Self> {
         let matrix = by_columns(size, entries);
-        let factors = Lu::try_new_with_symbolic(analysis.of(&matrix)?, matrix.as_ref()).ok()?;
+        let order = analysis.of(&matrix)?;
+        SparseLu::ordered(matrix, order)
+    }
+
+    /// Factorises a matrix with an analysis that several threads share; it is locked only while it is read. `None` as for
+    /// [`SparseLu::new`].
+    pub fn analysed_together(size: usize, entries: &Entries, analysis: &Mutex<Analysis>) -> Option<Self> {
+        let matrix = by_columns(size, entries);
+        // A thread that has panicked cannot leave half an analysis: the analysis is replaced as a whole.
+        let order = analysis.lock().unwrap_or_else(PoisonError::into_inner).of(&matrix)?;
+        SparseLu::ordered(matrix, order)
+    }
+
+    fn ordered(matrix: SparseColMat<usize, f64>, order: SymbolicLu<usize>) -> Option<Self> {
+        let factors = Lu::try_new_with_symbolic(order, matrix.as_ref()).ok()?;
         Some(SparseLu { matrix, factors })
     }
 
@@ -124,6 +140,20 @@ impl SparseLu {
         }
         let out: Vec<Vec<f64>> = (0..right.len()).map(|j| (0..size).map(|i| x[(i, j)]).collect()).collect();
         out.iter().flatten().all(|v| v.is_finite()).then_some(out)
+    }
+
+    /// Returns b − A x for several right-hand sides b, with the solutions x as columns.
+    pub fn left(&self, right: &[Vec<f64>], x: &DMatrix<f64>) -> Vec<Vec<f64>> {
+        let pattern = self.matrix.symbolic();
+        let (columns, rows, values) = (pattern.col_ptr(), pattern.row_idx(), self.matrix.val());
+        let of_one = |(right, x): (&Vec<f64>, DVectorView<f64>)| {
+            let mut left = right.clone();
+            for (j, x) in x.iter().enumerate() {
+                (columns[j]..columns[j + 1]).for_each(|at| left[rows[at]] -= values[at] * x);
+            }
+            left
+        };
+        right.iter().zip(x.column_iter()).map(of_one).collect()
     }
 
     fn in_place(&self, x: MatMut<'_, f64>) {
@@ -159,6 +189,9 @@ mod tests {
             let rows =
                 [(scale + 1.0) * x[0] + 0.5 * x[2] - 1.0, x[1] + 3.0 * x[2] - 2.0, 2.5 * x[0] - 2.0 * x[1] - 3.0];
             assert!(rows.iter().all(|r| r.abs() < 1e-14), "{rows:?}");
+            let there = DMatrix::from_column_slice(3, 1, &[1.0, -1.0, 2.0]);
+            let left = factors.left(&[vec![1.0, 2.0, 3.0]], &there).swap_remove(0);
+            assert_eq!(left, [1.0 - (scale + 1.0) - 1.0, 2.0 + 1.0 - 6.0, 3.0 - 2.5 - 2.0]);
         }
         let mut other = entries(1.0);
         other.push((0, 1, 1.0));

@@ -201,7 +201,8 @@ fn a_pressed_block_follows_one_point() {
     }
 }
 
-/// Two blocks of different materials, one above the other, pass the patch test: every Gauss point has the same stress.
+/// Two blocks of different materials, one above the other, pass the patch test: every Gauss point has the same stress. The points that
+/// yield are counted in the same way with and without a linearisation.
 #[test]
 fn two_yielding_blocks_pass_the_patch_test() {
     let mut press = Press::new(stone("[[0.0, 10e6], [0.02, 30e6]]"), &stages(&[3.0]));
@@ -216,6 +217,14 @@ fn two_yielding_blocks_pass_the_patch_test() {
         let (own, inelastic) =
             (answer.state.inelastic(index).expect("it yields"), body.inelastic.as_ref().expect("it"));
         let found = inelastic.recover(&own.displacement, &own.state).expect("stresses");
+        // From the undeformed state all points yield; points are counted as for a linearisation, which factorises one matrix.
+        let start = inelastic.initial();
+        let linear = inelastic.linearise(own.displacement.to_vec(), &start).expect("a tangent");
+        assert_eq!(linear.factorisations, 1);
+        assert_eq!(linear.yielding, inelastic.gauss_points());
+        assert_eq!(inelastic.yielding(&own.displacement, &start).expect("stresses"), linear.yielding);
+        let barely: Vec<f64> = own.displacement.iter().map(|v| 1e-3 * v).collect();
+        assert_eq!(inelastic.yielding(&barely, &start).expect("stresses"), 0);
         for stress in found.stress.iter().chain(&found.element_stress) {
             assert!(stress[0].abs() < 30.0 && stress[3].abs() < 30.0, "{stress:?}");
             assert!((stress[1] + 3.0e7).abs() < 30.0, "{stress:?}");

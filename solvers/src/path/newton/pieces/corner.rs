@@ -7,24 +7,25 @@
 use super::monitors::MAX_BISECTIONS;
 use crate::path::newton::model::state::{State, Tangent, moved};
 use crate::path::newton::model::system::StepSystem;
-use crate::path::newton::quantities::inelastic::update_blocks;
+use crate::path::newton::quantities::inelastic::yielding_points;
 
-/// Returns the length along a rate, up to `most`, at which a point of a block first begins or ceases to yield.
+/// Returns the length along a rate, up to `most`, at which a point of a block first begins or ceases to yield. Only blocks that
+/// differ at `most` are examined between: a block that yields for a part of the step only has no lasting corner.
 pub(super) fn corner(system: &mut StepSystem, state: &State, rate: &Tangent, most: f64) -> Option<f64> {
-    let mut yielding = |length: f64| -> Option<Vec<usize>> {
-        let mut there = moved(state, rate, length);
-        update_blocks(system, &mut there).ok()?;
-        Some(there.blocks.iter().flatten().map(|block| block.linear.yielding).collect())
-    };
-    let before = yielding(0.0)?;
-    let (mut near, mut far) = (0.0, most);
-    if yielding(far).is_some_and(|there| there == before) {
+    let all: Vec<usize> = (0..state.blocks.len()).filter(|block| state.blocks[*block].is_some()).collect();
+    let before = yielding_points(system, state, &all).ok()?;
+    let there = yielding_points(system, &moved(state, rate, most), &all);
+    let differs = |k: &usize| !there.as_ref().is_ok_and(|there| there[*k] == before[*k]);
+    let (blocks, before): (Vec<usize>, Vec<usize>) =
+        (0..all.len()).filter(differs).map(|k| (all[k], before[k])).unzip();
+    if blocks.is_empty() {
         return None;
     }
+    let (mut near, mut far) = (0.0, most);
     for _ in 0..MAX_BISECTIONS {
         let middle = 0.5 * (near + far);
-        match yielding(middle) {
-            Some(there) if there == before => near = middle,
+        match yielding_points(system, &moved(state, rate, middle), &blocks) {
+            Ok(there) if there == before => near = middle,
             _ => far = middle,
         }
     }

@@ -30,6 +30,23 @@ pub fn update_blocks(system: &mut StepSystem, state: &mut State) -> Result<(), S
     Ok(())
 }
 
+/// Returns the numbers of Gauss points of some blocks at which something irreversible happens, with the nodes moved as by
+/// [`update_blocks`] but without a linearisation.
+pub fn yielding_points(system: &mut StepSystem, state: &State, blocks: &[usize]) -> Result<Vec<usize>, String> {
+    let loads = system.loads.at(state.factor);
+    let mut counts = Vec::with_capacity(blocks.len());
+    for &index in blocks {
+        let (Some(inner), Some(inelastic)) = (&state.blocks[index], &system.problem.bodies[index].inelastic) else {
+            continue;
+        };
+        let forces = system.geometry.body_forces(index, &state.force, &state.motion, &loads);
+        system.count("stress_updates", inelastic.gauss_points() as u64);
+        let displacement = inelastic.displaced(&inner.linear, &forces);
+        counts.push(inelastic.yielding(&displacement, &inner.base).map_err(|why| format!("block {index}: {why}"))?);
+    }
+    Ok(counts)
+}
+
 /// Returns the greatest unbalanced force on a node, relative to the greatest contact force.
 pub fn block_error(system: &StepSystem, state: &State) -> f64 {
     let loads = system.loads.at(state.factor);
