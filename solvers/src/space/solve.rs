@@ -123,19 +123,19 @@ impl Case<'_> {
     }
 
     /// Finds a field at the start or a refutation of it.
-    fn held(&mut self, method: Method) -> Result<Field, SpaceAnswer> {
+    fn held(&mut self, method: Method) -> Result<Field, Box<SpaceAnswer>> {
         if greatest(&self.program.base) == 0.0 {
             return Ok(Field { lambda: 0.0, y: vec![[0.0; 3]; self.program.points.len()] });
         }
         let Some(evidence) = method(self.program, true, &mut self.counters) else {
-            return Err(SpaceAnswer::stalled("memory is short"));
+            return Err(Box::new(SpaceAnswer::stalled("memory is short")));
         };
         match (evidence.start, evidence.refutation) {
             (Some(field), _) => Ok(field),
-            (None, Some(q)) => Err(self.refuted(&q)),
-            (None, None) => {
-                Err(SpaceAnswer::stalled("neither a field at the start nor a motion that refutes it was found"))
-            }
+            (None, Some(q)) => Err(Box::new(self.refuted(&q))),
+            (None, None) => Err(Box::new(SpaceAnswer::stalled(
+                "neither a field at the start nor a motion that refutes it was found",
+            ))),
         }
     }
 
@@ -147,7 +147,7 @@ impl Case<'_> {
                 SpaceAnswer { ray, notes: vec![IDLE.into()], ..self.with_field(Status::Unbounded, &field) }
             }
             Ok(field) => self.with_field(Status::Stands, &field),
-            Err(answer) => answer,
+            Err(answer) => *answer,
         }
     }
 
@@ -160,8 +160,8 @@ impl Case<'_> {
             // Equilibrium at the start follows only for a factor above it.
             match self.held(method) {
                 Ok(field) => evidence.start = Some(field),
-                Err(refuted) if refuted.status == Status::NoEquilibrium => return self.refutation(&evidence, refuted),
-                Err(answer) => return self.proved(&evidence, answer),
+                Err(refuted) if refuted.status == Status::NoEquilibrium => return self.refutation(&evidence, *refuted),
+                Err(answer) => return self.proved(&evidence, *answer),
             }
         }
         if let (Some(ray), Some(start)) = (&evidence.ray, &evidence.start) {

@@ -11,16 +11,21 @@ use voussoir_core::linear::{BlockCholesky, elimination_order};
 /// A 6 × 6 matrix by rows.
 type Block = [[f64; 6]; 6];
 
+/// Start of a 3 × 3 block in the factor, and the distance between its columns.
+type Place = (usize, usize);
+
+/// True if plus is eliminated after minus, and the four blocks of the coupling by rows.
+type Coupling = (bool, [Place; 4]);
+
 /// Stiffness matrices of one program.
 pub struct Stiffness {
     cholesky: BlockCholesky,
     /// Place of each body in the order of elimination.
     places: Vec<usize>,
     /// Starts of the three blocks below the diagonal of each body, and their column distances.
-    diagonals: Vec<[(usize, usize); 3]>,
-    /// For each contact between two bodies: true if plus is eliminated after minus, and the four blocks of the coupling
-    /// by rows.
-    couplings: Vec<Option<(bool, [(usize, usize); 4])>>,
+    diagonals: Vec<[Place; 3]>,
+    /// For each contact between two bodies.
+    couplings: Vec<Option<Coupling>>,
     work: Vec<f64>,
     /// Factorisations done.
     pub factorisations: u64,
@@ -42,9 +47,7 @@ impl Stiffness {
         (0..count).for_each(|place| columns[2 * place].push(2 * place + 1));
         for (a, b) in &edges {
             let (first, second) = (places[*a].min(places[*b]), places[*a].max(places[*b]));
-            for node in 2 * first..2 * first + 2 {
-                columns[node].extend([2 * second, 2 * second + 1]);
-            }
+            columns[2 * first..2 * first + 2].iter_mut().for_each(|column| column.extend([2 * second, 2 * second + 1]));
         }
         columns.iter_mut().for_each(|column| {
             column.sort_unstable();
@@ -124,16 +127,9 @@ fn condensed<'a>(program: &Program, member: &Member, roots: &mut impl Iterator<I
             let f = member.force(column);
             let m = point.cross(&f);
             let a = [f.x, f.y, f.z, m.x, m.y, m.z];
-            for i in 0..6 {
-                for j in 0..=i {
-                    sum[i][j] += a[i] * a[j];
-                }
+            for (row, x) in sum.iter_mut().zip(&a) {
+                row.iter_mut().zip(&a).for_each(|(sum, y)| *sum += x * y);
             }
-        }
-    }
-    for i in 0..6 {
-        for j in i + 1..6 {
-            sum[i][j] = sum[j][i];
         }
     }
     sum
@@ -178,14 +174,14 @@ fn times_transposed(a: &Block, b: &Block) -> Block {
 }
 
 /// Adds the lower triangle of a block to the three blocks of a body.
-fn add_lower(values: &mut [f64], places: &[(usize, usize); 3], block: &Block) {
+fn add_lower(values: &mut [f64], places: &[Place; 3], block: &Block) {
     add(values, places[0], block, (0, 0), true);
     add(values, places[1], block, (3, 0), false);
     add(values, places[2], block, (3, 3), true);
 }
 
 /// Adds a 3 × 3 part of a block, or its lower triangle.
-fn add(values: &mut [f64], (start, apart): (usize, usize), block: &Block, (row, column): (usize, usize), lower: bool) {
+fn add(values: &mut [f64], (start, apart): Place, block: &Block, (row, column): (usize, usize), lower: bool) {
     for j in 0..3 {
         for i in if lower { j } else { 0 }..3 {
             values[start + j * apart + i] += block[row + i][column + j];

@@ -9,13 +9,16 @@ use voussoir_core::space::{
 /// Distance of the bounds that is accepted.
 pub const GAP: f64 = 1e-8;
 
+/// Minus and plus body, corners, normal, friction.
+pub type Face = (Option<usize>, Option<usize>, Vec<Vec3>, Vec3, f64);
+
 /// A scene of bodies with weights and centroids; `None` is the ground.
 #[derive(Clone, Default)]
 pub struct Scene {
     /// Weight and centroid.
     pub bodies: Vec<(f64, Vec3)>,
-    /// Minus and plus body, corners, normal, friction.
-    pub contacts: Vec<(Option<usize>, Option<usize>, Vec<Vec3>, Vec3, f64)>,
+    /// All contacts.
+    pub contacts: Vec<Face>,
 }
 
 /// Returns two unit vectors that complete a normal to a right-handed frame.
@@ -37,7 +40,7 @@ impl Scene {
         let loads = |along: &Vec3| {
             self.bodies.iter().map(|(weight, centroid)| SpaceContact::wrench(centroid, &(along * *weight))).collect()
         };
-        let contact = |(index, (minus, plus, points, normal, friction)): (usize, &(_, _, Vec<Vec3>, Vec3, f64))| {
+        let contact = |(index, (minus, plus, points, normal, friction)): (usize, &Face)| {
             let cone = Cone { friction: *friction };
             SpaceContact {
                 contact: index,
