@@ -13,7 +13,6 @@ use voussoir_core::space::{SpaceAnswer, SpaceContact, SpaceProblem, SpaceVelocit
 const MAX_STEPS: u64 = 100;
 
 const IDLE: &str = "every load of this stage acts on bodies that the ground holds";
-const SELF_STRESS: &str = "the blocks interlock: forces strictly inside all cones are in balance without loads, so that every load is in equilibrium";
 const NOT_CLOSED: &str = "the proved bounds of the factor do not meet";
 
 /// A method that solves one program. `held`: only the loads at the start.
@@ -217,8 +216,7 @@ impl Case<'_> {
         forces.iter_mut().flatten().flatten().for_each(|f| *f /= unit);
         let program = self.program.of_self_stress();
         let stress = method(&program, false, &mut self.counters).is_some_and(|evidence| evidence.ray.is_some());
-        let notes = if stress { vec![SELF_STRESS.into()] } else { Vec::new() };
-        SpaceAnswer { ray: Some(forces), self_stress: stress, notes, ..self.with_field(Status::Unbounded, start) }
+        SpaceAnswer { ray: Some(forces), self_stress: stress, ..self.with_field(Status::Unbounded, start) }
     }
 }
 

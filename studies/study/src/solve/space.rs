@@ -131,6 +131,9 @@ fn certified(
     if answer.self_stress && status == Status::Unbounded && is_ours(tag) {
         notes.push(SELF_STRESS.to_string());
     }
+    if status == Status::Collapse && answer.unique == Some(false) && is_ours(tag) {
+        notes.push("the mechanism is not the only one with this load factor".into());
+    }
     if status == Status::Stands && stage.target == Target::Collapse {
         notes.push(format!("no collapse up to factor_max = {}", stage.factor_max));
     }
