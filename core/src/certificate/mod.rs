@@ -7,6 +7,7 @@ mod path;
 mod products;
 mod rounding;
 mod settlement;
+mod space;
 
 pub use self::limit::{
     Certificate, Claim, ContactForce, NonAssociatedClaim, ROUNDING, Verdict, certify, largest_jump, motion_size,
@@ -22,3 +23,4 @@ pub use self::path::{
 };
 pub use self::products::{COVERED, proved};
 pub use self::settlement::{settlement_residuals, support_motions};
+pub use self::space::{SpaceClaim, SpaceVerdict, certify_space};

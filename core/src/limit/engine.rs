@@ -1,7 +1,7 @@
 //! The interface of engines of limit analysis: the three single optimisations that answer every question.
 
 use super::problem::{JointForce, Velocity};
-use super::solver::Counters;
+use super::status::Counters;
 use crate::model::Wrenches;
 
 /// The result for a fixed load.

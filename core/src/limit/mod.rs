@@ -13,6 +13,9 @@ mod programs;
 mod question;
 mod scale;
 mod solver;
+mod space_answer;
+mod space_problem;
+mod status;
 mod well_formed;
 
 pub use self::engine::{Engine, Equilibrium, Extreme, GreatestFactor};
@@ -24,6 +27,7 @@ pub use self::problem::{JointForce, LimitJoint, LimitProblem, Velocity};
 pub use self::programs::{LinearProgram, LinearSolution, answer_by_programs};
 pub use self::question::answer_by;
 pub use self::scale::{combined, force_scale, force_unit, with_unit_power};
-pub use self::solver::{
-    Counters, Greatest, LimitAnswer, LimitQuestion, LimitSolver, NonAssociated, SettlementAnswer, Status,
-};
+pub use self::solver::{LimitAnswer, LimitQuestion, LimitSolver, NonAssociated, SettlementAnswer};
+pub use self::space_answer::{SpaceAnswer, SpaceField, SpaceVelocity, power};
+pub use self::space_problem::{Cone, SpaceContact, SpaceProblem};
+pub use self::status::{Counters, Greatest, Status};

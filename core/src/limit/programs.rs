@@ -14,7 +14,8 @@ use super::matrices::LimitMatrices;
 use super::problem::LimitProblem;
 use super::question::answer_by;
 use super::scale::{force_scale, force_unit, with_unit_power};
-use super::solver::{Counters, LimitAnswer, LimitQuestion};
+use super::solver::{LimitAnswer, LimitQuestion};
+use super::status::Counters;
 use crate::model::Wrenches;
 
 /// Distance of a share of the loads from 1 below which all loads are carried.

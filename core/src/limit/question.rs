@@ -4,7 +4,8 @@ use super::engine::{Engine, Equilibrium, GreatestFactor};
 use super::floating::loose_motion;
 use super::problem::{JointForce, LimitProblem};
 use super::scale::combined;
-use super::solver::{LimitAnswer, LimitQuestion, Status};
+use super::solver::{LimitAnswer, LimitQuestion};
+use super::status::Status;
 use crate::model::Wrenches;
 
 /// Factor, in the unit in which both loads have the same size, below which it is rounding of zero.

@@ -9,6 +9,7 @@ mod loads;
 mod mesh_density;
 mod scene;
 mod self_crossing;
+pub mod space;
 mod wrench;
 
 pub use self::assembly::{ArchLayout, Assembly, Body, Catalogue, Inertia, root};

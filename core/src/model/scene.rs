@@ -1,8 +1,8 @@
 //! Scenes: descriptions of geometry that are converted into an [`Assembly`].
 
 use super::assembly::{Assembly, Catalogue};
+use super::space::SpaceAssembly;
 use crate::plugin::{Diagnostic, KeyValue, PluginKind, Shape};
-use crate::space::SpaceAssembly;
 use std::fmt::Debug;
 
 /// A kind of scene, chosen by `[scene] scene = …`.

@@ -5,15 +5,11 @@
 //! correction of least norm is used, and the field is mixed with an earlier one that is strictly inside. Motions have
 //! exact rates Aᵀ q. If some are outside the cones, an earlier opening mechanism is added.
 
-use super::cone::{Cone, Scaling, UNIT, margin, plus};
-use super::corrections::Corrections;
+use super::cone::{Cone, Scaling, UNIT, inner, margin, plus};
 use super::interior_point::{InteriorPoint, add, dot, greatest};
 use super::program::{Bodies, Program};
 use super::settings::SETTINGS;
 use super::stiffness::Stiffness;
-
-/// Greatest number of corrections of the equilibrium of a field.
-const MAX_REPAIRS: usize = 12;
 
 /// A field inside the cones in equilibrium at a factor.
 #[derive(Debug, Clone)]
@@ -202,7 +198,7 @@ fn evenly(program: &Program, idle: &[bool]) -> Option<Stiffness> {
 /// Returns forces in equilibrium with λ p + τ w after corrections of least norm of all points but the idle ones.
 fn evened(program: &Program, mut y: Vec<Cone>, [lambda, tau]: [f64; 2], idle: &[bool]) -> Option<Vec<Cone>> {
     let mut even = evenly(program, idle)?;
-    for _ in 0..MAX_REPAIRS {
+    for _ in 0..SETTINGS.repairs {
         let mut left = program.imbalance(&y, lambda, tau);
         if greatest(&left) <= SETTINGS.exact * size(&y) {
             break;
@@ -256,7 +252,7 @@ fn share(x: &[Cone], inside: &[Cone]) -> Option<f64> {
 fn balanced(method: &mut InteriorPoint, mut y: Vec<Cone>, [lambda, tau]: [f64; 2]) -> Option<Vec<Cone>> {
     let mut left = method.program.imbalance(&y, lambda, tau);
     let mut corrections = Corrections::default();
-    for _ in 0..MAX_REPAIRS {
+    for _ in 0..SETTINGS.repairs {
         let error = greatest(&left) / size(&y);
         if error <= SETTINGS.balanced {
             return Some(y);
@@ -269,4 +265,38 @@ fn balanced(method: &mut InteriorPoint, mut y: Vec<Cone>, [lambda, tau]: [f64; 2
         left = method.program.imbalance(&y, lambda, tau);
     }
     None
+}
+
+/// Corrections of equilibrium: conjugate gradients with the factorised stiffness as preconditioner.
+///
+/// Near the optimum flexibilities of points differ by 1e24. Bodies that move together are joined by stiff points and rest on
+/// soft ones, and rounding of the stiff entries exceeds the soft entries. The factors are then wrong for a few motions.
+/// Products with the matrix are computed point by point, so that a few corrections remove these errors.
+#[derive(Default)]
+struct Corrections {
+    before: Option<(Bodies, f64)>,
+}
+
+impl Corrections {
+    /// Returns the motion that removes an error of equilibrium, and the decrease of the forces that goes with it. `None`
+    /// if it is lost in rounding.
+    fn next(&mut self, method: &mut InteriorPoint, left: &[f64]) -> Option<(Bodies, Vec<Cone>)> {
+        let mut motion = left.to_vec();
+        method.stiffness.solve(&mut motion);
+        let product = dot(left, &motion);
+        if let Some((before, earlier)) = &self.before {
+            let share = product / earlier;
+            motion.iter_mut().zip(before).for_each(|(c, d)| *c += share * d);
+        }
+        let rates = method.program.rates(&motion);
+        let mut change: Vec<Cone> = rates.iter().zip(&method.scalings).map(|(z, scaling)| scaling.square(z)).collect();
+        let resisted: f64 = rates.iter().zip(&change).map(|(z, y)| inner(z, y)).sum();
+        let length = product / resisted;
+        if !(length.is_finite() && length > 0.0) {
+            return None;
+        }
+        self.before = Some((motion.clone(), product));
+        motion.iter_mut().chain(change.iter_mut().flatten()).for_each(|x| *x *= length);
+        Some((motion, change))
+    }
 }

@@ -16,9 +16,6 @@ use super::program::{Bodies, Program};
 use super::settings::SETTINGS;
 use super::stiffness::Stiffness;
 
-/// Greatest number of corrections of a direction.
-const MAX_CORRECTIONS: usize = 6;
-
 /// A point of the homogeneous model, or a change of it.
 #[derive(Debug, Clone)]
 pub struct State {
@@ -228,7 +225,7 @@ impl<'a> InteriorPoint<'a> {
     fn refine(&mut self, eta: f64, step: &mut State) {
         let goal = SETTINGS.refined * greatest(&self.residuals.equilibrium);
         let mut least = f64::INFINITY;
-        for _ in 0..MAX_CORRECTIONS {
+        for _ in 0..SETTINGS.corrections {
             let mut left = self.program.imbalance(&step.y, step.lambda, step.tau);
             add(&mut left, eta, &self.residuals.equilibrium);
             let error = greatest(&left);

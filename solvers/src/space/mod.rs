@@ -7,13 +7,12 @@
 
 mod by_clarabel;
 mod cone;
-mod corrections;
 mod evidence;
 mod interior_point;
+mod limit_cones;
 mod program;
 mod settings;
 mod solve;
-mod solver;
 mod stiffness;
 #[cfg(test)]
 mod tests;

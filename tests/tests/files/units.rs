@@ -151,7 +151,8 @@ fn the_owner_of_a_key_decides_its_unit() {
     assert_eq!(unit(&joint("mohr_coulomb"), "joints.dry.compressive_strength"), Some(Some("Pa")));
     assert_eq!(unit(&json!({}), "factors.compressive_strength"), Some(None));
     assert_eq!(unit(&json!({}), "solver.stop.displacement"), Some(Some("m")));
-    for unknown in ["rise", "scene.rise", "no.such.key", "stages.0.at", "joints.dry.no_such", "scene.thickness.at", ""]
+    for unknown in
+        ["rise", "scene.no_such", "no.such.key", "stages.0.at", "joints.dry.no_such", "scene.thickness.at", ""]
     {
         assert_eq!(unit(&table, unknown), None, "{unknown}");
     }

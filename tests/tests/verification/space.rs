@@ -98,7 +98,7 @@ fn forged_results_in_space_are_found() {
     forge(&|case| case["field"][0]["force"] = serde_json::json!([1.0, 0.0]));
 }
 
-/// A law without dilatancy is solved with associated flow, and the result says so.
+/// A law without dilatancy is solved with associated flow, which the result states.
 #[test]
 fn friction_without_dilatancy_is_read_as_associated() {
     let result = answered(&pushed(DOME, 0.7, [1.0, 0.0, 0.0]).replace("coulomb_associated", "coulomb"));

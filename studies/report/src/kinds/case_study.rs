@@ -3,10 +3,10 @@
 
 use super::outputs::write_files;
 use super::verify_study::verify_study;
-use crate::figures::curve_svg;
 use crate::figures::envelope::{envelope_chart, optimum_chart};
 use crate::figures::seismic::capacity_charts;
 use crate::figures::sweep::study_chart;
+use crate::figures::{curve_svg, mechanism_of_case, scene_of_case};
 use crate::output::StudyOutput;
 use crate::writers::files::HeldFiles;
 use crate::writers::record::record;
@@ -78,8 +78,8 @@ impl LoadedStudy for SceneStudy {
                 .or_else(|| envelope_chart(&output))
                 .or_else(|| optimum_chart(&output))
                 .or_else(|| capacity_charts(&output).into_iter().next().map(|(_, svg)| svg)),
-            Piece::Scene(id) => output.scene_svg(place_of(id)?),
-            Piece::Mechanism(id) => output.mechanism_svg(place_of(id)?),
+            Piece::Scene(id) => scene_of_case(&output, place_of(id)?),
+            Piece::Mechanism(id) => mechanism_of_case(&output, place_of(id)?),
             Piece::Curve(id) => of_case(id)
                 .and_then(|(case, assembly, stages)| curve_svg(&output.case_title(case), assembly, stages, case)),
         }

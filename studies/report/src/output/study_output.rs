@@ -1,6 +1,5 @@
 //! The input of writers: the results, and the study that they were computed from.
 
-use crate::figures::{mechanism_svg, scene_svg, space_mechanism_svg, space_svg};
 use crate::output::columns::Labels;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -104,26 +103,6 @@ impl<'a> StudyOutput<'a> {
     /// Returns true if a case is drawn.
     pub fn drawn(&self, id: usize) -> bool {
         self.drawn.as_ref().is_none_or(|drawn| drawn.contains(&id))
-    }
-
-    /// Returns the drawing of a case, by its index in the results; `None` if its scene is missing.
-    pub fn scene_svg(&self, place: usize) -> Option<String> {
-        let (scene, case) = (self.scenes.get(place)?, self.results.cases.get(place)?);
-        let title = self.case_title(case);
-        Some(match scene.space {
-            Some(space) => space_svg(&title, space, scene.stages, case),
-            None => scene_svg(&title, scene.assembly, scene.stages, case),
-        })
-    }
-
-    /// Returns the drawing of the mechanism of a case, by its index in the results, if it has one.
-    pub fn mechanism_svg(&self, place: usize) -> Option<String> {
-        let (scene, case) = (self.scenes.get(place)?, self.results.cases.get(place)?);
-        let title = self.case_title(case);
-        match scene.space {
-            Some(space) => space_mechanism_svg(&title, space, case),
-            None => mechanism_svg(&title, scene.assembly, case),
-        }
     }
 
     /// Assembly and stages of the case with this index; `None` if they are missing.

@@ -6,7 +6,7 @@ use crate::figures::envelope::{envelope_chart, optimum_chart};
 use crate::figures::moving_load::moving_load_svg;
 use crate::figures::seismic::capacity_charts;
 use crate::figures::sweep::{output_charts, study_chart};
-use crate::figures::{curve_charts, curve_svg};
+use crate::figures::{curve_charts, curve_svg, mechanism_of_case, scene_of_case};
 use crate::output::StudyOutput;
 use rayon::prelude::*;
 use serde_json::Value as Json;
@@ -36,8 +36,8 @@ impl Writer for Figures {
             let Some((assembly, stages)) = study.scene(*place) else { return Vec::new() };
             let name = |what: &str| format!("figures/case-{:04}-{what}.svg", case.label.id);
             let title = study.case_title(case);
-            let mut own: Vec<_> = study.scene_svg(*place).map(|svg| (name("scene"), svg)).into_iter().collect();
-            own.extend(study.mechanism_svg(*place).map(|svg| (name("mechanism"), svg)));
+            let mut own: Vec<_> = scene_of_case(study, *place).map(|svg| (name("scene"), svg)).into_iter().collect();
+            own.extend(mechanism_of_case(study, *place).map(|svg| (name("mechanism"), svg)));
             own.extend(curve_svg(&title, assembly, stages, case).map(|svg| (name("curve"), svg)));
             own
         };

@@ -39,6 +39,7 @@ pub mod table;
 pub(crate) mod title_block;
 pub mod vtu;
 mod vtu_space;
+mod vtu_text;
 mod writer;
 
 pub use writer::{CaseTable, Writer, WriterEntry, tables, writers, written};

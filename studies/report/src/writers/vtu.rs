@@ -2,11 +2,11 @@
 
 use super::register::register;
 use super::vtu_space::{blocks_text, forces_text};
+use super::vtu_text::{array, head, tail};
 use super::writer::Writer;
 use crate::output::StudyOutput;
 use crate::postprocess::displaced_mesh::{DisplacedBlock, displaced_blocks};
 use serde_json::Value as Json;
-use std::fmt::Write;
 use voussoir_core::plugin::OutputOf;
 use voussoir_plot::svg::escape;
 use voussoir_study::results::CaseResult;
@@ -66,30 +66,6 @@ const MEANING: &str = "Blocks at the end of each path, for ParaView. cases.pvd o
     have yielded are those of the nearest Gauss points. Stresses at the ends of contact zones are singular: they grow with the mesh.\n\
     Outputs of plug-ins: cells of case-NNNN.vtu have those of materials (outputs of points as means); points-NNNN.vtu has the\n\
     contact and stress points with all outputs of points, joints and blocks; nan where there is no value.\n\n";
-
-pub(super) fn array(text: &mut String, name: &str, kind: &str, components: usize, rows: impl Iterator<Item = String>) {
-    let _ = writeln!(
-        text,
-        "        <DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"ascii\">"
-    );
-    for row in rows {
-        let _ = writeln!(text, "          {row}");
-    }
-    text.push_str("        </DataArray>\n");
-}
-
-/// The start of a file with one piece, up to its points.
-pub(super) fn head(points: usize, cells: usize) -> String {
-    format!(
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\">\n  \
-         <UnstructuredGrid>\n    <Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">\n      <Points>\n"
-    )
-}
-
-/// The end of a file with one piece.
-pub(super) fn tail() -> &'static str {
-    "    </Piece>\n  </UnstructuredGrid>\n</VTKFile>\n"
-}
 
 /// The VTK cell type: quadrilaterals of order 1, 2, 3; a polygon for a rigid block.
 fn cell_type(order: usize) -> u8 {

@@ -1,6 +1,6 @@
 //! Files for ParaView of scenes in space: the blocks with the velocities of a mechanism, and the forces of contacts.
 
-use super::vtu::{array, head, tail};
+use super::vtu_text::{array, head, tail};
 use voussoir_core::space::{SpaceAssembly, Vec3};
 use voussoir_study::results::{CaseResult, SpaceProof};
 use voussoir_study::study::SpaceCase;

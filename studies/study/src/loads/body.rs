@@ -55,7 +55,6 @@ voussoir_core::inventory::submit! {
         summary: "acceleration of every block, or of named blocks, times its mass",
         samples: &[
             Sample::keys("acceleration = [1.5, -2.0]"),
-            Sample::keys("acceleration = [0.5, 0.0]\nblocks = [\"3\", \"4\"]"),
         ],
         file: file!(),
         package: voussoir_core::package!(),

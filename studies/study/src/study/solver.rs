@@ -19,8 +19,15 @@ use voussoir_core::plugin::{
     Capability, Card, PluginKind, Requirement, candidate, candidates, card, cards_of, describe,
 };
 
+/// Returns the tags of the solvers of plane scenes that fit. A solver that needs cones of friction solves scenes in space only.
 fn solvers_that(fit: impl Fn(&Card) -> bool) -> Vec<&'static str> {
-    candidates(PluginKind::LimitSolver).into_iter().filter(|card| fit(card)).map(|card| card.tag).collect()
+    let plane = |card: &&Card| !card.requires.iter().any(|need| need.contains(&Capability::CONE));
+    candidates(PluginKind::LimitSolver)
+        .into_iter()
+        .filter(plane)
+        .filter(|card| fit(card))
+        .map(|card| card.tag)
+        .collect()
 }
 
 fn or_none(tags: &[&str]) -> String {

@@ -9,7 +9,7 @@ use super::random::random_step;
 use super::samples::{own_check, samples_of};
 use super::site::{Site, catalogue};
 use super::subject::Subject;
-use super::{assembly, facets, load, sign, walk};
+use super::{assembly, facets, load, scene_space, sign, walk};
 use serde_json::{Value as Json, json};
 use voussoir_core::law::{Fields, PointContext};
 use voussoir_core::plugin::{Card, Need, Parameter, PluginKind, Property, Sample, Shape};
@@ -180,8 +180,10 @@ fn is_sound(recorder: &mut Recorder, card: &Card, sample: &Sample, law: &PlugIn)
             law.stress_update().map(Point::material)
         }
         PlugIn::Scene(scene) => {
-            if let Ok(built) = scene.build(&catalogue()) {
-                assembly::check(recorder, &built);
+            match scene.build_space(&catalogue()) {
+                Some(Ok(built)) => scene_space::check(recorder, &built),
+                Some(Err(_)) => {}
+                None => scene.build(&catalogue()).iter().for_each(|built| assembly::check(recorder, built)),
             }
             None
         }

@@ -51,7 +51,10 @@ impl PlugIn {
         match self {
             PlugIn::Joint(law) => format!("{law:?} {:?} {:?}", law.facets(), law.stiffness()),
             PlugIn::Material(law) => format!("{law:?} {:?} {:?}", law.density(), law.elasticity()),
-            PlugIn::Scene(scene) => format!("{:?}", scene.build(&catalogue())),
+            PlugIn::Scene(scene) => match scene.build_space(&catalogue()) {
+                Some(space) => format!("{space:?}"),
+                None => format!("{:?}", scene.build(&catalogue())),
+            },
             PlugIn::Load(load) => format!("{:?}", load.place(&Site::standard().place())),
         }
     }

@@ -1,6 +1,6 @@
 //! Pictures of cases: an animated drawing of each case, and its load-displacement curve.
 
-use crate::figures::curve_svg;
+use crate::figures::{curve_svg, mechanism_of_case, scene_of_case};
 use crate::output::StudyOutput;
 use crate::writers::page::figure;
 use maud::{Markup, PreEscaped, html};
@@ -23,8 +23,8 @@ pub(super) fn of_case(study: &StudyOutput, place: usize) -> Markup {
     let Some((assembly, stages)) = study.scene(place) else { return html! {} };
     let case = &study.results.cases[place];
     let (own, id) = (study.case_title(case), case.label.id);
-    let scene = study.scene_svg(place).map(|svg| own_ids(&svg, &format!("scene-{id}"))).unwrap_or_default();
-    let mechanism = study.mechanism_svg(place).map(|svg| own_ids(&svg, &format!("mechanism-{id}")));
+    let scene = scene_of_case(study, place).map(|svg| own_ids(&svg, &format!("scene-{id}"))).unwrap_or_default();
+    let mechanism = mechanism_of_case(study, place).map(|svg| own_ids(&svg, &format!("mechanism-{id}")));
     let moves = case.proof.motion.is_some() || !case.path.states.is_empty();
     let turns = study.scenes.get(place).is_some_and(|scene| scene.space.is_some());
     html! {

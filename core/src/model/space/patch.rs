@@ -2,7 +2,8 @@
 
 use super::clip::convex_parts;
 use super::plane::Axes;
-use super::{Polyhedron, Vec3};
+use super::polyhedron::Polyhedron;
+use super::vector::Vec3;
 
 /// A plane convex part of a face.
 #[derive(Debug, Clone)]

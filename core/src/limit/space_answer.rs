@@ -1,7 +1,7 @@
 //! The answer of a limit solver in space.
 
-use super::Wrench;
-use crate::limit::{Counters, Status};
+use super::status::{Counters, Status};
+use crate::model::space::Wrench;
 
 /// Velocity of a body as a rigid motion about the problem's pole: \[v_x, v_y, v_z, ω_x, ω_y, ω_z\].
 pub type SpaceVelocity = [f64; 6];

@@ -1,6 +1,6 @@
 //! Planes with two axes.
 
-use super::Vec3;
+use super::vector::Vec3;
 use nalgebra::Vector2;
 
 /// A direction with two axes across it.

@@ -4,9 +4,9 @@
 //! corners on them. Here points are merged first. The hull of the rest is exact. Then corners are dropped by their
 //! distance to the chord of their neighbours, the nearest first.
 
-use super::Vec3;
 use super::plane::Axes;
 use super::predicate::orientation;
+use super::vector::Vec3;
 use nalgebra::Vector2;
 
 /// A point with its coordinates in the plane \[m\].

@@ -1,6 +1,6 @@
 //! Closed surfaces of plane or warped faces.
 
-use super::Vec3;
+use super::vector::Vec3;
 use std::collections::HashMap;
 
 /// A closed polyhedron. Each face lists its corners anticlockwise as seen from outside.

@@ -1,7 +1,8 @@
 //! Blocks in space with their contacts, materials and laws.
 
-use super::{Polyhedron, Vec3};
-use crate::model::Catalogue;
+use super::polyhedron::Polyhedron;
+use super::vector::Vec3;
+use crate::model::assembly::Catalogue;
 
 /// A block, or a support.
 #[derive(Debug, Clone)]

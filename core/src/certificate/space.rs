@@ -12,9 +12,9 @@
 //! so that a field proves a lower bound and a motion an upper bound of the greatest factor. Source: Drucker, Prager and
 //! Greenberg (1952), *Q. Appl. Math.* 9, 381–389.
 
-use super::{SpaceContact, SpaceField, SpaceProblem, SpaceVelocity, Vec3, Wrench, power};
-use crate::certificate::Certificate;
-use crate::limit::{Greatest, Status};
+use super::limit::Certificate;
+use crate::limit::{Greatest, SpaceContact, SpaceField, SpaceProblem, SpaceVelocity, Status, power};
+use crate::model::space::{Vec3, Wrench};
 use std::collections::BTreeMap;
 
 /// Tolerance of residuals that are zero except for rounding. It is below that of plane scenes, because a bound may be wrong by
@@ -386,8 +386,8 @@ fn jump(contact: &SpaceContact, point: &Vec3, motion: &[SpaceVelocity]) -> [f64;
 
 #[cfg(test)]
 mod tests {
-    use super::super::Cone;
     use super::*;
+    use crate::limit::Cone;
 
     /// A cube of side 1 and weight 1 on a plane with μ = 0.4, pushed along x at its centroid: it slides at λ = 0.4.
     fn cube() -> SpaceProblem {

@@ -4,11 +4,13 @@
 //! tolerance of each other at every corner of the overlap. The contact is in the plane halfway between them. Faces that
 //! just miss this are returned as near misses.
 
+use super::assembly::{Contact, SpaceAssembly};
 use super::clip::overlap;
 use super::hull::{area_and_perimeter, hull};
 use super::patch::{Patch, patches};
 use super::plane::Axes;
-use super::{Contact, Polyhedron, SpaceAssembly, Vec3};
+use super::polyhedron::Polyhedron;
+use super::vector::Vec3;
 use std::collections::HashSet;
 
 /// Tolerances of the search \[m, m²\].

@@ -1,9 +1,6 @@
 //! The problem of limit analysis in space.
 
-use super::{SpaceAssembly, Vec3};
-
-/// Force and moment about the pole: \[f_x, f_y, f_z, m_x, m_y, m_z\] \[N, N m\].
-pub type Wrench = [f64; 6];
+use crate::model::space::{SpaceAssembly, Vec3, Wrench};
 
 /// Strength of a contact point: |(s, t)| ≤ μ n.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -10,28 +10,9 @@
 //! |(s, t)| ≤ μ n without cohesion, tension or crushing this is exact: barycentric weights of a fan of triangles move
 //! every admissible pressure and friction to the vertices without a change of their resultants.
 
-mod answer;
-mod assembly;
-mod certificate;
-mod clip;
-mod contacts;
-mod hull;
-mod limit;
-mod loads;
-mod patch;
-mod plane;
-mod polyhedron;
-mod predicate;
-
-pub use self::answer::{SpaceAnswer, SpaceField, SpaceVelocity, power};
-pub use self::assembly::{Contact, SpaceAssembly, SpaceBody};
-pub use self::certificate::{SpaceClaim, SpaceVerdict, certify_space};
-pub use self::contacts::{ContactBody, ContactTolerances, FoundContacts, NearMiss, find_contacts, near_misses};
-pub use self::hull::hull;
-pub use self::limit::{Cone, SpaceContact, SpaceProblem, Wrench};
-pub use self::loads::{SpaceForce, SpaceLoads, SpaceStage, add_space_force, space_loads};
-pub use self::plane::tangents;
-pub use self::polyhedron::Polyhedron;
-
-/// Point or vector \[m\].
-pub type Vec3 = nalgebra::Vector3<f64>;
+pub use crate::certificate::{SpaceClaim, SpaceVerdict, certify_space};
+pub use crate::limit::{Cone, SpaceAnswer, SpaceContact, SpaceField, SpaceProblem, SpaceVelocity, power};
+pub use crate::model::space::{
+    Contact, ContactBody, ContactTolerances, FoundContacts, NearMiss, Polyhedron, SpaceAssembly, SpaceBody, SpaceForce,
+    SpaceLoads, SpaceStage, Vec3, Wrench, add_space_force, find_contacts, hull, near_misses, space_loads, tangents,
+};

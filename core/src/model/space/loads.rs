@@ -1,7 +1,8 @@
 //! Loads in space, stage by stage.
 
-use super::{SpaceAssembly, Vec3, Wrench};
-use crate::model::{Stage, Target};
+use super::assembly::SpaceAssembly;
+use super::vector::{Vec3, Wrench};
+use crate::model::loads::{Stage, Target};
 
 /// A force on a body in space.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -33,6 +33,7 @@ voussoir_core::inventory::submit! {
         tag: "limit_cones",
         summary: "limit analysis of blocks in space by an interior-point method on friction cones, with repaired proofs",
         provides: &[Capability::SPACE],
+        requires: &[&[Capability::CONE]],
         cost: Some(25),
         sources: &[
             "Nesterov & Todd 1997, Math. Oper. Res. 22 (scaling)",
