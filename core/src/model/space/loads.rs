@@ -15,7 +15,7 @@ pub struct SpaceForce {
     pub force: Vec3,
 }
 
-/// The loads of a stage in space. Its name, target and range of factors are those of the [`Stage`] beside it.
+/// The loads of a stage in space. The [`Stage`] beside it has its name, target and range of factors.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SpaceStage {
     /// Gravity from this stage on \[m/s²\]; `None` keeps the previous gravity. The factor of the stage does not

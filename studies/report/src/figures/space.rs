@@ -101,7 +101,7 @@ impl<'a> Blocks<'a> {
             }
         }
         faces.sort_by(|a, b| a.0.total_cmp(&b.0));
-        // Thin where there are many blocks.
+        // Outlines of many blocks are thin.
         let width = (30.0 / (self.assembly.bodies.len().max(1) as f64).sqrt()).clamp(0.3, 1.2);
         for (_, fill, outline) in &faces {
             canvas.shapes([outline.as_slice()].into_iter(), fill, OUTLINE, width, "");
@@ -201,7 +201,7 @@ fn draw_loads(canvas: &mut SceneCanvas, view: &View, space: &SpaceCase, longest:
     }
 }
 
-/// The mechanism of a case in space with displacements exaggerated, as SVG; `None` where it has none.
+/// The mechanism of a case in space with displacements exaggerated, as SVG; `None` if it has no mechanism.
 pub fn space_mechanism_svg(title: &str, space: &SpaceCase, result: &CaseResult) -> Option<String> {
     let assembly = &space.assembly;
     let size = size_of(assembly);

@@ -183,7 +183,7 @@ pub(super) fn check(
     }
 }
 
-/// Multiplies the loads of stages; `in_space` are those of a scene in space.
+/// Multiplies the loads of stages; `in_space` has the loads of a scene in space.
 pub(super) fn multiply_loads(stages: &mut [Stage], in_space: &mut [SpaceStage], resolved: &Resolved) {
     let Some(loads) = resolved.read::<Factors>("factors").and_then(|factors| factors.loads) else { return };
     let factor_of = |stage: &Stage| match &loads {

@@ -11,7 +11,7 @@ use voussoir_core::model::{Stage, Target};
 use voussoir_core::plugin::{Capability, Card, PluginKind, candidate, cards_of};
 use voussoir_core::space::{SpaceAssembly, SpaceLoads, SpaceStage, Vec3, space_loads};
 
-/// Blocks in space with the loads of each stage. Names and targets of the stages are those of the case.
+/// Blocks in space with the loads of each stage. The stages of the case have the names and targets.
 #[derive(Debug, Clone, Default)]
 pub struct SpaceCase {
     /// Blocks and contacts.
