@@ -50,7 +50,7 @@ pub fn catalogue(diagnostics: &mut DiagnosticList<'_>, resolved: &Resolved) -> O
 /// Blocks of a scene: in the plane, or in space.
 pub enum Built {
     /// Blocks and joints in the plane.
-    Plane(Assembly),
+    Plane(Box<Assembly>),
     /// Blocks and contacts in space.
     Space(SpaceAssembly),
 }
@@ -60,7 +60,7 @@ pub fn built(diagnostics: &mut DiagnosticList<'_>, resolved: &Resolved, catalogu
     let scene: Box<dyn Scene> = read_plugin(diagnostics, "scene", resolved.get("scene")?)?;
     let built = match scene.build_space(catalogue) {
         Some(space) => space.map(Built::Space),
-        None => scene.build(catalogue).map(Built::Plane),
+        None => scene.build(catalogue).map(|assembly| Built::Plane(Box::new(assembly))),
     };
     built.map_err(|wrong| diagnostics.extend(wrong)).ok()
 }

@@ -49,7 +49,7 @@ pub(crate) fn build_case(id: usize, expanded: Expanded, known: &KnownKeys<'_>) -
     check(&mut diagnostics, &resolved, &tables, &written);
     let catalogue = catalogue(&mut diagnostics, &tables);
     let (assembly, blocks) = match catalogue.and_then(|catalogue| built(&mut diagnostics, &tables, &catalogue)) {
-        Some(Built::Plane(assembly)) => (Some(assembly), None),
+        Some(Built::Plane(assembly)) => (Some(*assembly), None),
         Some(Built::Space(blocks)) => (None, Some(blocks)),
         None => (None, None),
     };

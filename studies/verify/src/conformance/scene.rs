@@ -47,7 +47,7 @@ pub(super) fn check(recorder: &mut Recorder, card: &Card, _: &Options) {
 
 /// The blocks of a scene.
 enum Built {
-    Plane(Assembly),
+    Plane(Box<Assembly>),
     Space(SpaceAssembly),
 }
 
@@ -78,7 +78,7 @@ impl Built {
 fn built(recorder: &mut Recorder, check: &'static str, scene: &dyn Scene, catalogue: &Catalogue) -> Option<Built> {
     let built = match scene.build_space(catalogue) {
         Some(space) => space.map(Built::Space),
-        None => scene.build(catalogue).map(Built::Plane),
+        None => scene.build(catalogue).map(|assembly| Built::Plane(Box::new(assembly))),
     };
     let refused = built.as_ref().err().and_then(|wrong| wrong.first()).map(ToString::to_string);
     recorder.hold(check, built.is_ok(), || format!("is refused: {}", refused.unwrap_or_default()));
