@@ -1,7 +1,7 @@
 //! Limit analysis in space with associated flow: the greatest factor with forces inside cones of friction.
 //!
-//! [`solve`] uses an interior point method on second-order cones ([`interior_point`]); each contact is condensed to a
-//! 6 × 6 block of the normal equations ([`stiffness`]). Its iterates are repaired to exact evidence ([`evidence`]):
+//! [`solve`] uses an interior point method on second-order cones (`interior_point`); each contact is condensed to a
+//! 6 × 6 block of the normal equations (`stiffness`). Its iterates are repaired to exact evidence (`evidence`):
 //! forces in equilibrium inside the cones, and mechanisms inside the dual cones. [`solve_by_clarabel`] is the second
 //! route and the fallback. The certificate of `voussoir_core::space` decides the status.
 
