@@ -41,6 +41,10 @@ pub struct SpaceSettings {
     pub as_soft: f64,
     /// Excess of the shares of a mixture over the least one: rounding of margins.
     pub mixed: f64,
+    /// Greatest number of steps of a program.
+    pub steps: u64,
+    /// Iterations of the least stiffness beside that of the mechanism.
+    pub iterations: usize,
     /// Greatest number of corrections of a direction.
     pub corrections: usize,
     /// Greatest number of corrections of the equilibrium of a field.
@@ -68,6 +72,8 @@ pub const SETTINGS: SpaceSettings = SpaceSettings {
     stiffer: 1e6,
     as_soft: 1e3,
     mixed: 1e-9,
+    steps: 100,
+    iterations: 4,
     corrections: 6,
     repairs: 12,
 };

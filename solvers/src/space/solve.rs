@@ -9,9 +9,6 @@ use super::uniqueness;
 use voussoir_core::limit::{Counters, LimitQuestion, Status};
 use voussoir_core::space::{SpaceAnswer, SpaceContact, SpaceProblem, SpaceVelocity, power};
 
-/// Greatest number of steps of a program.
-const MAX_STEPS: u64 = 100;
-
 const IDLE: &str = "every load of this stage acts on bodies that the ground holds";
 const NOT_CLOSED: &str = "the proved bounds of the factor do not meet";
 
@@ -225,7 +222,7 @@ fn run(program: &Program, held: bool, counters: &mut Counters) -> Option<Evidenc
     let mut method = InteriorPoint::new(program, held)?;
     let mut evidence = Evidence::default();
     let mut steps = 0;
-    while steps < MAX_STEPS && method.factorise().is_some() {
+    while steps < SETTINGS.steps && method.factorise().is_some() {
         evidence.collect(&mut method);
         if ended(&evidence, &method) {
             break;

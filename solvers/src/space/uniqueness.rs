@@ -9,9 +9,6 @@ use super::cone::inner;
 use super::interior_point::{InteriorPoint, add, dot};
 use super::settings::SETTINGS;
 
-/// Number of inverse iterations. Each multiplies the share of the softest motion by the ratio of two stiffnesses.
-const ITERATIONS: usize = 4;
-
 /// Returns true if the motion of a factorised state is the only mechanism, false if another one is as soft. `None` if
 /// rounding hides the difference.
 pub fn unique(method: &mut InteriorPoint) -> Option<bool> {
@@ -21,7 +18,7 @@ pub fn unique(method: &mut InteriorPoint) -> Option<bool> {
     let power = dot(&program.varying, &mechanism);
     // A fixed sequence without a pattern starts the iteration.
     let mut motion: Vec<f64> = (0..mechanism.len()).map(|k| ((k * k + 1) as f64).sin()).collect();
-    for _ in 0..ITERATIONS {
+    for _ in 0..SETTINGS.iterations {
         method.stiffness.solve(&mut motion);
         let share = dot(&program.varying, &motion) / power;
         add(&mut motion, -share, &mechanism);
