@@ -15,4 +15,5 @@ pub use crate::limit::{Cone, SpaceAnswer, SpaceContact, SpaceField, SpaceProblem
 pub use crate::model::space::{
     Contact, ContactBody, ContactTolerances, FoundContacts, NearMiss, Polyhedron, SpaceAssembly, SpaceBody, SpaceForce,
     SpaceLoads, SpaceStage, Vec3, Wrench, add_space_force, find_contacts, hull, near_misses, space_loads, tangents,
+    velocity_at,
 };

@@ -9,24 +9,13 @@
 
 use super::mechanism::{CentroidVelocity, Jump, jumps_about, velocity_at};
 use super::products::proved;
+use super::residuals::Certificate;
 use super::rounding::{ROUNDED, jump_rounding, lie};
 use crate::law::{Facet, FacetMode, ForceRow, ShearEnvelope, ShearPiece, YieldPolygon, is_associated};
 use crate::limit::{Greatest, LowerProof, LowerProofKind, Status};
 use crate::model::geometry::{Vec2, cross};
 use crate::model::{Assembly, Bond, FillReaction, Joint, StageLoads, Wrenches, add_force};
-use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-
-/// Named residuals, all relative, and the verdict.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Certificate {
-    /// True if every residual is within its tolerance.
-    pub passed: bool,
-    /// Values of the residuals by name.
-    pub residuals: BTreeMap<String, f64>,
-    /// Descriptions of the failures; empty if passed.
-    pub failures: Vec<String>,
-}
 
 /// A contact force at a point of a joint, on the plus body.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -225,13 +214,6 @@ impl Verdict {
     }
 }
 
-impl Certificate {
-    /// Creates a certificate without residuals and failures.
-    fn blank() -> Self {
-        Certificate { passed: true, residuals: BTreeMap::new(), failures: Vec::new() }
-    }
-}
-
 impl Claim<'_> {
     /// Returns the reason why the evidence does not match the assembly.
     fn misfit(&self, assembly: &Assembly) -> Option<String> {
@@ -302,7 +284,8 @@ impl Check<'_> {
             Status::Stands => {
                 if !claim.reaches_target(idle) {
                     let (at, target) = (claim.field_factor, claim.target);
-                    self.fail(format!("the field is at the factor {at}, not at the target {target} of the stage"));
+                    self.certificate
+                        .fail(format!("the field is at the factor {at}, not at the target {target} of the stage"));
                     return None;
                 }
                 self.field(claim);
@@ -311,7 +294,7 @@ impl Check<'_> {
             Status::Collapse if claim.non_associated.is_some() => {
                 let [lower, factor] = self.non_associated(claim, gap)?;
                 if factor > claim.target && claim.target >= claim.start {
-                    self.fail(format!("the collapse lies beyond the target {} of the stage", claim.target));
+                    self.certificate.fail(format!("the collapse lies beyond the target {} of the stage", claim.target));
                 }
                 let met = factor - lower <= CLOSED * factor.abs().max(self.factor_scale());
                 // A lower end at the start proves nothing, unless both ends are equal.
@@ -330,15 +313,15 @@ impl Check<'_> {
                 let lower = self.field(claim).then_some(claim.field_factor);
                 let upper = self.upper_bound(claim);
                 let (Some(lower), Some((upper, uncertain))) = (lower, upper) else {
-                    self.fail("a collapse needs a factor, an admissible field and a mechanism");
+                    self.certificate.fail("a collapse needs a factor, an admissible field and a mechanism");
                     return None;
                 };
                 let factor = claim.factor.unwrap_or(lower);
                 let scale = lower.abs().max(upper.abs()).max(self.factor_scale());
                 let spread = (upper - lower).abs().max((factor - lower).abs()) / scale;
-                self.residual("gap", spread, gap.max(uncertain / scale));
+                self.certificate.residual("gap", spread, gap.max(uncertain / scale));
                 if lower > claim.target && claim.target >= claim.start {
-                    self.fail(format!("the collapse lies beyond the target {} of the stage", claim.target));
+                    self.certificate.fail(format!("the collapse lies beyond the target {} of the stage", claim.target));
                 }
                 verdict([Some(lower.min(upper)), Some(upper.max(lower))], Greatest::ProvedOptimal)
             }
@@ -375,21 +358,6 @@ impl Check<'_> {
         self.certificate = Certificate::blank();
         let consistent = lower.zip(upper).is_none_or(|(lower, upper)| lower <= upper);
         if consistent { [lower, upper] } else { [None; 2] }
-    }
-
-    fn fail(&mut self, why: impl Into<String>) {
-        self.certificate.passed = false;
-        self.certificate.failures.push(why.into());
-    }
-
-    /// Records a residual; NaN fails.
-    fn residual(&mut self, name: &str, value: f64, tolerance: f64) -> bool {
-        self.certificate.residuals.insert(name.into(), value);
-        let fine = value <= tolerance;
-        if !fine {
-            self.fail(format!("{name}: {value:.3e} exceeds {tolerance:.1e}"));
-        }
-        fine
     }
 
     /// Returns the size of the loads at a factor, in force units.
@@ -513,21 +481,24 @@ impl Check<'_> {
 
     fn field(&mut self, claim: &Claim) -> bool {
         let Some(field) = claim.field else {
-            self.fail("no field");
+            self.certificate.fail("no field");
             return false;
         };
         let at = claim.field_factor;
         let scale = self.residual_scale(at);
-        let balanced = self.residual("equilibrium", self.imbalance(field, claim.fill, 1.0, at) / scale, ROUNDING);
+        let balanced =
+            self.certificate.residual("equilibrium", self.imbalance(field, claim.fill, 1.0, at) / scale, ROUNDING);
         let pressed = self.fill(claim, scale);
-        self.residual("strength", self.violation(field, Admitted::Strength) / scale, ROUNDING) && balanced && pressed
+        self.certificate.residual("strength", self.violation(field, Admitted::Strength) / scale, ROUNDING)
+            && balanced
+            && pressed
     }
 
     /// Returns true if the forces of the fill lie between their least and greatest values.
     fn fill(&mut self, claim: &Claim, scale: f64) -> bool {
         let bounds = &self.loads.fill_bounds;
         if claim.fill.len() != bounds.len() {
-            self.fail("the forces of the fill are not one for each of its reactions");
+            self.certificate.fail("the forces of the fill are not one for each of its reactions");
             return false;
         }
         if bounds.is_empty() {
@@ -537,18 +508,18 @@ impl Check<'_> {
         // NaN counts as a violation.
         let worse = |worst: f64, x: f64| if x <= worst { worst } else { x };
         let worst = claim.fill.iter().zip(bounds).map(beyond).fold(0.0, worse);
-        self.residual("fill", worst / scale, ROUNDING)
+        self.certificate.residual("fill", worst / scale, ROUNDING)
     }
 
     fn ray(&mut self, claim: &Claim) {
         let Some(ray) = claim.ray else {
-            return self.fail("no ray");
+            return self.certificate.fail("no ray");
         };
         let largest = ray.iter().map(|c| c.force[0].hypot(c.force[1])).fold(0.0, f64::max);
         let load = self.load_scale(1.0) - self.load_scale(0.0);
         let scale = load.max(largest).max(f64::MIN_POSITIVE);
-        self.residual("ray_equilibrium", self.imbalance(ray, &[], 0.0, 1.0) / scale, ROUNDING);
-        self.residual("ray_strength", self.violation(ray, Admitted::Recession) / scale, ROUNDING);
+        self.certificate.residual("ray_equilibrium", self.imbalance(ray, &[], 0.0, 1.0) / scale, ROUNDING);
+        self.certificate.residual("ray_strength", self.violation(ray, Admitted::Recession) / scale, ROUNDING);
     }
 
     /// Checks by Farkas' lemma that no motion of the free blocks is compatible with the motion of the supports. The ray
@@ -556,7 +527,7 @@ impl Check<'_> {
     /// every motion is ≥ 0. But this work equals its work on the gaps that the supports alone cause, which is < 0.
     fn blocked(&mut self, claim: &Claim, supports: &[Option<CentroidVelocity>]) {
         let Some(ray) = claim.ray else {
-            return self.fail("no ray that refutes the motion of the supports");
+            return self.certificate.fail("no ray that refutes the motion of the supports");
         };
         let still: Vec<CentroidVelocity> = supports.iter().map(|motion| motion.unwrap_or_default()).collect();
         let moved = |body: usize, point: Vec2| velocity_at(self.centroids[body], still[body], point);
@@ -576,9 +547,9 @@ impl Check<'_> {
         let errors = self.imbalance(ray, &[], 0.0, 0.0) + self.violation(ray, Admitted::NoWorkOnFlow);
         let share = -work / (forces * greatest);
         if share.is_nan() || share <= 0.0 {
-            return self.fail(format!("the ray does no work against the supports: {share:.3e}"));
+            return self.certificate.fail(format!("the ray does no work against the supports: {share:.3e}"));
         }
-        self.residual("settlement_ray", errors / forces / share, REFUTED);
+        self.certificate.residual("settlement_ray", errors / forces / share, REFUTED);
     }
 
     fn powers(&self, motion: &[CentroidVelocity]) -> Powers {
@@ -646,38 +617,38 @@ impl Check<'_> {
     fn non_associated(&mut self, claim: &Claim, gap: f64) -> Option<[f64; 2]> {
         let own = claim.non_associated?;
         let (Some(factor), Some(motion), Some(field)) = (claim.factor, claim.motion, claim.field) else {
-            self.fail("a collapse needs a factor, an admissible field and a mechanism");
+            self.certificate.fail("a collapse needs a factor, an admissible field and a mechanism");
             return None;
         };
         if factor != claim.field_factor {
-            self.fail("the field is not at the collapse factor");
+            self.certificate.fail("the field is not at the collapse factor");
         }
         let admissible = self.field(claim);
         self.held(motion);
         let varying = self.powers(motion).varying;
-        let scaled = self.residual("motion_scale", (varying - 1.0).abs(), 1e-9);
+        let scaled = self.certificate.residual("motion_scale", (varying - 1.0).abs(), 1e-9);
         let jumps = jumps_about(self.assembly, &self.centroids, motion);
         let largest = largest_jump(&jumps).max(f64::MIN_POSITIVE);
         let laws = (&self.facets[..], &self.polygons[..]);
         let (impossible, mut idle) = idle_power(self.assembly, laws, field, (&jumps, largest), |_| true);
         idle += self.idle_fill(claim.fill, motion);
-        let flows = self.residual("flow", impossible / largest, ROUNDING);
+        let flows = self.certificate.residual("flow", impossible / largest, ROUNDING);
         let scale = self.residual_scale(factor) * largest;
-        let complementary = self.residual("complementarity", idle / scale, ROUNDING);
+        let complementary = self.certificate.residual("complementarity", idle / scale, ROUNDING);
         let unit = factor.abs().max(self.factor_scale());
         if let Some(greatest) = own.associated_factor {
             let unit = unit.max(greatest.abs());
-            self.residual("above_associated", ((factor - greatest) / unit).max(0.0), gap);
+            self.certificate.residual("above_associated", ((factor - greatest) / unit).max(0.0), gap);
             let Some(motion) = own.associated_motion else {
-                self.fail("no motion proves the associated factor");
+                self.certificate.fail("no motion proves the associated factor");
                 return None;
             };
             self.held(motion);
             let Powers { fixed, varying, dissipated, uncertain, impossible } = self.powers(motion);
-            self.residual("associated_flow", impossible, ROUNDING);
-            self.residual("associated_motion_scale", (varying - 1.0).abs(), 1e-9);
+            self.certificate.residual("associated_flow", impossible, ROUNDING);
+            self.certificate.residual("associated_motion_scale", (varying - 1.0).abs(), 1e-9);
             let spread = ((dissipated - fixed) / varying - greatest).abs() / unit;
-            self.residual("associated_gap", spread, gap.max(uncertain / varying.abs() / unit));
+            self.certificate.residual("associated_gap", spread, gap.max(uncertain / varying.abs() / unit));
             if let Some((field, fill)) = own.associated_field {
                 self.associated_field(greatest, field, fill);
             }
@@ -686,7 +657,7 @@ impl Check<'_> {
         let claimed = own.proved_lower.filter(|_| own.lower_proof.is_some());
         let mut lower = claimed.unwrap_or(claim.start);
         if !(claim.start <= lower && lower <= factor) {
-            self.fail(format!("the lower bound {lower} does not lie between the start and the factor"));
+            self.certificate.fail(format!("the lower bound {lower} does not lie between the start and the factor"));
         }
         if let Some(proof) = own.lower_proof {
             let strongest = field.iter().map(|c| c.force[0].abs().max(c.force[1].abs())).fold(0.0, f64::max);
@@ -708,8 +679,8 @@ impl Check<'_> {
                     lower = (shown - rounding).max(claim.start);
                 }
                 Ok((shown, _)) if lower <= shown => {}
-                Ok((shown, _)) => self.fail(format!("the lower bound {lower} is not proved, only {shown}")),
-                Err(why) => self.fail(format!("the lower bound: {why}")),
+                Ok((shown, _)) => self.certificate.fail(format!("the lower bound {lower} is not proved, only {shown}")),
+                Err(why) => self.certificate.fail(format!("the lower bound: {why}")),
             }
         }
         (admissible && scaled && flows && complementary).then_some([lower, factor])
@@ -718,8 +689,8 @@ impl Check<'_> {
     /// Checks the field that proves the lower bound of the associated factor.
     fn associated_field(&mut self, at: f64, field: &[ContactForce], fill: &[f64]) {
         let scale = self.residual_scale(at);
-        self.residual("associated_equilibrium", self.imbalance(field, fill, 1.0, at) / scale, ROUNDING);
-        self.residual("associated_strength", self.violation(field, Admitted::Strength) / scale, ROUNDING);
+        self.certificate.residual("associated_equilibrium", self.imbalance(field, fill, 1.0, at) / scale, ROUNDING);
+        self.certificate.residual("associated_strength", self.violation(field, Admitted::Strength) / scale, ROUNDING);
     }
 
     /// Returns the factor that the motion proves, and its possible change from rounding of the jumps if strengths are
@@ -728,46 +699,47 @@ impl Check<'_> {
         let motion = claim.motion?;
         let Powers { fixed, varying, dissipated, uncertain, impossible } = self.powers(motion);
         self.held(motion);
-        let flows = self.residual("flow", impossible, ROUNDING);
-        let scaled = self.residual("motion_scale", (varying - 1.0).abs(), 1e-9);
+        let flows = self.certificate.residual("flow", impossible, ROUNDING);
+        let scaled = self.certificate.residual("motion_scale", (varying - 1.0).abs(), 1e-9);
         (flows && scaled).then(|| ((dissipated - fixed) / varying, uncertain / varying.abs()))
     }
 
     /// Checks that held bodies do not move.
     fn held(&mut self, motion: &[CentroidVelocity]) {
         if self.groups.iter().zip(motion).any(|(group, v)| group.is_none() && v.iter().any(|x| *x != 0.0)) {
-            self.fail("a body held by the ground moves");
+            self.certificate.fail("a body held by the ground moves");
         }
     }
 
     fn refutation(&mut self, claim: &Claim, gap: f64) {
         let Some(motion) = claim.motion else {
-            return self.fail("no motion that refutes equilibrium");
+            return self.certificate.fail("no motion that refutes equilibrium");
         };
         self.held(motion);
         let Powers { fixed, varying, dissipated, uncertain, impossible } = self.powers(motion);
-        self.residual("flow", impossible, ROUNDING);
+        self.certificate.residual("flow", impossible, ROUNDING);
         let excess = fixed + claim.start * varying - dissipated;
         let largest = motion_size(&jumps_about(self.assembly, &self.centroids, motion), motion);
         let scale = self.residual_scale(claim.start) * largest;
         if excess.is_nan() || excess <= EXCESS * scale {
-            self.fail(format!("the loads do no more work on the motion than is dissipated: excess {excess:.3e}"));
+            self.certificate
+                .fail(format!("the loads do no more work on the motion than is dissipated: excess {excess:.3e}"));
         }
         self.certificate.residuals.insert("excess_power".into(), excess / scale);
         match claim.feasible_interval {
             Some([low, high]) => {
                 let near = if low > claim.start { low } else { high };
-                self.residual("motion_scale", (varying.abs() - 1.0).abs(), 1e-9);
+                self.certificate.residual("motion_scale", (varying.abs() - 1.0).abs(), 1e-9);
                 let proven = (dissipated - fixed) / varying;
                 let scale = proven.abs().max(near.abs()).max(self.factor_scale());
-                self.residual(
+                self.certificate.residual(
                     "interval_gap",
                     (proven - near).abs() / scale,
                     gap.max(uncertain / varying.abs() / scale),
                 );
             }
             None => {
-                self.residual("motion_scale", (largest - 1.0).abs(), 1e-9);
+                self.certificate.residual("motion_scale", (largest - 1.0).abs(), 1e-9);
             }
         }
     }

@@ -5,13 +5,12 @@ mod magnitude;
 mod mechanism;
 mod path;
 mod products;
+mod residuals;
 mod rounding;
 mod settlement;
 mod space;
 
-pub use self::limit::{
-    Certificate, Claim, ContactForce, NonAssociatedClaim, ROUNDING, Verdict, certify, largest_jump, motion_size,
-};
+pub use self::limit::{Claim, ContactForce, NonAssociatedClaim, ROUNDING, Verdict, certify, largest_jump, motion_size};
 pub use self::magnitude::{GREATEST_NUMBER, in_range};
 pub use self::mechanism::{
     CRUSHES, CentroidVelocity, Crushing, Deforming, Hinge, Jump, Mechanism, MechanismKind, MechanismPlace, Side,
@@ -22,5 +21,6 @@ pub use self::path::{
     path_structure, power_residual, ray_residual, tolerance,
 };
 pub use self::products::{COVERED, proved};
+pub use self::residuals::Certificate;
 pub use self::settlement::{settlement_residuals, support_motions};
 pub use self::space::{SpaceClaim, SpaceVerdict, certify_space};

@@ -12,9 +12,9 @@
 //! so that a field proves a lower bound and a motion an upper bound of the greatest factor. Source: Drucker, Prager and
 //! Greenberg (1952), *Q. Appl. Math.* 9, 381–389.
 
-use super::limit::Certificate;
+use super::residuals::Certificate;
 use crate::limit::{Greatest, SpaceContact, SpaceField, SpaceProblem, SpaceVelocity, Status, power};
-use crate::model::space::{Vec3, Wrench};
+use crate::model::space::{Vec3, Wrench, velocity_at};
 use std::collections::BTreeMap;
 
 /// Tolerance of residuals that are zero except for rounding. It is below that of plane scenes, because a bound may be wrong by
@@ -132,7 +132,7 @@ impl<'a> Check<'a> {
     fn new(problem: &'a SpaceProblem) -> Self {
         let length = if problem.length > 0.0 { problem.length } else { 1.0 };
         let sizes = [size(&problem.fixed, length), size(&problem.varying, length)];
-        Check { problem, length, sizes, certificate: blank() }
+        Check { problem, length, sizes, certificate: Certificate::blank() }
     }
 
     /// Tries the hint, then every other statement, and returns the first that is proved.
@@ -141,9 +141,9 @@ impl<'a> Check<'a> {
         let others = all.into_iter().filter(|status| *status != claim.hint);
         let mut first = None;
         for status in std::iter::once(claim.hint).filter(|hint| all.contains(hint)).chain(others) {
-            self.certificate = blank();
+            self.certificate = Certificate::blank();
             let bounds = self.proves(status, claim, gap);
-            let certificate = std::mem::replace(&mut self.certificate, blank());
+            let certificate = std::mem::replace(&mut self.certificate, Certificate::blank());
             match bounds {
                 Some(bounds) if certificate.passed => {
                     let greatest = if status == Status::Stands { Greatest::Open } else { Greatest::ProvedOptimal };
@@ -153,14 +153,14 @@ impl<'a> Check<'a> {
                 _ => {}
             }
         }
-        self.open(claim, first.unwrap_or_else(blank))
+        self.open(claim, first.unwrap_or_else(Certificate::blank))
     }
 
     /// Returns the verdict with the ends that field and motion prove by themselves.
     fn open(&mut self, claim: &SpaceClaim, mut certificate: Certificate) -> SpaceVerdict {
-        self.certificate = blank();
+        self.certificate = Certificate::blank();
         let lower = self.field(claim).filter(|lower| *lower > claim.start);
-        self.certificate = blank();
+        self.certificate = Certificate::blank();
         let upper = self.upper_bound(claim);
         let consistent = lower.zip(upper).is_none_or(|(lower, upper)| lower <= upper);
         let bounds = if consistent { [lower, upper] } else { [None; 2] };
@@ -187,7 +187,7 @@ impl<'a> Check<'a> {
         let (at, target) = (claim.field_factor, claim.target);
         let near = target.is_finite() && (self.sizes[1] == 0.0 || (at - target).abs() <= REACHED * target.abs());
         if !near {
-            self.fail(format!("the field is at the factor {at}, not at the target {target} of the stage"));
+            self.certificate.fail(format!("the field is at the factor {at}, not at the target {target} of the stage"));
             return None;
         }
         self.field(claim).map(|_| ())
@@ -195,14 +195,14 @@ impl<'a> Check<'a> {
 
     fn collapse(&mut self, claim: &SpaceClaim, gap: f64) -> Option<[f64; 2]> {
         let (Some(lower), Some(upper)) = (self.field(claim), self.upper_bound(claim)) else {
-            self.fail("a collapse needs a factor, an admissible field and a mechanism");
+            self.certificate.fail("a collapse needs a factor, an admissible field and a mechanism");
             return None;
         };
         let factor = claim.factor.unwrap_or(lower);
         let scale = lower.abs().max(upper.abs()).max(self.factor_scale());
-        self.residual("gap", (upper - lower).abs().max((factor - lower).abs()) / scale, gap);
+        self.certificate.residual("gap", (upper - lower).abs().max((factor - lower).abs()) / scale, gap);
         if lower > claim.target && claim.target >= claim.start {
-            self.fail(format!("the collapse lies beyond the target {} of the stage", claim.target));
+            self.certificate.fail(format!("the collapse lies beyond the target {} of the stage", claim.target));
         }
         Some([lower.min(upper), upper.max(lower)])
     }
@@ -210,26 +210,26 @@ impl<'a> Check<'a> {
     /// Checks the field and returns its factor.
     fn field(&mut self, claim: &SpaceClaim) -> Option<f64> {
         let Some(field) = claim.field else {
-            self.fail("no field");
+            self.certificate.fail("no field");
             return None;
         };
         let scale = self.load_scale(claim.field_factor, field);
         let imbalance = self.imbalance(field, [1.0, claim.field_factor]);
-        let balanced = self.residual("equilibrium", imbalance / scale, ROUNDING);
-        let admissible = self.residual("strength", self.violation(field) / scale, ROUNDING);
+        let balanced = self.certificate.residual("equilibrium", imbalance / scale, ROUNDING);
+        let admissible = self.certificate.residual("strength", self.violation(field) / scale, ROUNDING);
         (balanced && admissible && claim.field_factor.is_finite()).then_some(claim.field_factor)
     }
 
     /// Checks that forces balance the varying loads alone.
     fn ray(&mut self, claim: &SpaceClaim) -> Option<()> {
         let Some(ray) = claim.ray else {
-            self.fail("no ray proves that every factor is carried");
+            self.certificate.fail("no ray proves that every factor is carried");
             return None;
         };
         // A ray cannot be too small: the varying loads are its scale.
         let scale = if self.sizes[1] > 0.0 { self.sizes[1] } else { 1.0 };
-        let balanced = self.residual("ray_equilibrium", self.imbalance(ray, [0.0, 1.0]) / scale, ROUNDING);
-        let admissible = self.residual("ray_strength", self.violation(ray) / scale, ROUNDING);
+        let balanced = self.certificate.residual("ray_equilibrium", self.imbalance(ray, [0.0, 1.0]) / scale, ROUNDING);
+        let admissible = self.certificate.residual("ray_strength", self.violation(ray) / scale, ROUNDING);
         (balanced && admissible).then_some(())
     }
 
@@ -243,7 +243,7 @@ impl<'a> Check<'a> {
         // Rates outside the dual cones, though within rounding, could do this work with forces as great as the loads.
         let significant = excess > EXCESS.max(flow) * scale;
         if !significant {
-            self.fail(format!("the loads do no positive work on the motion: excess {excess:.3e}"));
+            self.certificate.fail(format!("the loads do no positive work on the motion: excess {excess:.3e}"));
         }
         self.certificate.residuals.insert("excess_power".into(), excess / scale);
         significant.then_some(())
@@ -254,14 +254,14 @@ impl<'a> Check<'a> {
         self.flow(claim.motion)?;
         let motion = claim.motion?;
         let (fixed, varying) = (power(&self.problem.fixed, motion), power(&self.problem.varying, motion));
-        self.residual("motion_scale", (varying - 1.0).abs(), UNIT_POWER).then_some(-fixed / varying)
+        self.certificate.residual("motion_scale", (varying - 1.0).abs(), UNIT_POWER).then_some(-fixed / varying)
     }
 
     /// Checks the rates of a motion. Returns the greatest jump, and the greatest distance from the dual cones relative
     /// to it.
     fn flow(&mut self, motion: Option<&[SpaceVelocity]>) -> Option<(f64, f64)> {
         let Some(motion) = motion else {
-            self.fail("no motion");
+            self.certificate.fail("no motion");
             return None;
         };
         let (mut largest, mut worst) = (0.0f64, 0.0f64);
@@ -279,7 +279,7 @@ impl<'a> Check<'a> {
         let speed = speed.fold(0.0, f64::max);
         let largest = if largest > NO_JUMP * speed { largest } else { speed };
         let flow = if largest > 0.0 { worst / largest } else { f64::NAN };
-        self.residual("flow", flow, ROUNDING).then_some((largest, flow))
+        self.certificate.residual("flow", flow, ROUNDING).then_some((largest, flow))
     }
 
     /// Returns the greatest unbalanced force or moment per length on any body \[N\] from contact forces and
@@ -352,34 +352,11 @@ impl<'a> Check<'a> {
             0.0
         }
     }
-
-    fn fail(&mut self, why: impl Into<String>) {
-        self.certificate.passed = false;
-        self.certificate.failures.push(why.into());
-    }
-
-    /// Records a residual; NaN fails.
-    fn residual(&mut self, name: &str, value: f64, tolerance: f64) -> bool {
-        self.certificate.residuals.insert(name.into(), value);
-        let fine = value <= tolerance;
-        if !fine {
-            self.fail(format!("{name}: {value:.3e} exceeds {tolerance:.1e}"));
-        }
-        fine
-    }
-}
-
-/// Returns a certificate without residuals and failures.
-fn blank() -> Certificate {
-    Certificate { passed: true, residuals: BTreeMap::new(), failures: Vec::new() }
 }
 
 /// Returns the rate of the gap (n, s, t) at a point of a contact.
 fn jump(contact: &SpaceContact, point: &Vec3, motion: &[SpaceVelocity]) -> [f64; 3] {
-    let at = |body: Option<usize>| {
-        let Some([x, y, z, a, b, c]) = body.map(|body| motion[body]) else { return Vec3::zeros() };
-        Vec3::new(x, y, z) + Vec3::new(a, b, c).cross(point)
-    };
+    let at = |body: Option<usize>| body.map_or(Vec3::zeros(), |body| velocity_at(&motion[body], point));
     let rate = at(contact.plus) - at(contact.minus);
     contact.frame.map(|axis| axis.dot(&rate))
 }

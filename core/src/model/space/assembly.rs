@@ -51,6 +51,11 @@ impl SpaceAssembly {
         self.bodies.iter().position(|body| body.name == name)
     }
 
+    /// Returns the centroid of a body \[m\].
+    pub fn centroid(&self, body: usize) -> Vec3 {
+        self.bodies[body].shape.volume_and_centroid().1
+    }
+
     /// Returns mass \[kg\] and centroid \[m\] of a body.
     pub fn mass_and_centroid(&self, body: usize) -> (f64, Vec3) {
         let body = &self.bodies[body];

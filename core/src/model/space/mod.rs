@@ -17,4 +17,4 @@ pub use self::hull::hull;
 pub use self::loads::{SpaceForce, SpaceLoads, SpaceStage, add_space_force, space_loads};
 pub use self::plane::tangents;
 pub use self::polyhedron::Polyhedron;
-pub use self::vector::{Vec3, Wrench};
+pub use self::vector::{Vec3, Wrench, velocity_at};

@@ -60,7 +60,7 @@ const MAX_CONDENSED_NUMBERS: f64 = 2.5e7;
 const GRADING: Range = Range::new(1.0, false, 10_000.0, false);
 
 /// Returns the density of a scene's mesh, or the default.
-pub(crate) fn density(mesh: Option<Mesh>) -> MeshDensity {
+pub(super) fn density(mesh: Option<Mesh>) -> MeshDensity {
     mesh.unwrap_or_default().into()
 }
 
