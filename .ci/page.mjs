@@ -1,5 +1,5 @@
 // Opens pages of results in a headless browser and uses them as a reader would. Arguments: the folder that holds rise/,
-// hinges/, path/, finite/ and report/ with a report.html each, where screenshots and PDFs are written; the folder of the crate.
+// hinges/, path/, finite/, report/ and space/ with a report.html each, where screenshots and PDFs are written; the folder of the crate.
 import puppeteer from 'puppeteer-core';
 import path from 'node:path';
 import { readFileSync, statSync, writeFileSync } from 'node:fs';
@@ -26,7 +26,7 @@ async function open(name, width, dark) {
 
 const shot = (page, name, fullPage = false) => page.screenshot({ path: `${out}/${name}.png`, fullPage });
 
-for (const [name, width, dark] of [['rise', 1100, false], ['rise', 400, true], ['path', 1100, true], ['path', 400, false], ['report', 1100, false], ['report', 400, true]]) {
+for (const [name, width, dark] of [['rise', 1100, false], ['rise', 400, true], ['path', 1100, true], ['path', 400, false], ['report', 1100, false], ['report', 400, true], ['space', 1100, false], ['space', 400, true]]) {
   const { page, seen, name: words } = await open(name, width, dark);
   const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
   expect(wide <= 0, `${words}: nothing sticks out (${wide} px)`);
@@ -134,6 +134,28 @@ const { carried, twists } = new Function('document', `${script}; return { carrie
   const off = table.map(([centre, twist, point, place]) => { const [x, y] = carried(centre, twist, point); return Math.hypot(x - place[0], y - place[1]); });
   expect(table.length > 20 && Math.max(...off) < 1e-12, `draw.js places points as displaced.rs does, to ${Math.max(...off).toExponential(1)} m in ${table.length} cases`);
 }
+{
+  const { page, seen } = await open('space', 1100, false);
+  const ink = () => page.$eval('.space canvas', canvas => {
+    const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+    let sum = 0;
+    data.forEach((value, i) => { sum = (31 * sum + value * (i % 4 === 3 ? 1 : 7)) % 1000000007; });
+    return sum;
+  });
+  const first = await ink();
+  await page.$eval('.space canvas', canvas => canvas.focus());
+  await page.keyboard.press('ArrowRight');
+  const turned = await ink();
+  expect(first !== 0 && turned !== first, 'arrow keys turn a scene in space');
+  await page.$eval('.space input[type=range]', slider => { slider.value = 100; slider.dispatchEvent(new Event('input')); });
+  expect(await ink() !== turned, 'a slider moves its mechanism');
+  await shot(page, 'space-moved');
+  await page.emulateMediaType('print');
+  expect(await page.$eval('.space', figure => getComputedStyle(figure).display === 'none'), 'paper has the views instead');
+  expect(seen.length === 0, `space: no error ${seen.join('; ')}`);
+  await page.close();
+}
+
 for (const name of ['rise', 'hinges']) {
   const { page, seen } = await open(name, 1100, false);
   const cases = JSON.parse(await page.$eval('#cases', store => store.textContent)).filter(own => own.motion);

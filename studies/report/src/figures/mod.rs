@@ -30,5 +30,6 @@ pub use drawing::scene_svg;
 pub use mechanism::mechanism_svg;
 pub(crate) use mechanism::moving_blocks;
 pub use of_case::{mechanism_of_case, scene_of_case};
+pub(crate) use space::{MOVED, Moves};
 pub use space::{space_mechanism_svg, space_svg};
 pub use sweep::{sweep_axis, sweep_chart};

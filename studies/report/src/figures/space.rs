@@ -4,7 +4,7 @@ use super::scene_canvas::{SceneCanvas, hatching};
 use super::symbols::{FILL, LOAD, MOTION, OUTLINE, STONE, Symbol, THRUST};
 use voussoir_core::model::Stage;
 use voussoir_core::model::geometry::Vec2;
-use voussoir_core::space::{Contact, SpaceAssembly, Vec3};
+use voussoir_core::space::{Contact, SpaceAssembly, Vec3, velocity_at};
 use voussoir_study::results::format::{format_short, headline};
 use voussoir_study::results::{CaseResult, SpaceFieldEntry, SpaceMotionEntry};
 use voussoir_study::study::SpaceCase;
@@ -16,7 +16,7 @@ const GAP: f64 = 0.08;
 /// Length of the greatest force or load, as a share of the scene's size.
 const LONGEST: f64 = 0.12;
 /// Greatest displacement in a drawing of a mechanism, as a share of the scene's size.
-const MOVED: f64 = 0.12;
+pub(crate) const MOVED: f64 = 0.12;
 /// Relative displacement of two bodies that is drawn, as a share of the scene's size.
 const APART: f64 = 1e-3;
 /// Sine and cosine of 30°, the azimuth and the elevation of the axonometry.
@@ -232,21 +232,17 @@ pub fn space_mechanism_svg(title: &str, space: &SpaceCase, result: &CaseResult) 
 }
 
 /// Displacements of the blocks along a mechanism.
-struct Moves {
-    /// Centroid, velocity and angular velocity of each body.
-    bodies: Vec<[Vec3; 3]>,
+pub(crate) struct Moves {
+    /// Centroid and motion of each body.
+    bodies: Vec<(Vec3, [f64; 6])>,
     /// Factor of the velocities.
-    scale: f64,
+    pub(crate) scale: f64,
 }
 
 impl Moves {
     /// Scales a mechanism to a greatest displacement \[m\]. `None` if nothing moves.
-    fn new(assembly: &SpaceAssembly, motion: &[SpaceMotionEntry], greatest: f64) -> Option<Self> {
-        let of_body = |(body, entry): (&voussoir_core::space::SpaceBody, &SpaceMotionEntry)| {
-            let [x, y, z, a, b, c] = entry.velocity;
-            [body.shape.volume_and_centroid().1, Vec3::new(x, y, z), Vec3::new(a, b, c)]
-        };
-        let bodies = assembly.bodies.iter().zip(motion).map(of_body).collect();
+    pub(crate) fn new(assembly: &SpaceAssembly, motion: &[SpaceMotionEntry], greatest: f64) -> Option<Self> {
+        let bodies = motion.iter().enumerate().map(|(body, entry)| (assembly.centroid(body), entry.velocity)).collect();
         let unit = Moves { bodies, scale: 1.0 };
         let all = assembly
             .bodies
@@ -258,8 +254,8 @@ impl Moves {
     }
 
     fn place(&self, body: usize, point: &Vec3) -> Vec3 {
-        let Some([centroid, velocity, turning]) = self.bodies.get(body) else { return *point };
-        point + (velocity + turning.cross(&(point - centroid))) * self.scale
+        let Some((centroid, motion)) = self.bodies.get(body) else { return *point };
+        point + velocity_at(motion, &(point - centroid)) * self.scale
     }
 
     /// Returns the polygon of a contact whose bodies move apart by more than `least`, on the side of the minus body.

@@ -1,7 +1,7 @@
 //! Files for ParaView of scenes in space: the blocks with the velocities of a mechanism, and the forces of contacts.
 
 use super::vtu_text::{array, head, tail};
-use voussoir_core::space::{SpaceAssembly, Vec3};
+use voussoir_core::space::{SpaceAssembly, SpaceBody, Vec3, velocity_at};
 use voussoir_study::results::{CaseResult, SpaceProof};
 use voussoir_study::study::SpaceCase;
 
@@ -48,10 +48,10 @@ pub(super) fn blocks_text(space: &SpaceCase, case: &CaseResult) -> String {
 /// Returns the velocity of every corner of every block; zero without a mechanism.
 fn velocities(assembly: &SpaceAssembly, proof: Option<&SpaceProof>) -> Vec<Vec3> {
     let motion = proof.and_then(|proof| proof.motion.as_deref()).unwrap_or_default();
-    let of_body = |(index, body): (usize, &voussoir_core::space::SpaceBody)| {
-        let [x, y, z, a, b, c] = motion.get(index).map_or([0.0; 6], |entry| entry.velocity);
-        let centroid = body.shape.volume_and_centroid().1;
-        let at = move |point: &Vec3| Vec3::new(x, y, z) + Vec3::new(a, b, c).cross(&(point - centroid));
+    let of_body = |(index, body): (usize, &SpaceBody)| {
+        let velocity = motion.get(index).map_or([0.0; 6], |entry| entry.velocity);
+        let centroid = assembly.centroid(index);
+        let at = move |point: &Vec3| velocity_at(&velocity, &(point - centroid));
         body.shape.vertices.iter().map(at).collect::<Vec<Vec3>>()
     };
     assembly.bodies.iter().enumerate().flat_map(of_body).collect()

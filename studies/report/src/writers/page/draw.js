@@ -91,6 +91,35 @@ const axis = description => {
   return { place: value => from + (f(value) - f(low)) / (f(high) - f(low)) * (to - from) };
 };
 
+// A button that moves a slider: once through all states of a path, there and back for a mechanism. Returns what stops it.
+const player = (play, slider, show, path) => {
+  let running = null;
+  const stop = () => {
+    cancelAnimationFrame(running);
+    running = null;
+    play.textContent = '▶ play';
+  };
+  const start = () => {
+    let begun = null;
+    play.textContent = '❚❚ pause';
+    const step = now => {
+      begun = begun === null ? now : begun;
+      const share = Math.min(1, (now - begun) / (path ? 6000 : 4000));
+      slider.value = Math.round(slider.max * (path ? share : 1 - Math.abs(1 - 2 * share)));
+      show();
+      if (share < 1) running = requestAnimationFrame(step); else stop();
+    };
+    running = requestAnimationFrame(step);
+  };
+  play.addEventListener('click', () => running === null ? start() : stop());
+  slider.addEventListener('input', () => {
+    stop();
+    show();
+  });
+  stop();
+  return stop;
+};
+
 // Makes the drawing of a scene move: its blocks, thrust line and hinges make room for those at the slider's place; loads, supports
 // and fill stay. `share` is the first place of a mechanism, in percent. Returns nothing if the case does not move.
 const moving = (place, own, share) => {
@@ -112,7 +141,7 @@ const moving = (place, own, share) => {
   }
   const said = make('output', {}, tools);
   const chart = place.closest('.case').querySelector('svg .plot');
-  let cursor, running = null;
+  let cursor;
   const hinges = moved => {
     for (const [joint, x, y] of own.hinges || []) {
       const [px, py] = follow(own, joint, moved, [x, y]);
@@ -145,36 +174,13 @@ const moving = (place, own, share) => {
       cursor.setAttribute('visibility', state.live ? 'visible' : 'hidden');
     }
   };
-  const stop = () => {
-    cancelAnimationFrame(running);
-    running = null;
-    play.textContent = '▶ play';
-  };
-  // Once through all states of a path; there and back for a mechanism.
-  const start = () => {
-    let begun = null;
-    play.textContent = '❚❚ pause';
-    const step = now => {
-      begun = begun === null ? now : begun;
-      const share = Math.min(1, (now - begun) / (path ? 6000 : 4000));
-      slider.value = Math.round(slider.max * (path ? share : 1 - Math.abs(1 - 2 * share)));
-      show();
-      if (share < 1) running = requestAnimationFrame(step); else stop();
-    };
-    running = requestAnimationFrame(step);
-  };
-  play.addEventListener('click', () => running === null ? start() : stop());
-  slider.addEventListener('input', () => {
-    stop();
-    show();
-  });
+  const stop = player(play, slider, show, path);
   if (factor) factor.addEventListener('input', show);
   const rest = () => {
     stop();
     if (!path) slider.value = 0;
     show();
   };
-  stop();
   show();
   return { stop, rest, share: () => path ? share : +slider.value };
 };

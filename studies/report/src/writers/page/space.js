@@ -8,7 +8,7 @@ for (const place of document.querySelectorAll('.space[data-case]')) {
   place.prepend(canvas, tools);
   place.hidden = false;
   const pencil = canvas.getContext('2d');
-  let azimuth = -Math.PI / 6, tilt = Math.PI / 6, moved = 0, running = null;
+  let azimuth = -Math.PI / 6, tilt = Math.PI / 6, moved = 0;
   const middle = [0, 1, 2].map(i => (own.low[i] + own.high[i]) / 2);
   const scale = 0.8 * high / Math.hypot(...[0, 1, 2].map(i => own.high[i] - own.low[i]));
   // Where a corner of a block is at a share of the mechanism's way.
@@ -19,7 +19,7 @@ for (const place of document.querySelectorAll('.space[data-case]')) {
     const d = p.map((x, i) => x - own.centres[block][i]);
     return [0, 1, 2].map(i => p[i] + moved * (v[i] + v[3 + (i + 1) % 3] * d[(i + 2) % 3] - v[3 + (i + 2) % 3] * d[(i + 1) % 3]));
   };
-  const paint3 = () => {
+  const repaint = () => {
     const [ca, sa, ct, st] = [Math.cos(azimuth), Math.sin(azimuth), Math.cos(tilt), Math.sin(tilt)];
     const view = p => {
       const [x, y, z] = p.map((value, i) => (value - middle[i]) * scale);
@@ -69,7 +69,7 @@ for (const place of document.querySelectorAll('.space[data-case]')) {
   const turn = (across, down) => {
     azimuth += across;
     tilt = Math.max(-Math.PI / 2, Math.min(Math.PI / 2, tilt + down));
-    paint3();
+    repaint();
   };
   canvas.addEventListener('keydown', event => {
     const step = { ArrowRight: [0.1, 0], ArrowLeft: [-0.1, 0], ArrowDown: [0, 0.1], ArrowUp: [0, -0.1] }[event.key];
@@ -83,32 +83,10 @@ for (const place of document.querySelectorAll('.space[data-case]')) {
     const slider = make('input', { type: 'range', min: 0, max: 100, value: 0 }, label);
     const show = () => {
       moved = slider.value / 100;
-      paint3();
+      repaint();
     };
-    const stop = () => {
-      cancelAnimationFrame(running);
-      running = null;
-      play.textContent = '▶ play';
-    };
-    const start = () => {
-      let begun = null;
-      play.textContent = '❚❚ pause';
-      const step = now => {
-        begun = begun === null ? now : begun;
-        const share = Math.min(1, (now - begun) / 4000);
-        slider.value = Math.round(100 * (1 - Math.abs(1 - 2 * share)));
-        show();
-        if (share < 1) running = requestAnimationFrame(step); else stop();
-      };
-      running = requestAnimationFrame(step);
-    };
-    play.addEventListener('click', () => running === null ? start() : stop());
-    slider.addEventListener('input', () => {
-      stop();
-      show();
-    });
-    stop();
+    player(play, slider, show, false);
   }
-  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', paint3);
-  paint3();
+  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', repaint);
+  repaint();
 }
