@@ -35,7 +35,8 @@ pub struct SpaceSettings {
     pub closed: f64,
     /// Work of the loads on a motion, relative to loads times the greatest rate, that refutes equilibrium.
     pub worked: f64,
-    /// Ratio of the stiffness of the next motion to that of the mechanism above which the mechanism is the only one.
+    /// Stiffness of the softest other motion, divided by the stiffness of the mechanism, above which the mechanism is the
+    /// only one.
     pub stiffer: f64,
     /// The same ratio below which there is another mechanism.
     pub as_soft: f64,
@@ -43,7 +44,7 @@ pub struct SpaceSettings {
     pub mixed: f64,
     /// Greatest number of steps of a program.
     pub steps: u64,
-    /// Iterations of the least stiffness beside that of the mechanism.
+    /// Inverse iterations that find the softest other motion.
     pub iterations: usize,
     /// Greatest number of corrections of a direction.
     pub corrections: usize,

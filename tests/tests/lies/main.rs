@@ -5,3 +5,4 @@ mod endless;
 mod files;
 mod plug_ins;
 mod run;
+mod space;

@@ -154,7 +154,7 @@ const KEYS: &[Parameter] = &[
     Parameter { name: "lie", doc: "the lie", shape: Shape::Text, need: Need::Required },
 ];
 
-const LIAR: Card = Card {
+pub const LIAR: Card = Card {
     summary: "a lie",
     parameters: KEYS,
     file: file!(),

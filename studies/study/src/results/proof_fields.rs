@@ -133,47 +133,55 @@ struct StoredProof {
     thrust_line: Option<Vec<Option<[f64; 2]>>>,
 }
 
-fn plane_forces(entries: Vec<FieldEntry>) -> Vec<StoredForce> {
-    let stored = |FieldEntry { joint, point, force }| StoredForce {
-        joint,
-        point: Numbers::of(point),
-        force: Numbers::of(force),
-    };
-    entries.into_iter().map(stored).collect()
-}
-
-fn space_forces(entries: Vec<SpaceFieldEntry>) -> Vec<StoredForce> {
-    let stored = |SpaceFieldEntry { joint, point, force }| StoredForce {
-        joint,
-        point: Numbers::of(point),
-        force: Numbers::of(force),
-    };
-    entries.into_iter().map(stored).collect()
-}
-
-impl From<ProofFields> for StoredProof {
-    fn from(proof: ProofFields) -> Self {
-        let ProofFields { field_factor, field, fill, motion, ray, thrust_line, space } = proof;
-        let plane_motion = |entries: Vec<MotionEntry>| {
-            let stored = |MotionEntry { body, velocity }| StoredVelocity { body, velocity: Numbers::of(velocity) };
-            entries.into_iter().map(stored).collect()
-        };
-        let Some(space) = space else {
-            let (field, ray) = (field.map(plane_forces), ray.map(plane_forces));
-            return StoredProof { field_factor, field, fill, motion: motion.map(plane_motion), ray, thrust_line };
-        };
-        let space_motion = |entries: Vec<SpaceMotionEntry>| {
-            let stored = |SpaceMotionEntry { body, velocity }| StoredVelocity { body, velocity: Numbers::of(velocity) };
-            entries.into_iter().map(stored).collect()
-        };
-        let (field, ray) = (space.field.map(space_forces), space.ray.map(space_forces));
-        StoredProof { field_factor, field, fill, motion: space.motion.map(space_motion), ray, thrust_line }
+impl StoredForce {
+    fn of<const N: usize>(joint: usize, point: [f64; N], force: [f64; N]) -> Self {
+        StoredForce { joint, point: Numbers::of(point), force: Numbers::of(force) }
     }
+
+    /// Returns joint, point and force with this number of components.
+    fn parts<const N: usize>(self) -> Result<(usize, [f64; N], [f64; N]), String> {
+        Ok((self.joint, self.point.exactly("point")?, self.force.exactly("force")?))
+    }
+}
+
+impl StoredVelocity {
+    fn of<const N: usize>(body: String, velocity: [f64; N]) -> Self {
+        StoredVelocity { body, velocity: Numbers::of(velocity) }
+    }
+
+    /// Returns body and velocity with this number of components.
+    fn parts<const N: usize>(self) -> Result<(String, [f64; N]), String> {
+        Ok((self.body, self.velocity.exactly("velocity")?))
+    }
+}
+
+/// Converts each entry of a list, if there is a list.
+fn each<S, T>(list: Option<Vec<S>>, one: impl Fn(S) -> T) -> Option<Vec<T>> {
+    list.map(|list| list.into_iter().map(one).collect())
 }
 
 /// Reads each entry of a list, if there is a list.
 fn read<S, T>(list: Option<Vec<S>>, one: impl Fn(S) -> Result<T, String>) -> Result<Option<Vec<T>>, String> {
     list.map(|list| list.into_iter().map(one).collect()).transpose()
+}
+
+impl From<ProofFields> for StoredProof {
+    fn from(proof: ProofFields) -> Self {
+        let ProofFields { field_factor, field, fill, motion, ray, thrust_line, space } = proof;
+        let (field, motion, ray) = match space {
+            None => {
+                let force = |own: FieldEntry| StoredForce::of(own.joint, own.point, own.force);
+                let velocity = |own: MotionEntry| StoredVelocity::of(own.body, own.velocity);
+                (each(field, force), each(motion, velocity), each(ray, force))
+            }
+            Some(space) => {
+                let force = |own: SpaceFieldEntry| StoredForce::of(own.joint, own.point, own.force);
+                let velocity = |own: SpaceMotionEntry| StoredVelocity::of(own.body, own.velocity);
+                (each(space.field, force), each(space.motion, velocity), each(space.ray, force))
+            }
+        };
+        StoredProof { field_factor, field, fill, motion, ray, thrust_line }
+    }
 }
 
 impl TryFrom<StoredProof> for ProofFields {
@@ -183,27 +191,19 @@ impl TryFrom<StoredProof> for ProofFields {
         let StoredProof { field_factor, field, fill, motion, ray, thrust_line } = stored;
         let forces = field.iter().chain(&ray).flatten().any(|entry| entry.force.count == 3);
         let in_space = forces || motion.iter().flatten().any(|entry| entry.velocity.count == 6);
-        if !in_space {
-            let force = |entry: StoredForce| {
-                let (point, force) = (entry.point.exactly("point")?, entry.force.exactly("force")?);
-                Ok(FieldEntry { joint: entry.joint, point, force })
-            };
-            let velocity = |entry: StoredVelocity| {
-                Ok(MotionEntry { velocity: entry.velocity.exactly("velocity")?, body: entry.body })
-            };
-            let (field, ray, motion) = (read(field, force)?, read(ray, force)?, read(motion, velocity)?);
-            return Ok(ProofFields { field_factor, field, fill, motion, ray, thrust_line, space: None });
+        let plane = ProofFields { field_factor, fill, thrust_line, ..ProofFields::default() };
+        if in_space {
+            let force =
+                |own: StoredForce| own.parts().map(|(joint, point, force)| SpaceFieldEntry { joint, point, force });
+            let velocity =
+                |own: StoredVelocity| own.parts().map(|(body, velocity)| SpaceMotionEntry { body, velocity });
+            let (field, motion, ray) = (read(field, force)?, read(motion, velocity)?, read(ray, force)?);
+            return Ok(ProofFields { space: Some(Box::new(SpaceProof { field, motion, ray })), ..plane });
         }
-        let force = |entry: StoredForce| {
-            let (point, force) = (entry.point.exactly("point")?, entry.force.exactly("force")?);
-            Ok(SpaceFieldEntry { joint: entry.joint, point, force })
-        };
-        let velocity = |entry: StoredVelocity| {
-            Ok(SpaceMotionEntry { velocity: entry.velocity.exactly("velocity")?, body: entry.body })
-        };
-        let (field, ray, motion) = (read(field, force)?, read(ray, force)?, read(motion, velocity)?);
-        let space = Some(Box::new(SpaceProof { field, motion, ray }));
-        Ok(ProofFields { field_factor, field: None, fill, motion: None, ray: None, thrust_line, space })
+        let force = |own: StoredForce| own.parts().map(|(joint, point, force)| FieldEntry { joint, point, force });
+        let velocity = |own: StoredVelocity| own.parts().map(|(body, velocity)| MotionEntry { body, velocity });
+        let (field, motion, ray) = (read(field, force)?, read(motion, velocity)?, read(ray, force)?);
+        Ok(ProofFields { field, motion, ray, ..plane })
     }
 }
 

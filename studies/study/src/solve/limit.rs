@@ -161,14 +161,19 @@ fn solve_stage(input: &CaseInput, index: usize, problem: &LimitProblem, all_load
     {
         let (mut at_start, _) = asked_of_solvers(input, index, (problem, loads), LimitQuestion::Admissible(start));
         if at_start.status != Status::Stands {
-            at_start.notes.push(format!(
-                "a load factor was found, but nothing proves that the loads at the start of the stage, at the factor {start}, \
-                 are carried"
-            ));
+            at_start.notes.push(start_is_open(start));
             return at_start;
         }
     }
     result
+}
+
+/// Returns the note of a load factor whose stage has an unproved start.
+pub(super) fn start_is_open(start: f64) -> String {
+    format!(
+        "a load factor was found, but nothing proves that the loads at the start of the stage, at the factor {start}, are \
+         carried"
+    )
 }
 
 /// Replaces the field of the last stage, if it stands, by the field that is farthest from all bounds. The search for collapse
@@ -250,15 +255,15 @@ pub(crate) fn asked_of_solvers(
     (CaseResult { notes, ..best }, start_is_carried)
 }
 
+/// The note of a law whose flow is not associated but is read so.
+pub(super) const READ_AS_ASSOCIATED: &str = "a joint law whose slip is non-associated is read with associated flow (slip opens \
+     the joint by its friction angle): every load factor is an upper bound";
+
 /// Returns notes on how limit analysis simplifies a scene with further properties.
 fn readings(assembly: &Assembly, problem: &LimitProblem, result: &CaseResult) -> Vec<String> {
     let mut notes = Vec::new();
     if result.flow_read_as.is_some() {
-        notes.push(
-            "a joint law whose slip is non-associated is read with associated flow (slip opens the joint by its \
-             friction angle): every load factor is an upper bound"
-                .into(),
-        );
+        notes.push(READ_AS_ASSOCIATED.into());
     }
     let mut free = (0..assembly.bodies.len()).filter(|body| problem.group_of[*body].is_some());
     if free.clone().any(|body| !assembly.is_rigid(body)) {

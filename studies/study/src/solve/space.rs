@@ -2,7 +2,7 @@
 
 use super::auto::space_solvers;
 use super::case_input::CaseInput;
-use super::limit::{ask, record_stages};
+use super::limit::{READ_AS_ASSOCIATED, ask, record_stages, start_is_open};
 use super::ours::is_ours;
 use crate::results::{CaseResult, ProofFields, SpaceFieldEntry, SpaceMotionEntry, SpaceProof};
 use crate::study::SpaceCase;
@@ -10,7 +10,7 @@ use voussoir_core::limit::{Counters, LimitQuestion, Status};
 use voussoir_core::model::{Stage, Target};
 use voussoir_core::space::{
     Cone, SpaceAnswer, SpaceBody, SpaceClaim, SpaceContact, SpaceField, SpaceLoads, SpaceProblem, SpaceVelocity,
-    SpaceVerdict, Vec3, certify_space,
+    SpaceVerdict, Vec3, certify_space, velocity_at,
 };
 
 /// Least relative distance of the bounds of a collapse that a study can ask for. In space bounds come from an interior-point
@@ -32,41 +32,68 @@ pub(crate) fn space_problem(space: &SpaceCase, loads: &SpaceLoads) -> Result<Spa
 pub(crate) fn solve_in_space(input: &CaseInput, space: &SpaceCase) -> CaseResult {
     let (mut done, mut counters) = (Vec::new(), Counters::new());
     let loads = space.loads(input.stages);
-    for (index, (stage, loads)) in input.stages.iter().zip(&loads).enumerate() {
+    for (index, loads) in loads.iter().enumerate() {
         let problem = match space_problem(space, loads) {
             Ok(problem) => problem,
             Err(why) => return CaseResult::stalled(why),
         };
-        let mut result = solve_stage(input, space, stage, &problem);
+        let mut result = solve_stage(input, space, index, &problem);
         for (name, count) in std::mem::take(&mut result.counters) {
             *counters.entry(name).or_default() += count;
         }
         record_stages(&mut done, input.stages, index, (&result, Vec::new()));
         if result.status != Status::Stands || index + 1 == input.stages.len() {
             let flow = (result.status != Status::Stalled && space.non_associated()).then(|| "associated".to_string());
-            result.notes.extend(flow.iter().map(|_| FLOW_READ_AS.to_string()));
+            result.notes.extend(flow.iter().map(|_| READ_AS_ASSOCIATED.to_string()));
             return CaseResult { stages: done, counters, flow_read_as: flow, ..result };
         }
     }
     CaseResult::stalled("the study has no stage")
 }
 
-/// The note of a law whose flow is not associated.
-const FLOW_READ_AS: &str = "a joint law whose slip is non-associated is read with associated flow (slip opens the joint by its \
-     friction angle): every load factor is an upper bound";
+/// Returns the result of one stage. A load factor counts only if the loads at the start of the stage are carried.
+fn solve_stage(input: &CaseInput, space: &SpaceCase, index: usize, problem: &SpaceProblem) -> CaseResult {
+    let idle = problem.varying.iter().flatten().all(|component| *component == 0.0);
+    let asked = ask(&input.stages[index], idle);
+    let mut result = asked_of_solvers(input, space, (index, problem), asked);
+    if let LimitQuestion::Collapse { start, .. } = asked
+        && matches!(result.status, Status::Collapse | Status::Unbounded | Status::Open)
+        && !start_is_proved(space, index, problem, start)
+    {
+        let mut at_start = asked_of_solvers(input, space, (index, problem), LimitQuestion::Admissible(start));
+        if at_start.status != Status::Stands {
+            at_start.notes.push(start_is_open(start));
+            return at_start;
+        }
+        for (name, count) in at_start.counters {
+            *result.counters.entry(name).or_default() += count;
+        }
+    }
+    result
+}
+
+/// Returns true if the state at the start of a stage is proved: no load acts there, or the previous stage stands and ended with
+/// the same loads.
+fn start_is_proved(space: &SpaceCase, index: usize, problem: &SpaceProblem, start: f64) -> bool {
+    let unloaded = problem.fixed.iter().flatten().all(|component| *component == 0.0);
+    start == 0.0 && (unloaded || (index > 0 && space.stages[index].gravity.is_none()))
+}
 
 /// Returns the first certified answer of the solvers to try, or otherwise the best that is proved.
-fn solve_stage(input: &CaseInput, space: &SpaceCase, stage: &Stage, problem: &SpaceProblem) -> CaseResult {
-    let idle = problem.varying.iter().flatten().all(|component| *component == 0.0);
-    let asked = ask(stage, idle);
+fn asked_of_solvers(
+    input: &CaseInput,
+    space: &SpaceCase,
+    (index, problem): (usize, &SpaceProblem),
+    asked: LimitQuestion,
+) -> CaseResult {
+    let selected = input.of_stages.get(index).and_then(Option::as_ref).unwrap_or(input.solver);
     let (mut notes, mut best): (Vec<String>, Option<CaseResult>) = (Vec::new(), None);
-    for (tag, solver) in space_solvers(input.solver) {
+    for (tag, solver) in space_solvers(selected) {
         let Some(answer) = solver.solve_space(problem, asked) else {
             notes.push(format!("{tag}: the solver knows plane scenes only"));
             continue;
         };
-        let answer = well_formed(problem, answer);
-        let result = certified(input, space, (stage, problem), asked, (tag, answer));
+        let result = certified(input, space, (&input.stages[index], problem), asked, (tag, answer));
         if result.certificate.passed {
             return result;
         }
@@ -78,25 +105,6 @@ fn solve_stage(input: &CaseInput, space: &SpaceCase, stage: &Stage, problem: &Sp
     }
     let best = best.unwrap_or_else(|| CaseResult::stalled("no solver supports scenes in space"));
     CaseResult { notes, ..best }
-}
-
-/// Returns an answer whose lists have the lengths of the problem; otherwise one that decides nothing.
-fn well_formed(problem: &SpaceProblem, answer: SpaceAnswer) -> SpaceAnswer {
-    let field = |field: &Option<SpaceField>| {
-        field.as_ref().is_none_or(|field| {
-            let lengths = problem.contacts.iter().map(|contact| contact.points.len());
-            field.iter().map(Vec::len).eq(lengths) && field.iter().flatten().flatten().all(|x| x.is_finite())
-        })
-    };
-    let motion = answer.motion.as_ref().is_none_or(|motion| {
-        motion.len() == problem.bodies && motion.iter().flatten().all(|velocity| velocity.is_finite())
-    });
-    if field(&answer.field) && field(&answer.ray) && motion {
-        return answer;
-    }
-    SpaceAnswer::stalled(
-        "the answer of the solver does not have one finite force for each point or one motion for each body",
-    )
 }
 
 /// Returns the certified result of one stage.
@@ -181,12 +189,17 @@ fn field_entries(space: &SpaceCase, problem: &SpaceProblem, field: &SpaceField) 
 /// Converts velocities about the pole to entries at the centroids of all bodies.
 fn motion_entries(space: &SpaceCase, problem: &SpaceProblem, motion: &[SpaceVelocity]) -> Vec<SpaceMotionEntry> {
     let entry = |(index, body): (usize, &SpaceBody)| {
-        let [x, y, z, a, b, c] = problem.free[index].map_or([0.0; 6], |free| motion[free]);
-        let arm = body.shape.volume_and_centroid().1 - problem.pole;
-        let v = Vec3::new(x, y, z) + Vec3::new(a, b, c).cross(&arm);
-        SpaceMotionEntry { body: body.name.clone(), velocity: [v.x, v.y, v.z, a, b, c] }
+        let velocity = problem.free[index].map_or([0.0; 6], |free| motion[free]);
+        let velocity = moved_pole(&velocity, &(space.assembly.centroid(index) - problem.pole));
+        SpaceMotionEntry { body: body.name.clone(), velocity }
     };
     space.assembly.bodies.iter().enumerate().map(entry).collect()
+}
+
+/// Returns the same motion about a pole at an arm from the present one.
+fn moved_pole(velocity: &SpaceVelocity, arm: &Vec3) -> SpaceVelocity {
+    let v = velocity_at(velocity, arm);
+    [v.x, v.y, v.z, velocity[3], velocity[4], velocity[5]]
 }
 
 /// Stored forces and velocities in the form of the problem.
@@ -238,14 +251,6 @@ fn read_field(
 }
 
 fn read_motion(space: &SpaceCase, problem: &SpaceProblem, entries: &[SpaceMotionEntry]) -> Vec<SpaceVelocity> {
-    let bodies = space.assembly.bodies.iter().zip(entries).zip(&problem.free);
-    let velocity = |((body, entry), free): ((&SpaceBody, &SpaceMotionEntry), &Option<usize>)| {
-        free.map(|_| {
-            let [x, y, z, a, b, c] = entry.velocity;
-            let arm = body.shape.volume_and_centroid().1 - problem.pole;
-            let v = Vec3::new(x, y, z) - Vec3::new(a, b, c).cross(&arm);
-            [v.x, v.y, v.z, a, b, c]
-        })
-    };
-    bodies.filter_map(velocity).collect()
+    let free = entries.iter().enumerate().filter(|(index, _)| problem.free[*index].is_some());
+    free.map(|(index, entry)| moved_pole(&entry.velocity, &(problem.pole - space.assembly.centroid(index)))).collect()
 }

@@ -2,7 +2,6 @@
 #![doc = include_str!("assembly.md")]
 
 use super::block::{Block3d, Names, Search, add_contacts, shapes, supports};
-use super::parts::without_bodies;
 use crate::scenes::keys::SceneKeys;
 use crate::scenes::lookup::{from_root, out_of_range, outside, pairs_of, unknown};
 use std::collections::HashMap;
@@ -205,7 +204,7 @@ impl FileAssembly {
 #[typetag::serde(name = "assembly")]
 impl Scene for FileAssembly {
     fn build(&self, catalogue: &Catalogue) -> Result<Assembly, Vec<Diagnostic>> {
-        Ok(without_bodies(catalogue))
+        Ok(Assembly::without_blocks(catalogue.clone()))
     }
 
     fn build_space(&self, catalogue: &Catalogue) -> Option<Result<SpaceAssembly, Vec<Diagnostic>>> {

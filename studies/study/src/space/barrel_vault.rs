@@ -1,7 +1,7 @@
 //! `barrel_vault`: a straight or skew barrel of voussoirs between two supports.
 #![doc = include_str!("barrel_vault.md")]
 
-use super::parts::{Parts, without_bodies};
+use super::parts::Parts;
 use super::shell_block::ShellBlock;
 use crate::scenes::keys::SceneKeys;
 use crate::scenes::lookup::{out_of_range, outside, pairs_of};
@@ -161,7 +161,7 @@ impl BarrelVault {
 #[typetag::serde(name = "barrel_vault")]
 impl Scene for BarrelVault {
     fn build(&self, catalogue: &Catalogue) -> Result<Assembly, Vec<Diagnostic>> {
-        Ok(without_bodies(catalogue))
+        Ok(Assembly::without_blocks(catalogue.clone()))
     }
 
     fn build_space(&self, catalogue: &Catalogue) -> Option<Result<SpaceAssembly, Vec<Diagnostic>>> {

@@ -88,9 +88,9 @@ pub(super) fn supports(fixed: impl Iterator<Item = bool>, key: &str, help: &str)
 
 /// Materials and laws of blocks by name.
 pub(super) struct Names<'a> {
-    /// Material of blocks that name none.
+    /// Material of blocks that name no material.
     pub material: Option<&'a str>,
-    /// Law of contacts for which none is named.
+    /// Law of contacts whose blocks name no law.
     pub joint: Option<&'a str>,
 }
 
@@ -118,7 +118,7 @@ impl Names<'_> {
             }
         }
         if self.material.is_none() && blocks.iter().any(|block| block.material.is_none()) {
-            diagnostics.push(Diagnostic::new("material", "is missing: the material of blocks that name none"));
+            diagnostics.push(Diagnostic::new("material", "is missing: the material of blocks that name no material"));
         }
         if let Some(name) = self.joint {
             diagnostics.extend(law(catalogue, name, "joint").err());
@@ -157,7 +157,7 @@ impl Names<'_> {
             [None, None] => match self.joint {
                 Some(name) => Ok((name, "joint".into())),
                 None => {
-                    Err(Diagnostic::new("joint", "is missing: the interface law of joints for which none is named"))
+                    Err(Diagnostic::new("joint", "is missing: the interface law of contacts whose blocks name no law"))
                 }
             },
         }

@@ -2,7 +2,6 @@
 #![doc = include_str!("blocks_3d.md")]
 
 use super::block::{Block3d, Names, Search, add_contacts, shapes, supports};
-use super::parts::without_bodies;
 use crate::scenes::keys::SceneKeys;
 use crate::scenes::lookup::{from_root, out_of_range, pairs_of};
 use voussoir_core::model::{Assembly, Catalogue, Scene};
@@ -54,7 +53,7 @@ impl Blocks3d {
 #[typetag::serde(name = "blocks_3d")]
 impl Scene for Blocks3d {
     fn build(&self, catalogue: &Catalogue) -> Result<Assembly, Vec<Diagnostic>> {
-        Ok(without_bodies(catalogue))
+        Ok(Assembly::without_blocks(catalogue.clone()))
     }
 
     fn build_space(&self, catalogue: &Catalogue) -> Option<Result<SpaceAssembly, Vec<Diagnostic>>> {

@@ -2,7 +2,7 @@
 #![doc = include_str!("cross_vault.md")]
 
 use super::barrel_vault::StripBond;
-use super::parts::{Parts, without_bodies};
+use super::parts::Parts;
 use super::shell_block::ShellBlock;
 use crate::scenes::keys::SceneKeys;
 use crate::scenes::lookup::{out_of_range, outside, pairs_of};
@@ -214,7 +214,7 @@ impl Web {
 #[typetag::serde(name = "cross_vault")]
 impl Scene for CrossVault {
     fn build(&self, catalogue: &Catalogue) -> Result<Assembly, Vec<Diagnostic>> {
-        Ok(without_bodies(catalogue))
+        Ok(Assembly::without_blocks(catalogue.clone()))
     }
 
     fn build_space(&self, catalogue: &Catalogue) -> Option<Result<SpaceAssembly, Vec<Diagnostic>>> {

@@ -1,7 +1,7 @@
 //! `dome`: a spherical dome of rings and meridians, or of lunes.
 #![doc = include_str!("dome.md")]
 
-use super::parts::{Parts, without_bodies};
+use super::parts::Parts;
 use super::shell_block::{ShellBlock, surface};
 use crate::scenes::keys::SceneKeys;
 use crate::scenes::lookup::{out_of_range, outside, pairs_of};
@@ -237,7 +237,7 @@ impl Dome {
 #[typetag::serde(name = "dome")]
 impl Scene for Dome {
     fn build(&self, catalogue: &Catalogue) -> Result<Assembly, Vec<Diagnostic>> {
-        Ok(without_bodies(catalogue))
+        Ok(Assembly::without_blocks(catalogue.clone()))
     }
 
     fn build_space(&self, catalogue: &Catalogue) -> Option<Result<SpaceAssembly, Vec<Diagnostic>>> {
@@ -331,7 +331,7 @@ mod tests {
         assert_eq!(counts(&lunes)[..2], [129, 9 * 16]);
     }
 
-    /// With many blocks the volume tends to that of the spherical shell between two cones.
+    /// With many blocks the volume tends to the volume of the spherical shell between two cones.
     #[test]
     fn the_volume_is_that_of_the_shell() {
         let dome = built("dome", &keys(json!({ "rings": 60, "meridians": 120 }))).unwrap();

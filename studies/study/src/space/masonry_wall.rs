@@ -1,7 +1,7 @@
 //! `masonry_wall`: a wall of one leaf, or two walls that meet in a corner.
 #![doc = include_str!("masonry_wall.md")]
 
-use super::parts::{Parts, cuboid, without_bodies};
+use super::parts::{Parts, cuboid};
 use crate::scenes::keys::SceneKeys;
 use crate::scenes::lookup::{out_of_range, outside, pairs_of};
 use voussoir_core::model::{Assembly, Catalogue, Scene};
@@ -303,7 +303,7 @@ fn cut_course(course: &mut Course, [left, right]: [f64; 2], snap: f64) -> bool {
 #[typetag::serde(name = "masonry_wall")]
 impl Scene for MasonryWall {
     fn build(&self, catalogue: &Catalogue) -> Result<Assembly, Vec<Diagnostic>> {
-        Ok(without_bodies(catalogue))
+        Ok(Assembly::without_blocks(catalogue.clone()))
     }
 
     fn build_space(&self, catalogue: &Catalogue) -> Option<Result<SpaceAssembly, Vec<Diagnostic>>> {

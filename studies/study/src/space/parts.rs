@@ -1,9 +1,7 @@
 //! Bodies and contacts of a generated scene.
 
-use crate::scenes::keys::PlaneState;
 use crate::scenes::lookup::{from_root, law, material, take};
-use crate::scenes::mesh::density;
-use voussoir_core::model::{Assembly, Catalogue};
+use voussoir_core::model::Catalogue;
 use voussoir_core::plugin::Diagnostic;
 use voussoir_core::space::{
     Contact, ContactBody, ContactTolerances, Polyhedron, SpaceAssembly, SpaceBody, Vec3, find_contacts, tangents,
@@ -80,20 +78,6 @@ impl Parts {
 /// Returns the contacts of the bodies of an assembly, with law 0.
 pub(super) fn found_contacts(assembly: &SpaceAssembly, tolerances: &ContactTolerances) -> Vec<Contact> {
     find_contacts(&ContactBody::all(assembly), tolerances).contacts
-}
-
-/// Returns the plane assembly of a scene in space, which has no bodies.
-pub(super) fn without_bodies(catalogue: &Catalogue) -> Assembly {
-    Assembly {
-        catalogue: catalogue.clone(),
-        bodies: Vec::new(),
-        joints: Vec::new(),
-        width: 1.0,
-        plane: PlaneState::Strain.into(),
-        mesh: density(None),
-        arch: None,
-        bridge: None,
-    }
 }
 
 /// Returns a box between two corners \[m\].

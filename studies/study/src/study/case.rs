@@ -6,7 +6,7 @@ use super::keys::{case_keys, study_keys};
 use super::model::{Case, SelectedSolver, ZoneOfThrust};
 use super::numeric_keys::numeric_keys;
 use super::partial_factors::{check, design, multiply_loads, note_of_yielding};
-use super::plausibility::warnings;
+use super::plausibility::{space_warnings, warnings};
 use super::resolved::Resolved;
 use super::solver::{choose_solver, unused_by_limit_analysis};
 use super::space::{SpaceCase, check_space_solver, space_stages};
@@ -19,7 +19,6 @@ use crate::config::diagnostic::{LocatedDiagnostic, suggest};
 use crate::config::document::Node;
 use crate::config::expand::{Expanded, Expansion};
 use crate::config::synonyms::nearest_name;
-use crate::space::near::near_miss_warnings;
 use serde_json::Value as Json;
 use std::sync::Arc;
 use voussoir_core::model::Assembly;
@@ -87,7 +86,7 @@ pub(crate) fn build_case(id: usize, expanded: Expanded, known: &KnownKeys<'_>) -
                 _ => ZoneOfThrust::Never,
             };
             notes.extend(warnings(&resolved, &assembly, &stages));
-            notes.extend(space.iter().flat_map(|space| near_miss_warnings(&space.assembly)));
+            notes.extend(space.iter().flat_map(|space| space_warnings(&resolved, &space.assembly)));
             note_of_yielding(&assembly, &resolved, &mut notes);
             let numbers = || numeric_keys(study_keys(), &resolved.to_json(), LONGEST);
             let output_sensitivities = if output.sensitivities { numbers() } else { Vec::new() };

@@ -3,11 +3,13 @@
 use super::resolved::Resolved;
 use crate::config::common_keys::tag_of;
 use crate::scenes::bridge::Fill;
+use crate::space::near::near_miss_warnings;
 use serde::Deserialize;
 use serde_json::Value as Json;
 use voussoir_core::model::geometry::{Vec2, bounding_box};
 use voussoir_core::model::{Assembly, Body, Joint, Stage, Target, root};
 use voussoir_core::plugin::PluginKind;
+use voussoir_core::space::SpaceAssembly;
 
 /// Plausible densities of masonry and fill \[kg/m³\].
 const DENSITIES: [f64; 2] = [1000.0, 3500.0];
@@ -52,6 +54,13 @@ pub(super) fn warnings(resolved: &Resolved, assembly: &Assembly, stages: &[Stage
         floating(assembly, &mut found);
     }
     found
+}
+
+/// Returns the warnings about blocks in space.
+pub(super) fn space_warnings(resolved: &Resolved, assembly: &SpaceAssembly) -> Vec<String> {
+    // Other scenes create their contacts themselves.
+    let given = |scene: &Json| matches!(tag_of(PluginKind::Scene, scene), "assembly" | "blocks_3d");
+    if resolved.get("scene").is_some_and(given) { near_miss_warnings(assembly) } else { Vec::new() }
 }
 
 fn densities(assembly: &Assembly, found: &mut Vec<String>) {

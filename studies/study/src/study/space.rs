@@ -6,7 +6,8 @@ use crate::config::common_keys::{Kinematics, SolverKeys, own_keys, tag_of};
 use crate::loads::{LoadKind, SpacePlaced, SpaceSite};
 use serde::Deserialize;
 use serde_json::Value as Json;
-use voussoir_core::law::FrictionCone;
+use std::sync::Arc;
+use voussoir_core::law::{FrictionCone, InterfaceLaw};
 use voussoir_core::model::{Stage, Target};
 use voussoir_core::plugin::{Capability, Card, PluginKind, candidate, cards_of};
 use voussoir_core::space::{SpaceAssembly, SpaceLoads, SpaceStage, Vec3, space_loads};
@@ -31,14 +32,14 @@ impl SpaceCase {
     /// limit analysis supports.
     pub fn cones(&self) -> Result<Vec<FrictionCone>, String> {
         let laws = self.assembly.catalogue.laws.iter().enumerate();
-        let cone = |(index, (name, law)): (usize, &(String, _))| {
-            let law: &std::sync::Arc<dyn voussoir_core::law::InterfaceLaw> = law;
+        let cone = |(index, (name, law)): (usize, &(String, Arc<dyn InterfaceLaw>))| {
             let used = self.assembly.contacts.iter().any(|contact| contact.law == index);
             match law.cone().filter(FrictionCone::is_dry) {
+                Some(cone) => Ok(cone),
                 None if used => Err(format!(
                     "joint law \"{name}\" is not dry isotropic friction, which limit analysis in space needs"
                 )),
-                cone => Ok(cone.unwrap_or(FrictionCone::dry(0.0, 0.0))),
+                None => Ok(FrictionCone::dry(0.0, 0.0)),
             }
         };
         laws.map(cone).collect()

@@ -1,0 +1,138 @@
+//! Dishonest solvers of scenes in space: no certificate accepts a false statement.
+
+use super::plug_ins::LIAR;
+use serde::{Deserialize, Serialize};
+use voussoir::core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, Status};
+use voussoir::core::plugin::{Capability, Card, Need, Parameter, PluginKind, Shape};
+use voussoir::core::space::{SpaceAnswer, SpaceProblem};
+use voussoir::core::{inventory, typetag};
+use voussoir::solve_case;
+use voussoir_tests::first_case;
+
+/// A solver that changes the answer of `limit_cones`.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LyingSpace {
+    lie: String,
+}
+
+const KEYS: &[Parameter] = &[Parameter { name: "lie", doc: "the lie", shape: Shape::Text, need: Need::Required }];
+
+inventory::submit! {
+    Card { kind: PluginKind::LimitSolver, tag: "lying_space", parameters: KEYS, provides: &[Capability::SPACE], ..LIAR }
+}
+
+#[typetag::serde(name = "lying_space")]
+impl LimitSolver for LyingSpace {
+    fn solve(&self, _: &LimitProblem, _: LimitQuestion) -> LimitAnswer {
+        LimitAnswer::stalled("it lies in space only")
+    }
+
+    fn refuses(&self, _: &LimitProblem) -> Option<String> {
+        Some("it lies in space only".into())
+    }
+
+    fn solve_space(&self, problem: &SpaceProblem, question: LimitQuestion) -> Option<SpaceAnswer> {
+        let honest: Box<dyn LimitSolver> =
+            serde_json::from_value(serde_json::json!({ "solver": "limit_cones" })).ok()?;
+        let all = LimitQuestion::Collapse { start: START, max: f64::INFINITY };
+        let mut answer = match self.lie.as_str() {
+            // The loads at the start of the stage are not carried, and the answer begins at a factor at which they are.
+            "begins_elsewhere" => SpaceAnswer { status: Status::Collapse, ..honest.solve_space(problem, all)? },
+            _ => honest.solve_space(problem, question)?,
+        };
+        let forces = |answer: &mut SpaceAnswer, by: f64| {
+            answer.field.iter_mut().flatten().flatten().flatten().for_each(|force| *force *= by);
+        };
+        match self.lie.as_str() {
+            "honest" => {}
+            "begins_elsewhere" => {
+                if let LimitQuestion::Admissible(factor) = question {
+                    (answer.status, answer.field_factor) = (Status::Stands, factor);
+                }
+            }
+            "factor_high" => answer.factor = answer.factor.map(|factor| 1.05 * factor),
+            "field_factor_high" => {
+                (answer.factor, answer.field_factor) = (answer.factor.map(|f| 1.05 * f), 1.05 * answer.field_factor);
+            }
+            "forces_high" => {
+                forces(&mut answer, 1.05);
+                (answer.factor, answer.field_factor) = (answer.factor.map(|f| 1.05 * f), 1.05 * answer.field_factor);
+            }
+            "forces_of_nothing" => forces(&mut answer, 0.0),
+            "motion_mirrored" => answer.motion.iter_mut().flatten().for_each(|own| own[1] = -own[1] - 1e-3),
+            "motion_does_not_open" => answer.motion.iter_mut().flatten().for_each(|own| own[2] = 0.0),
+            "motion_scaled" => answer.motion.iter_mut().flatten().flatten().for_each(|v| *v *= 0.9),
+            "stands" => answer.status = Status::Stands,
+            "unbounded" => (answer.status, answer.ray) = (Status::Unbounded, answer.field.clone()),
+            "no_equilibrium" => answer.status = Status::NoEquilibrium,
+            "short_lists" => {
+                answer.field = answer.field.map(|field| field[1..].to_vec());
+                answer.motion = answer.motion.map(|motion| motion[1..].to_vec());
+            }
+            "not_finite" => answer.field.iter_mut().flatten().flatten().for_each(|force| force[0] = f64::NAN),
+            lie => unreachable!("there is no lie {lie}"),
+        }
+        Some(answer)
+    }
+}
+
+/// Factor at which the lie about the start begins.
+const START: f64 = 0.3;
+
+const LIES: [&str; 14] = [
+    "honest",
+    "begins_elsewhere",
+    "factor_high",
+    "field_factor_high",
+    "forces_high",
+    "forces_of_nothing",
+    "motion_mirrored",
+    "motion_does_not_open",
+    "motion_scaled",
+    "stands",
+    "unbounded",
+    "no_equilibrium",
+    "short_lists",
+    "not_finite",
+];
+
+/// Returns a study of a cube of side 1 with μ = 0.4 on the ground, under a gravity vector, pushed along x.
+fn cube(gravity: &str, lie: &str) -> String {
+    format!(
+        "name = \"cube\"\n[scene]\nscene = \"masonry_wall\"\nblock = [1.0, 1.0, 1.0]\ncourses = 1\nblocks = 1\n\
+         material = \"stone\"\njoint = \"dry\"\n[materials.stone]\nlaw = \"rigid\"\ndensity = 1.0\n[joints.dry]\n\
+         law = \"coulomb_associated\"\nfriction = 0.4\n[[stages]]\nname = \"push\"\ngravity = {gravity}\nuntil = \"collapse\"\n\
+         loads = [{{ kind = \"body\", acceleration = [1.0, 0.0, 0.0] }}]\n[solver]\nsolver = \"lying_space\"\nlie = \"{lie}\"\n"
+    )
+}
+
+/// A cube slides at λ = μ. A changed answer is never certified with another statement, and bounds that remain are true.
+#[test]
+fn no_lie_about_a_sliding_cube_is_believed() {
+    for lie in LIES {
+        let result = solve_case(&first_case(&cube("1.0", lie)));
+        let factor = result.load_factor.filter(|_| result.status == Status::Collapse);
+        let told = format!("{lie}: {:?} {:?} {:?}", result.status, result.bounds, result.notes);
+        assert!(factor.is_none_or(|factor| (factor - 0.4).abs() < 4e-9), "{told}");
+        assert!(matches!(result.status, Status::Collapse | Status::Open | Status::Stalled), "{told}");
+        let [lower, upper] = result.bounds.unwrap_or_default();
+        assert!(
+            lower.is_none_or(|lower| lower <= 0.4 + 4e-9) && upper.is_none_or(|upper| upper >= 0.4 - 4e-9),
+            "{told}"
+        );
+        assert!(factor.is_some() || lie != "honest", "{told}");
+    }
+}
+
+/// A gravity that is inclined by 0.6 along −x cannot be carried without a push. A solver that begins its search at a factor
+/// at which the loads are carried does not prove the start.
+#[test]
+fn the_start_of_a_stage_must_be_carried() {
+    for lie in ["honest", "begins_elsewhere"] {
+        let result = solve_case(&first_case(&cube("[-0.6, 0.0, -1.0]", lie)));
+        let told = format!("{lie}: {:?} {:?} {:?}", result.status, result.bounds, result.notes);
+        assert_eq!(result.status == Status::NoEquilibrium, lie == "honest", "{told}");
+        assert!(matches!(result.status, Status::NoEquilibrium | Status::Open | Status::Stalled), "{told}");
+    }
+}
