@@ -5,13 +5,13 @@
 //! right-handed; n points from the *minus* to the *plus* body. A contact force acts as +r on plus and as −r on minus;
 //! positive r_n is compressive. The gap rate is v_plus − v_minus; a positive normal component opens the contact.
 //!
-//! # Forces at the vertices
-//! A contact is the convex hull of a plane polygon, and its unknowns are a force (n, s, t) at each vertex. For friction
-//! |(s, t)| ≤ μ n without cohesion, tension or crushing this is exact: barycentric weights of a fan of triangles move
-//! every admissible pressure and friction to the vertices without a change of their resultants.
+//! # Forces at points
+//! A contact is the convex hull of a plane polygon, and its unknowns are forces (n, s, t) at points. For friction
+//! |(s, t)| ≤ c + μ n whose tip c/μ is the tensile strength, the vertices are exact. For other strengths inner points bound the
+//! load factor from below, and outer points from above (see [`PointSet`]).
 
 pub use crate::certificate::{SpaceClaim, SpaceVerdict, certify_space};
-pub use crate::limit::{Cone, SpaceAnswer, SpaceContact, SpaceField, SpaceProblem, SpaceVelocity, power};
+pub use crate::limit::{PointSet, SpaceAnswer, SpaceContact, SpaceField, SpaceProblem, SpaceVelocity, power};
 pub use crate::model::space::{
     Contact, ContactBody, ContactTolerances, FoundContacts, NearMiss, Polyhedron, SpaceAssembly, SpaceBody, SpaceForce,
     SpaceLoads, SpaceStage, Vec3, Wrench, add_space_force, find_contacts, hull, near_misses, space_loads, tangents,

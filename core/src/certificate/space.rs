@@ -1,12 +1,13 @@
 //! Certificates of limit analysis in space: the proof of an answer, recomputed from the problem alone.
 //!
 //! This code shares nothing with solvers. Equilibrium is summed body by body from the stored forces. Forces are compared
-//! with the cone |(s, t)| ≤ μ n point by point. The rates of a motion are compared with the dual cone v_n ≥ μ |v_t| of
-//! associated flow; inside it forces do no negative work, and nothing is dissipated. For a field at the factor λ and a
-//! motion with varying·q = 1, virtual power gives
+//! with the set of the law at the inner points of each contact. The rates of a motion are compared with the dual cone
+//! v_n ≥ μ |v_t| of associated flow at the outer points, unless joints crush, and dissipate D = Σ a d(v), the greatest work
+//! of admissible tractions against them; dry friction dissipates nothing. For a field at the factor λ and a motion with
+//! varying·q = 1, virtual power gives
 //!
 //! ```text
-//! λ ≤ −fixed·q,   fixed·q + λ varying·q = −Σ f·v ≤ 0
+//! λ ≤ D − fixed·q,   fixed·q + λ varying·q = −Σ f·v ≤ D
 //! ```
 //!
 //! so that a field proves a lower bound and a motion an upper bound of the greatest factor. Source: Drucker, Prager and
@@ -96,7 +97,7 @@ fn misfit(problem: &SpaceProblem, claim: &SpaceClaim) -> Option<String> {
         return Some("the problem does not have one wrench for each free body".into());
     }
     let fits = |field: &SpaceField| {
-        let same = |(contact, forces): (&SpaceContact, &Vec<[f64; 3]>)| contact.points.len() == forces.len();
+        let same = |(contact, forces): (&SpaceContact, &Vec<[f64; 3]>)| contact.inner.points.len() == forces.len();
         field.len() == contacts.len() && contacts.iter().zip(field).all(same)
     };
     let fields = || [claim.field, claim.ray].into_iter().flatten();
@@ -216,7 +217,7 @@ impl<'a> Check<'a> {
         let scale = self.load_scale(claim.field_factor, field);
         let imbalance = self.imbalance(field, [1.0, claim.field_factor]);
         let balanced = self.certificate.residual("equilibrium", imbalance / scale, ROUNDING);
-        let admissible = self.certificate.residual("strength", self.violation(field) / scale, ROUNDING);
+        let admissible = self.certificate.residual("strength", self.violation(field, true) / scale, ROUNDING);
         (balanced && admissible && claim.field_factor.is_finite()).then_some(claim.field_factor)
     }
 
@@ -229,7 +230,7 @@ impl<'a> Check<'a> {
         // A ray cannot be too small: the varying loads are its scale.
         let scale = if self.sizes[1] > 0.0 { self.sizes[1] } else { 1.0 };
         let balanced = self.certificate.residual("ray_equilibrium", self.imbalance(ray, [0.0, 1.0]) / scale, ROUNDING);
-        let admissible = self.certificate.residual("ray_strength", self.violation(ray) / scale, ROUNDING);
+        let admissible = self.certificate.residual("ray_strength", self.violation(ray, false) / scale, ROUNDING);
         (balanced && admissible).then_some(())
     }
 
@@ -238,8 +239,9 @@ impl<'a> Check<'a> {
         let (largest, flow) = self.flow(claim.motion)?;
         let motion = claim.motion?;
         let (fixed, varying) = (power(&self.problem.fixed, motion), power(&self.problem.varying, motion));
-        let excess = fixed + claim.start * varying;
-        let scale = (self.sizes[0] + claim.start.abs() * self.sizes[1]) * largest;
+        let excess = fixed + claim.start * varying - self.dissipation(motion);
+        let loads = (self.sizes[0] + claim.start.abs() * self.sizes[1]) * largest;
+        let scale = loads.max(self.dissipation(motion).abs());
         // Rates outside the dual cones, though within rounding, could do this work with forces as great as the loads.
         let significant = excess > EXCESS.max(flow) * scale;
         if !significant {
@@ -254,7 +256,9 @@ impl<'a> Check<'a> {
         self.flow(claim.motion)?;
         let motion = claim.motion?;
         let (fixed, varying) = (power(&self.problem.fixed, motion), power(&self.problem.varying, motion));
-        self.certificate.residual("motion_scale", (varying - 1.0).abs(), UNIT_POWER).then_some(-fixed / varying)
+        self.certificate
+            .residual("motion_scale", (varying - 1.0).abs(), UNIT_POWER)
+            .then_some((self.dissipation(motion) - fixed) / varying)
     }
 
     /// Checks the rates of a motion. Returns the greatest jump, and the greatest distance from the dual cones relative
@@ -266,11 +270,10 @@ impl<'a> Check<'a> {
         };
         let (mut largest, mut worst) = (0.0f64, 0.0f64);
         for contact in &self.problem.contacts {
-            for point in &contact.points {
-                let [n, s, t] = jump(contact, point, motion);
-                let friction = contact.cone.friction;
-                largest = largest.max(n.hypot(s).hypot(t));
-                worst = worst.max((friction * s.hypot(t) - n) / 1.0f64.hypot(friction));
+            for point in &contact.outer.points {
+                let rate = jump(contact, point, motion);
+                largest = largest.max(Vec3::from(rate).norm());
+                worst = worst.max(contact.law.violation_of_flow(&rate));
             }
         }
         let speed = motion
@@ -296,7 +299,7 @@ impl<'a> Check<'a> {
         let mut sums: Vec<(Vec3, Vec3)> = (0..self.problem.bodies).map(load).collect();
         for (contact, forces) in self.problem.contacts.iter().zip(field) {
             let [n, s, t] = &contact.frame;
-            for (point, force) in contact.points.iter().zip(forces) {
+            for (point, force) in contact.inner.points.iter().zip(forces) {
                 let force = n * force[0] + s * force[1] + t * force[2];
                 for (body, sign) in [(contact.plus, 1.0), (contact.minus, -1.0)] {
                     let Some(body) = body else { continue };
@@ -315,20 +318,29 @@ impl<'a> Check<'a> {
         let mut sums = vec![(Vec3::zeros(), 0.0); self.problem.bodies];
         for contact in &self.problem.contacts {
             for body in [contact.plus, contact.minus].into_iter().flatten() {
-                sums[body].0 += contact.points.iter().sum::<Vec3>();
-                sums[body].1 += contact.points.len() as f64;
+                sums[body].0 += contact.inner.points.iter().sum::<Vec3>();
+                sums[body].1 += contact.inner.points.len() as f64;
             }
         }
         sums.into_iter().map(|(sum, count)| if count > 0.0 { sum / count } else { sum }).collect()
     }
 
-    /// Returns the greatest force outside the cones \[N\].
-    fn violation(&self, field: &SpaceField) -> f64 {
+    /// Returns the greatest force outside the strength of its point \[N\]; without areas, outside the cones of recession.
+    fn violation(&self, field: &SpaceField, areas: bool) -> f64 {
         let of = |(contact, forces): (&SpaceContact, &Vec<[f64; 3]>)| {
-            let beyond = |[n, s, t]: &[f64; 3]| (s.hypot(*t) - contact.cone.friction * n).max(-n);
-            forces.iter().map(beyond).fold(0.0, f64::max)
+            let at = |(force, area): (&[f64; 3], &f64)| contact.law.violation(force, if areas { *area } else { 0.0 });
+            forces.iter().zip(&contact.inner.areas).map(at).fold(0.0, f64::max)
         };
         self.problem.contacts.iter().zip(field).map(of).fold(0.0, f64::max)
+    }
+
+    /// Returns the greatest work of admissible tractions against a motion \[W\].
+    fn dissipation(&self, motion: &[SpaceVelocity]) -> f64 {
+        let of = |contact: &SpaceContact| -> f64 {
+            let points = contact.outer.points.iter().zip(&contact.outer.areas);
+            points.map(|(point, area)| area * contact.law.dissipation(&jump(contact, point, motion))).sum()
+        };
+        self.problem.contacts.iter().map(of).sum()
     }
 
     /// Returns the scale of the residuals of a field \[N\]: the loads at the factor, or the greatest force without loads.
@@ -364,19 +376,14 @@ fn jump(contact: &SpaceContact, point: &Vec3, motion: &[SpaceVelocity]) -> [f64;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::limit::Cone;
+    use crate::law::FrictionCone;
 
     /// A cube of side 1 and weight 1 on a plane with μ = 0.4, pushed along x at its centroid: it slides at λ = 0.4.
     fn cube() -> SpaceProblem {
         let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
-        let contact = SpaceContact {
-            contact: 0,
-            minus: None,
-            plus: Some(0),
-            points: corners.iter().map(|[x, y]| Vec3::new(*x, *y, 0.0)).collect(),
-            frame: [Vec3::z(), Vec3::x(), Vec3::y()],
-            cone: Cone { friction: 0.4 },
-        };
+        let vertices = corners.map(|[x, y]| Vec3::new(x, y, 0.0));
+        let frame = [Vec3::z(), Vec3::x(), Vec3::y()];
+        let contact = SpaceContact::new(0, [None, Some(0)], &vertices, frame, (FrictionCone::dry(0.4, 0.4), 1));
         let centroid = Vec3::new(0.5, 0.5, 0.5);
         SpaceProblem {
             free: vec![None, Some(0)],

@@ -24,13 +24,103 @@ impl FrictionCone {
         FrictionCone { friction, dilatancy, cohesion: 0.0, tensile_strength: 0.0, compressive_strength: f64::INFINITY }
     }
 
-    /// Returns true if the cone has its tip at zero traction and no other bound.
-    pub fn is_dry(&self) -> bool {
-        self.cohesion == 0.0 && self.tensile_strength == 0.0 && self.compressive_strength == f64::INFINITY
+    /// Returns f_t, at most the normal traction at which friction and cohesion vanish \[Pa\].
+    pub fn tension(&self) -> f64 {
+        if self.friction > 0.0 {
+            self.tensile_strength.min(self.cohesion / self.friction)
+        } else {
+            self.tensile_strength
+        }
+    }
+
+    /// Returns the shear strength at the greatest tension \[Pa\].
+    fn shear_in_tension(&self) -> f64 {
+        (self.cohesion - self.friction * self.tension()).max(0.0)
+    }
+
+    /// Returns true if the set is one cone: it has one tip, and nothing else bounds it.
+    pub fn has_one_tip(&self) -> bool {
+        let remaining = self.shear_in_tension();
+        remaining <= f64::EPSILON * self.cohesion && self.compressive_strength == f64::INFINITY
+    }
+
+    /// Returns by how much a force (n, s, t) \[N\] at a point of an area \[m²\] leaves the set; negative inside. Without an area
+    /// the set is its cone of recession.
+    pub fn violation(&self, [n, s, t]: &[f64; 3], area: f64) -> f64 {
+        let share = |strength: f64| if area > 0.0 { strength * area } else { 0.0 };
+        let crushed = if self.compressive_strength.is_finite() {
+            n - share(self.compressive_strength)
+        } else {
+            f64::NEG_INFINITY
+        };
+        (s.hypot(*t) - share(self.cohesion) - self.friction * n).max(-share(self.tension()) - n).max(crushed)
+    }
+
+    /// Returns by how much a rate (n, s, t) of a gap leaves the rates that associated flow can have; none if joints crush.
+    pub fn violation_of_flow(&self, [n, s, t]: &[f64; 3]) -> f64 {
+        if self.compressive_strength.is_finite() {
+            return 0.0;
+        }
+        (self.friction * s.hypot(*t) - n) / 1.0f64.hypot(self.friction)
+    }
+
+    /// Returns the greatest work of tractions of the set against a rate (n, s, t) of a gap \[m/s\], per area \[W/m²\]: at one of
+    /// the two ends of the normal traction.
+    pub fn dissipation(&self, [n, s, t]: &[f64; 3]) -> f64 {
+        let (slip, tension, crushing) = (s.hypot(*t), self.tension(), self.compressive_strength);
+        let opening = tension * n + self.shear_in_tension() * slip;
+        let closing = (self.cohesion + self.friction * crushing) * slip - crushing * n;
+        if crushing.is_finite() { opening.max(closing) } else { opening }
     }
 
     /// Returns true if slip opens the contact as much as normality requires, so that the bound theorems hold.
     pub fn is_associated(&self) -> bool {
         self.dilatancy == self.friction
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MORTAR: FrictionCone = FrictionCone {
+        friction: 0.6,
+        dilatancy: 0.6,
+        cohesion: 2.0,
+        tensile_strength: 0.5,
+        compressive_strength: 30.0,
+    };
+
+    /// The dissipation is the greatest work of a fine grid of admissible tractions.
+    #[test]
+    fn the_dissipation_is_the_greatest_work() {
+        for rate in [[0.3, 0.1, -0.2], [-0.3, 0.5, 0.1], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.1, 0.0, 0.3]] {
+            let mut greatest = f64::NEG_INFINITY;
+            for step in 0..=400 {
+                let n = -0.5 + 30.5 * f64::from(step) / 400.0;
+                for turn in 0..360 {
+                    let (sin, cos) = f64::from(turn).to_radians().sin_cos();
+                    let shear = 2.0 + 0.6 * n;
+                    let traction = [n, shear * cos, shear * sin];
+                    assert!(MORTAR.violation(&traction, 1.0) < 1e-12);
+                    greatest = greatest.max(-traction.iter().zip(&rate).map(|(t, v)| t * v).sum::<f64>());
+                }
+            }
+            let found = MORTAR.dissipation(&rate);
+            assert!(greatest <= found + 1e-12 && found - greatest < 1e-3, "{rate:?}: {found} {greatest}");
+        }
+    }
+
+    /// Each strength bounds a force in proportion to the area; without an area only the cone remains.
+    #[test]
+    fn forces_are_compared_with_strength_times_area() {
+        for (force, area) in [([60.0, 0.0, 0.0], 2.0), ([-1.0, 0.0, 0.0], 2.0), ([10.0, 0.0, 10.0], 2.0)] {
+            assert!(MORTAR.violation(&force, area).abs() < 1e-12, "{force:?}");
+            assert!(MORTAR.violation(&force, 0.99 * area) > 0.0, "{force:?}");
+        }
+        let endless = FrictionCone { compressive_strength: f64::INFINITY, ..MORTAR };
+        assert_eq!(endless.violation(&[5.0, 3.0, 0.0], 0.0), 0.0);
+        assert!(!endless.has_one_tip());
+        assert!(FrictionCone { tensile_strength: 9.0, ..endless }.has_one_tip());
     }
 }

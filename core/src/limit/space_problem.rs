@@ -1,13 +1,8 @@
 //! The problem of limit analysis in space.
 
+use super::space_points::{PointSet, point_sets};
+use crate::law::FrictionCone;
 use crate::model::space::{SpaceAssembly, Vec3, Wrench};
-
-/// Strength of a contact point: |(s, t)| ≤ μ n.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Cone {
-    /// μ.
-    pub friction: f64,
-}
 
 /// A contact between two free bodies, or between a body and the ground (`None`).
 #[derive(Debug, Clone)]
@@ -18,15 +13,29 @@ pub struct SpaceContact {
     pub minus: Option<usize>,
     /// Free body on the plus side.
     pub plus: Option<usize>,
-    /// Points at which forces act, relative to the pole \[m\].
-    pub points: Vec<Vec3>,
     /// Frame (n, s, t).
     pub frame: [Vec3; 3],
-    /// Strength of each point.
-    pub cone: Cone,
+    /// Strength of the contact.
+    pub law: FrictionCone,
+    /// Points whose forces are certainly admissible: forces act here.
+    pub inner: PointSet,
+    /// Points whose dissipation is certainly not too small: motions are evaluated here.
+    pub outer: PointSet,
 }
 
 impl SpaceContact {
+    /// Creates a contact with these vertices relative to the pole. `parts` divides contacts whose strength is more than a cone.
+    pub fn new(
+        contact: usize,
+        bodies: [Option<usize>; 2],
+        vertices: &[Vec3],
+        frame: [Vec3; 3],
+        (law, parts): (FrictionCone, usize),
+    ) -> Self {
+        let [inner, outer] = point_sets(vertices, &law, parts);
+        SpaceContact { contact, minus: bodies[0], plus: bodies[1], frame, law, inner, outer }
+    }
+
     /// Returns the wrench on the plus body per unit of force along a direction at a point; minus gets the opposite.
     pub fn wrench(point: &Vec3, direction: &Vec3) -> Wrench {
         let moment = point.cross(direction);
@@ -54,9 +63,13 @@ pub struct SpaceProblem {
 }
 
 impl SpaceProblem {
-    /// Reduces an assembly whose contacts have these cones, one for each law of the catalogue, under wrenches on each
-    /// body about the origin.
-    pub fn new(assembly: &SpaceAssembly, cones: &[Cone], fixed: &[Wrench], varying: &[Wrench]) -> Self {
+    /// Reduces an assembly whose contacts have these cones, one for each law of the catalogue, under fixed and varying wrenches
+    /// on each body about the origin. `parts` divides contacts whose strength is more than a cone.
+    pub fn new(
+        assembly: &SpaceAssembly,
+        (cones, parts): (&[FrictionCone], usize),
+        [fixed, varying]: [&[Wrench]; 2],
+    ) -> Self {
         let mut bodies = 0;
         let number = |fixed: bool| {
             (!fixed).then(|| {
@@ -70,13 +83,10 @@ impl SpaceProblem {
             if assembly.bodies.is_empty() { (Vec3::zeros(), 1.0) } else { ((low + high) / 2.0, (high - low).norm()) };
         let contacts = assembly.contacts.iter().enumerate().filter_map(|(index, contact)| {
             let (minus, plus) = (free[contact.minus], free[contact.plus]);
-            (minus.is_some() || plus.is_some()).then(|| SpaceContact {
-                contact: index,
-                minus,
-                plus,
-                points: contact.points.iter().map(|point| point - pole).collect(),
-                frame: [contact.normal, contact.tangents[0], contact.tangents[1]],
-                cone: cones[contact.law],
+            (minus.is_some() || plus.is_some()).then(|| {
+                let vertices: Vec<Vec3> = contact.points.iter().map(|point| point - pole).collect();
+                let frame = [contact.normal, contact.tangents[0], contact.tangents[1]];
+                SpaceContact::new(index, [minus, plus], &vertices, frame, (cones[contact.law], parts))
             })
         });
         let contacts = contacts.collect();
@@ -85,6 +95,11 @@ impl SpaceProblem {
             kept.map(|(_, wrench)| about(&pole, wrench)).collect()
         };
         SpaceProblem { fixed: gather(fixed), varying: gather(varying), free, bodies, contacts, pole, length }
+    }
+
+    /// Returns true if forces at the vertices represent all tractions: both bounds can meet.
+    pub fn is_exact(&self) -> bool {
+        self.contacts.iter().all(|contact| contact.law.has_one_tip())
     }
 }
 

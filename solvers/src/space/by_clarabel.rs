@@ -98,26 +98,44 @@ struct Route<'a> {
 }
 
 impl Route<'_> {
-    /// Solves for the greatest value of a last unknown that adds `load` to equilibrium and `shift` times the unit to
-    /// the forces of each point; `cap` bounds it.
+    /// Returns the bounds of y₀ as rows: point, coefficient of y₀, right-hand side.
+    fn limits(&self) -> Vec<(usize, f64, f64)> {
+        let of = |(point, [least, most]): (usize, &[f64; 2])| {
+            let least = (*least > 0.0).then_some((point, -1.0, -least));
+            least.into_iter().chain(most.is_finite().then_some((point, 1.0, *most)))
+        };
+        self.program.limits.iter().enumerate().flat_map(of).collect()
+    }
+
+    /// Solves for the greatest value of a last unknown that adds `load` to equilibrium and takes `shift` times the unit from
+    /// the distance of each point to its strength; `cap` bounds it.
     fn greatest(&mut self, load: &[f64], shift: f64, cap: Option<f64>) -> Option<Solution> {
         let (rows, points) = (self.program.base.len(), self.program.points.len());
         let mut columns = Columns::default();
+        let (limits, conic) = (self.limits(), rows + 3 * points);
+        let mut limited = limits.iter().enumerate().peekable();
         for (point, wrenches) in self.wrenches.iter().enumerate() {
             for (k, wrench) in wrenches.iter().enumerate() {
-                columns.push(wrench.iter().copied().chain([(rows + 3 * point + k, -1.0)]));
+                let mut column = wrench.clone();
+                column.push((rows + 3 * point + k, -1.0));
+                while k == 0 && limited.peek().is_some_and(|(_, limit)| limit.0 == point) {
+                    column.extend(limited.next().map(|(row, limit)| (conic + row, limit.1)));
+                }
+                columns.push(column.into_iter());
             }
         }
         let last = load.iter().copied().enumerate();
         let shifted = (0..points).map(|point| (rows + 3 * point, shift));
-        columns.push(last.chain(shifted).chain(cap.map(|_| (rows + 3 * points, 1.0))));
-        let height = rows + 3 * points + usize::from(cap.is_some());
+        let shifted = shifted.chain((0..limits.len()).map(|row| (conic + row, shift)));
+        let bounds = limits.len() + usize::from(cap.is_some());
+        columns.push(last.chain(shifted).chain(cap.map(|_| (conic + limits.len(), 1.0))));
         let mut b: Vec<f64> = self.program.base.iter().map(|w| -w).collect();
-        b.resize(rows + 3 * points, 0.0);
-        b.extend(cap);
+        b.resize(conic, 0.0);
+        b.extend(limits.iter().map(|limit| limit.2).chain(cap));
         let mut cones = vec![SupportedConeT::ZeroConeT(rows)];
         cones.extend((0..points).map(|_| SupportedConeT::SecondOrderConeT(3)));
-        cones.extend(cap.map(|_| SupportedConeT::NonnegativeConeT(1)));
+        cones.extend((bounds > 0).then_some(SupportedConeT::NonnegativeConeT(bounds)));
+        let height = conic + bounds;
         let mut c = vec![0.0; 3 * points];
         c.push(-1.0);
         let solution = clarabel(&c, &columns.matrix(height), &b, &cones)?;
@@ -125,18 +143,23 @@ impl Route<'_> {
         Some(solution)
     }
 
-    /// Returns a motion with all rates at least the unit of the cones, of least sum of openings.
+    /// Returns a motion with all rates at least the unit of the cones where joints cannot crush, of least sum of openings.
     fn opening(&mut self) -> Option<Vec<f64>> {
-        let (count, points) = (self.program.base.len(), self.program.points.len());
+        let count = self.program.base.len();
         let mut entries: Vec<Vec<(usize, f64)>> = vec![Vec::new(); count];
         let mut c = vec![0.0; count];
-        for (point, wrenches) in self.wrenches.iter().enumerate() {
+        let opens = self.wrenches.iter().zip(&self.program.limits).filter(|(_, limits)| limits[1].is_infinite());
+        let points = opens.clone().count();
+        for (point, (wrenches, _)) in opens.enumerate() {
             for (k, wrench) in wrenches.iter().enumerate() {
                 for (row, value) in wrench {
                     entries[*row].push((3 * point + k, -value));
                     c[*row] += if k == 0 { *value } else { 0.0 };
                 }
             }
+        }
+        if points == 0 {
+            return None;
         }
         let mut columns = Columns::default();
         entries.into_iter().for_each(|column| columns.push(column.into_iter()));

@@ -68,7 +68,8 @@ impl Evidence {
         let (lambda, tau) = (method.state.lambda, method.state.tau);
         if self.start.is_none() {
             let y = method.state.forces(tau);
-            self.start = balanced(method, y, [0.0, 1.0]).filter(|y| inside(y)).map(|y| Field { lambda: 0.0, y });
+            self.start =
+                balanced(method, y, [0.0, 1.0]).filter(|y| inside(program, y)).map(|y| Field { lambda: 0.0, y });
         }
         if method.held {
             return;
@@ -76,14 +77,15 @@ impl Evidence {
         self.field(method, lambda / tau);
         if self.ray.is_none() && lambda > 0.0 && method.state.kappa > tau {
             let y = method.state.forces(lambda);
-            self.ray = balanced(method, y, [1.0, 0.0]).filter(|y| inside(y));
+            self.ray = balanced(method, y, [1.0, 0.0]).filter(|y| inside(program, y));
         }
     }
 
     /// Adds a field near the forces of a state.
     fn field(&mut self, method: &mut InteriorPoint, lambda: f64) {
         let y = method.state.forces(method.state.tau);
-        if let Some(y) = balanced(method, y, [lambda, 1.0]).filter(|y| inside(y)) {
+        let program = method.program;
+        if let Some(y) = balanced(method, y, [lambda, 1.0]).filter(|y| inside(program, y)) {
             let field = Field { lambda, y };
             let mean = method.state.mean();
             if self.fields.last().is_none_or(|(last, _)| mean <= SETTINGS.apart * last) {
@@ -104,15 +106,16 @@ impl Evidence {
     /// less than the negligible share of the greatest force get none: they cannot be loaded.
     pub fn repair(&mut self, program: &Program, mut y: Vec<Cone>, lambda: f64) -> Option<()> {
         let least = if self.fields.is_empty() { SETTINGS.negligible * size(&y) } else { 0.0 };
-        let idle: Vec<bool> = y.iter().map(|y| y[0] <= least).collect();
+        let idle: Vec<bool> =
+            y.iter().zip(&program.limits).map(|(y, limits)| limits[0] == 0.0 && y[0] <= least).collect();
         y.iter_mut().zip(&idle).filter(|(_, idle)| **idle).for_each(|(y, _)| *y = [0.0; 3]);
         let y = evened(program, y, [lambda, 1.0], &idle)?;
-        if y.iter().all(|y| margin(y) >= 0.0) {
+        if y.iter().enumerate().all(|(point, y)| program.margin(point, y) >= 0.0) {
             self.raise(Field { lambda, y });
             return Some(());
         }
         let earlier = self.fields.iter().map(|(_, field)| field).chain(&self.start);
-        let mixed = earlier.filter_map(|field| mixture(&y, lambda, field));
+        let mixed = earlier.filter_map(|field| mixture(program, &y, lambda, field));
         let best = mixed.max_by(|a, b| a.lambda.total_cmp(&b.lambda))?;
         self.raise(best);
         Some(())
@@ -147,7 +150,7 @@ impl Evidence {
     /// Adds a motion of a state with a mean product.
     pub fn motion(&mut self, program: &Program, q: &[f64], mean: f64, held: bool) {
         let z = program.rates(q);
-        let found = if inside(&z) {
+        let found = if opens(program, &z) {
             let found = opening(program, q.to_vec(), z);
             if self.openings.last().is_none_or(|(last, _)| mean <= SETTINGS.apart * last) {
                 self.openings.push((mean, found.clone()));
@@ -155,11 +158,12 @@ impl Evidence {
             Some(found)
         } else {
             let opened = self.openings.iter().filter_map(|(_, earlier)| opened(program, q, &z, earlier));
-            let nearly = || within_rounding(&z).then(|| opening(program, q.to_vec(), z.clone()));
+            let nearly = || within_rounding(program, &z).then(|| opening(program, q.to_vec(), z.clone()));
             opened.min_by(|a, b| a.bound.total_cmp(&b.bound)).or_else(nearly)
         };
         let Some(found) = found else { return };
-        let (work, power) = (dot(&program.base, &found.q), dot(&program.varying, &found.q));
+        let work = dot(&program.base, &found.q) - program.dissipation(&found.z);
+        let power = dot(&program.varying, &found.q);
         let loads: f64 = program.base.iter().map(|w| w.abs()).sum();
         let fastest = found.z.iter().map(|z| greatest(z)).fold(0.0, f64::max);
         let significant = SETTINGS.worked * loads * fastest;
@@ -172,15 +176,21 @@ impl Evidence {
     }
 }
 
-/// Returns true if all elements are inside the cones.
-fn inside(x: &[Cone]) -> bool {
-    x.iter().all(|x| margin(x) > 0.0)
+/// Returns true if all forces are inside their strengths.
+fn inside(program: &Program, y: &[Cone]) -> bool {
+    y.iter().enumerate().all(|(point, y)| program.margin(point, y) > 0.0)
 }
 
-/// Returns true if rates leave the cones by rounding only.
-fn within_rounding(z: &[Cone]) -> bool {
+/// Returns true if all rates are inside the dual cones.
+fn opens(program: &Program, z: &[Cone]) -> bool {
+    z.iter().enumerate().all(|(point, z)| program.margin_of_rate(point, z) > 0.0)
+}
+
+/// Returns true if rates leave the dual cones by rounding only.
+fn within_rounding(program: &Program, z: &[Cone]) -> bool {
     let most = z.iter().map(|z| greatest(z)).fold(0.0, f64::max);
-    most > 0.0 && z.iter().all(|z| margin(z) >= -SETTINGS.balanced * most)
+    let nearly = |(point, z): (usize, &Cone)| program.margin_of_rate(point, z) >= -SETTINGS.balanced * most;
+    most > 0.0 && z.iter().enumerate().all(nearly)
 }
 
 /// Returns the greatest normal force, at least the unit of force.
@@ -213,37 +223,37 @@ fn evened(program: &Program, mut y: Vec<Cone>, [lambda, tau]: [f64; 2], idle: &[
 
 /// Returns a motion with its bound.
 fn opening(program: &Program, q: Bodies, z: Vec<Cone>) -> Opening {
-    let (work, power) = (dot(&program.base, &q), dot(&program.varying, &q));
+    let work = dot(&program.base, &q) - program.dissipation(&z);
+    let power = dot(&program.varying, &q);
     Opening { bound: if power > 0.0 { -work / power } else { f64::INFINITY }, q, z }
 }
 
 /// Adds as much of an earlier opening motion as moves all rates into the cones.
 fn opened(program: &Program, q: &[f64], z: &[Cone], earlier: &Opening) -> Option<Opening> {
-    let share = share(z, &earlier.z)?;
+    let share = share(z, &earlier.z, |point, z| program.margin_of_rate(point, z))?;
     let mut q = q.to_vec();
     add(&mut q, share / (1.0 - share), &earlier.q);
     let z = program.rates(&q);
-    inside(&z).then(|| opening(program, q, z))
+    opens(program, &z).then(|| opening(program, q, z))
 }
 
 /// Mixes forces with as much of an earlier field as moves all of them into the cones.
-fn mixture(y: &[Cone], lambda: f64, earlier: &Field) -> Option<Field> {
-    let share = share(y, &earlier.y)?;
+fn mixture(program: &Program, y: &[Cone], lambda: f64, earlier: &Field) -> Option<Field> {
+    let share = share(y, &earlier.y, |point, y| program.margin(point, y))?;
     let mix = |(y, inside): (&Cone, &Cone)| plus(&y.map(|x| (1.0 - share) * x), share, inside);
     let mixed: Vec<Cone> = y.iter().zip(&earlier.y).map(mix).collect();
     let lambda = (1.0 - share) * lambda + share * earlier.lambda;
-    inside(&mixed).then_some(Field { lambda, y: mixed })
+    inside(program, &mixed).then_some(Field { lambda, y: mixed })
 }
 
-/// Returns the least share of elements `inside` the cones that brings all elements `x` into them. `None` if half is not
-/// enough.
-fn share(x: &[Cone], inside: &[Cone]) -> Option<f64> {
-    let needed = |(x, inside): (&Cone, &Cone)| {
+/// Returns the least share of elements `inside` that brings all elements `x` inside. `None` if half is not enough.
+fn share(x: &[Cone], inside: &[Cone], margin: impl Fn(usize, &Cone) -> f64) -> Option<f64> {
+    let needed = |(point, (x, inside)): (usize, (&Cone, &Cone))| {
         // Margins are exact to rounding of their terms.
-        let lack = f64::EPSILON * x[0].abs() - margin(x);
-        if lack > 0.0 { lack / (lack + margin(inside)) } else { 0.0 }
+        let lack = f64::EPSILON * x[0].abs() - margin(point, x);
+        if lack > 0.0 { lack / (lack + margin(point, inside)) } else { 0.0 }
     };
-    let most = x.iter().zip(inside).map(needed).fold(0.0, f64::max);
+    let most = x.iter().zip(inside).enumerate().map(needed).fold(0.0, f64::max);
     let share = most * (1.0 + SETTINGS.mixed);
     (share < 0.5).then_some(share)
 }

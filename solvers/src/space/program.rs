@@ -2,12 +2,13 @@
 //!
 //! The unit of force is the root mean square of the loads of a body, the unit of length the mean size of a contact. Each
 //! body has a pole at the centre of its contacts. A contact has six rates in its own frame at its centre; the rates of
-//! its points follow from them. Forces of a point are y = (μ n, s, t), so that every cone is y₀ ≥ |(y₁, y₂)|. Without
-//! friction the shear forces have no effect.
+//! its points follow from them. Forces of a point are y = (μ n + c a, s, t), so that every cone is y₀ ≥ |(y₁, y₂)|; the
+//! forces of the tip, y = 0, count as loads. Without friction the shear forces have no effect. A tensile strength below the
+//! tip and a compressive strength bound y₀.
 
-use super::cone::{Cone, UNIT};
+use super::cone::{Cone, UNIT, margin};
 use std::ops::Range;
-use voussoir_core::space::{SpaceContact, SpaceProblem, Vec3, Wrench};
+use voussoir_core::space::{PointSet, SpaceContact, SpaceProblem, Vec3, Wrench};
 
 /// Velocities or wrenches of all bodies in units of the program, six numbers each.
 pub type Bodies = Vec<f64>;
@@ -27,6 +28,24 @@ pub struct Member {
     pub strengths: [f64; 2],
 }
 
+/// The points of a contact that a program uses.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Side {
+    /// Those whose forces are admissible.
+    Inner,
+    /// Those that bound the dissipation.
+    Outer,
+}
+
+impl Side {
+    fn of(self, contact: &SpaceContact) -> &PointSet {
+        match self {
+            Side::Inner => &contact.inner,
+            Side::Outer => &contact.outer,
+        }
+    }
+}
+
 /// Data of a problem in units of the program.
 #[derive(Clone)]
 pub struct Program {
@@ -34,7 +53,11 @@ pub struct Program {
     pub members: Vec<Member>,
     /// Points relative to the centre of their contact, in its frame.
     pub points: Vec<Vec3>,
-    /// Loads at the start.
+    /// y₀ of each point without force.
+    offsets: Vec<f64>,
+    /// Least and greatest y₀ of each point.
+    pub limits: Vec<[f64; 2]>,
+    /// Loads at the start, with the forces of the tips.
     pub base: Bodies,
     /// Varying loads.
     pub varying: Bodies,
@@ -50,9 +73,9 @@ pub struct Program {
     pub start: f64,
 }
 
-/// Returns the sum of the points of a contact divided by their number.
+/// Returns the mean of the outer points of a contact.
 fn centre(contact: &SpaceContact) -> Vec3 {
-    contact.points.iter().sum::<Vec3>() / contact.points.len().max(1) as f64
+    contact.outer.points.iter().sum::<Vec3>() / contact.outer.points.len().max(1) as f64
 }
 
 /// Returns the root mean square of the entries, and zero for none.
@@ -61,12 +84,14 @@ fn mean_size(values: &[f64]) -> f64 {
 }
 
 impl Program {
-    /// Scales a problem whose loads start at a factor.
-    pub fn new(problem: &SpaceProblem, start: f64) -> Self {
+    /// Scales a problem whose loads start at a factor. Both sides have the same units and poles.
+    pub fn new(problem: &SpaceProblem, start: f64, side: Side) -> Self {
         let length = length(problem);
         let poles = poles(problem);
         let mut points = Vec::new();
-        let members = problem.contacts.iter().map(|contact| member(contact, &poles, length, &mut points)).collect();
+        let contacts = problem.contacts.iter();
+        let members =
+            contacts.map(|contact| member(contact, side.of(contact), (&poles, length), &mut points)).collect();
         let local = |wrench: &Wrench, pole: &Vec3| {
             let (force, moment) =
                 (Vec3::new(wrench[0], wrench[1], wrench[2]), Vec3::new(wrench[3], wrench[4], wrench[5]));
@@ -83,7 +108,33 @@ impl Program {
         let unit = if sizes[1] > 0.0 { force / sizes[1] } else { 1.0 };
         base.iter_mut().for_each(|w| *w /= force);
         varying.iter_mut().for_each(|p| *p *= unit / force);
-        Program { members, points, base, varying, poles, length, force, unit, start }
+        let (offsets, limits) = strengths(problem, side, force);
+        let mut program =
+            Program { members, points, offsets, limits, base, varying, poles, length, force, unit, start };
+        let tips: Vec<Cone> = program.offsets.iter().map(|offset| [-offset, 0.0, 0.0]).collect();
+        let mut base = std::mem::take(&mut program.base);
+        program.press(&tips, &mut base);
+        Program { base, ..program }
+    }
+
+    /// Returns the distance of the forces of a point from the boundary of its strength.
+    pub fn margin(&self, point: usize, y: &Cone) -> f64 {
+        let [least, most] = self.limits[point];
+        margin(y).min(if least > 0.0 { y[0] - least } else { f64::INFINITY }).min(most - y[0])
+    }
+
+    /// Returns the distance of the rates of a point from the boundary of those that it can have.
+    pub fn margin_of_rate(&self, point: usize, z: &Cone) -> f64 {
+        if self.limits[point][1].is_finite() { f64::INFINITY } else { margin(z) }
+    }
+
+    /// Returns the dissipation of all points beyond the work of the tips: the greatest −y·z.
+    pub fn dissipation(&self, z: &[Cone]) -> f64 {
+        let of = |(z, [least, most]): (&Cone, &[f64; 2])| {
+            let inside = margin(z);
+            -inside * if inside < 0.0 && most.is_finite() { *most } else { *least }
+        };
+        z.iter().zip(&self.limits).map(of).sum()
     }
 
     /// Returns the rates z of all points for velocities of the bodies.
@@ -129,8 +180,19 @@ impl Program {
 
     /// Returns forces (n, s, t) of all points \[N\], contact by contact.
     pub fn forces(&self, y: &[Cone]) -> Vec<Vec<[f64; 3]>> {
+        let less = |(y, offset): (&Cone, &f64)| [y[0] - offset, y[1], y[2]];
+        self.differences(&y.iter().zip(&self.offsets).map(less).collect::<Vec<_>>())
+    }
+
+    /// Returns differences of forces (n, s, t) of all points \[N\], contact by contact.
+    pub fn differences(&self, y: &[Cone]) -> Vec<Vec<[f64; 3]>> {
         let force = |member: &Member, y: &Cone| -> [f64; 3] { (member.force(y) * self.force).into() };
         self.members.iter().map(|member| y[member.points.clone()].iter().map(|y| force(member, y)).collect()).collect()
+    }
+
+    /// Returns y of all points without any force.
+    pub fn without_forces(&self) -> Vec<Cone> {
+        self.offsets.iter().map(|offset| [*offset, 0.0, 0.0]).collect()
     }
 
     /// Returns velocities about the pole of the problem; they have the scale of the program.
@@ -202,8 +264,8 @@ fn length(problem: &SpaceProblem) -> f64 {
     let (mut sum, mut count) = (0.0, 0);
     for contact in &problem.contacts {
         let centre = centre(contact);
-        sum += contact.points.iter().map(|point| (point - centre).norm()).sum::<f64>();
-        count += contact.points.len();
+        sum += contact.outer.points.iter().map(|point| (point - centre).norm()).sum::<f64>();
+        count += contact.outer.points.len();
     }
     let mean = sum / f64::from(u32::try_from(count.max(1)).unwrap_or(u32::MAX));
     if mean > 0.0 { mean } else { problem.length.max(f64::MIN_POSITIVE) }
@@ -221,16 +283,33 @@ fn poles(problem: &SpaceProblem) -> Vec<Vec3> {
     poles.into_iter().map(|(sum, count)| if count > 0.0 { sum / count } else { sum }).collect()
 }
 
+/// Returns y₀ without force, and the limits of y₀, of all points.
+fn strengths(problem: &SpaceProblem, side: Side, force: f64) -> (Vec<f64>, Vec<[f64; 2]>) {
+    let (mut offsets, mut limits) = (Vec::new(), Vec::new());
+    for contact in &problem.contacts {
+        let law = &contact.law;
+        // Without friction y₀ is the normal force above the tensile strength.
+        let (slope, tip) = if law.friction > 0.0 { (law.friction, law.cohesion) } else { (1.0, law.tension()) };
+        for area in side.of(contact).areas.iter().map(|area| area / force) {
+            offsets.push(tip * area);
+            let least = if law.has_one_tip() { 0.0 } else { ((tip - slope * law.tension()) * area).max(0.0) };
+            let crushing = law.compressive_strength;
+            limits.push([least, if crushing.is_finite() { (tip + slope * crushing) * area } else { f64::INFINITY }]);
+        }
+    }
+    (offsets, limits)
+}
+
 /// Scales a contact and appends its points.
-fn member(contact: &SpaceContact, poles: &[Vec3], length: f64, points: &mut Vec<Vec3>) -> Member {
+fn member(contact: &SpaceContact, set: &PointSet, (poles, length): (&[Vec3], f64), points: &mut Vec<Vec3>) -> Member {
     let (centre, frame, first) = (centre(contact), contact.frame, points.len());
-    points.extend(contact.points.iter().map(|point| {
+    points.extend(set.points.iter().map(|point| {
         let arm = (point - centre) / length;
         Vec3::new(frame[0].dot(&arm), frame[1].dot(&arm), frame[2].dot(&arm))
     }));
     let bodies = [contact.plus, contact.minus];
     let arms = bodies.map(|body| body.map_or(Vec3::zeros(), |body| (centre - poles[body]) / length));
-    let friction = contact.cone.friction;
+    let friction = contact.law.friction;
     let strengths = if friction > 0.0 { [friction.recip(), 1.0] } else { [1.0, 0.0] };
     Member { bodies, frame, arms, points: first..points.len(), strengths }
 }

@@ -3,7 +3,7 @@
 use super::by_clarabel;
 use super::evidence::{Evidence, Field};
 use super::interior_point::{InteriorPoint, greatest};
-use super::program::Program;
+use super::program::{Program, Side};
 use super::settings::SETTINGS;
 use super::uniqueness;
 use voussoir_core::limit::{Counters, LimitQuestion, Status};
@@ -12,12 +12,18 @@ use voussoir_core::space::{SpaceAnswer, SpaceContact, SpaceProblem, SpaceVelocit
 const IDLE: &str = "every load of this stage acts on bodies that the ground holds";
 const NOT_CLOSED: &str = "the proved bounds of the factor do not meet";
 
+const BRACKETED: &str = "tractions are limited: forces at points inside each contact bound the factor from below, motions at points around \
+     from above. A greater `subdivisions` of [solver] brings the bounds closer";
+
 /// A method that solves one program. `held`: only the loads at the start.
 type Method = fn(&Program, bool, &mut Counters) -> Option<Evidence>;
 
 /// Answers a question about a problem with associated flow, without panic. The interior point method of this crate is
-/// tried first, then Clarabel.
+/// tried first, then Clarabel. Strengths that are more than a cone are left to Clarabel.
 pub fn solve(problem: &SpaceProblem, question: LimitQuestion) -> SpaceAnswer {
+    if !problem.is_exact() {
+        return solve_by_clarabel(problem, question);
+    }
     let answer = answer(problem, question, run);
     if answer.status.is_answer() {
         return answer;
@@ -43,11 +49,16 @@ fn misfit(problem: &SpaceProblem) -> Option<&'static str> {
     }
     let fits = |contact: &SpaceContact| {
         let known = [contact.minus, contact.plus].into_iter().flatten().all(|body| body < *bodies);
-        let numbers = contact.points.iter().chain(&contact.frame).flat_map(|x| x.iter());
+        let sets = [&contact.inner, &contact.outer];
+        let points = sets.iter().flat_map(|set| &set.points).chain(&contact.frame).flat_map(|x| x.iter());
+        let law = &contact.law;
+        let numbers = sets.iter().flat_map(|set| &set.areas);
+        let numbers = numbers.chain([&law.friction, &law.cohesion, &law.tensile_strength, &law.compressive_strength]);
         known
             && contact.minus != contact.plus
-            && contact.cone.friction >= 0.0
-            && numbers.chain([&contact.cone.friction]).all(|x| x.is_finite())
+            && sets.iter().all(|set| set.points.len() == set.areas.len())
+            && points.copied().all(f64::is_finite)
+            && numbers.copied().all(|x| x >= 0.0)
     };
     if !contacts.iter().all(fits) || !fixed.iter().chain(varying).flatten().all(|x| x.is_finite()) {
         return Some("a contact joins a body that does not exist, or a number is not finite");
@@ -67,9 +78,10 @@ fn answer(problem: &SpaceProblem, question: LimitQuestion, method: Method) -> Sp
     if !start.is_finite() {
         return SpaceAnswer::stalled("the factor at the start is not finite");
     }
-    let program = Program::new(problem, start);
+    let program = Program::new(problem, start, Side::Inner);
+    let outer = (!problem.is_exact()).then(|| Program::new(problem, start, Side::Outer));
     let search = matches!(question, LimitQuestion::Collapse { .. });
-    let mut case = Case { problem, program: &program, counters: Counters::new() };
+    let mut case = Case { problem, program: &program, outer: outer.as_ref(), counters: Counters::new() };
     let mut answer = if search && greatest(&program.varying) > 0.0 {
         case.collapse(method, max)
     } else {
@@ -83,10 +95,22 @@ fn answer(problem: &SpaceProblem, question: LimitQuestion, method: Method) -> Sp
 struct Case<'a> {
     problem: &'a SpaceProblem,
     program: &'a Program,
+    /// The outer points, if they differ.
+    outer: Option<&'a Program>,
     counters: Counters,
 }
 
 impl Case<'_> {
+    /// Solves the program of the inner points; if the outer points differ, their program gives the motions.
+    fn evidence(&mut self, method: Method, held: bool) -> Option<Evidence> {
+        let mut evidence = method(self.program, held, &mut self.counters)?;
+        if let Some(outer) = self.outer {
+            let around = method(outer, held, &mut self.counters)?;
+            (evidence.upper, evidence.refutation, evidence.unique) = (around.upper, around.refutation, None);
+        }
+        Some(evidence)
+    }
+
     /// Returns the factor of the problem for one of the program.
     fn factor(&self, lambda: f64) -> f64 {
         self.program.start + lambda * self.program.unit
@@ -120,10 +144,11 @@ impl Case<'_> {
 
     /// Finds a field at the start or a refutation of it.
     fn held(&mut self, method: Method) -> Result<Field, Box<SpaceAnswer>> {
-        if greatest(&self.program.base) == 0.0 {
-            return Ok(Field { lambda: 0.0, y: vec![[0.0; 3]; self.program.points.len()] });
+        let still = self.program.without_forces();
+        if greatest(&self.program.imbalance(&still, 0.0, 1.0)) == 0.0 {
+            return Ok(Field { lambda: 0.0, y: still });
         }
-        let Some(evidence) = method(self.program, true, &mut self.counters) else {
+        let Some(evidence) = self.evidence(method, true) else {
             return Err(Box::new(SpaceAnswer::stalled("memory is short")));
         };
         match (evidence.start, evidence.refutation) {
@@ -139,7 +164,7 @@ impl Case<'_> {
     fn admissible(&mut self, method: Method, search: bool) -> SpaceAnswer {
         match self.held(method) {
             Ok(field) if search => {
-                let ray = Some(self.program.forces(&vec![[0.0; 3]; self.program.points.len()]));
+                let ray = Some(self.program.differences(&vec![[0.0; 3]; self.program.points.len()]));
                 SpaceAnswer { ray, notes: vec![IDLE.into()], ..self.with_field(Status::Unbounded, &field) }
             }
             Ok(field) => self.with_field(Status::Stands, &field),
@@ -149,7 +174,7 @@ impl Case<'_> {
 
     /// Finds the greatest factor.
     fn collapse(&mut self, method: Method, max: f64) -> SpaceAnswer {
-        let Some(mut evidence) = method(self.program, false, &mut self.counters) else {
+        let Some(mut evidence) = self.evidence(method, false) else {
             return SpaceAnswer::stalled("memory is short");
         };
         if evidence.start.is_none() {
@@ -170,7 +195,8 @@ impl Case<'_> {
         if let Some(field) = evidence.between(cap) {
             return SpaceAnswer { field_factor: max, ..self.with_field(Status::Stands, &field) };
         }
-        let answer = SpaceAnswer { notes: vec![NOT_CLOSED.into()], ..SpaceAnswer::default() };
+        let why = if self.outer.is_some() { BRACKETED } else { NOT_CLOSED };
+        let answer = SpaceAnswer { notes: vec![why.into()], ..SpaceAnswer::default() };
         self.proved(&evidence, answer)
     }
 
@@ -209,7 +235,7 @@ impl Case<'_> {
     fn unbounded(&mut self, method: Method, ray: &[[f64; 3]], start: &Field) -> SpaceAnswer {
         // The ray balances the varying loads of the program.
         let unit = self.program.unit;
-        let mut forces = self.program.forces(ray);
+        let mut forces = self.program.differences(ray);
         forces.iter_mut().flatten().flatten().for_each(|f| *f /= unit);
         let program = self.program.of_self_stress();
         let stress = method(&program, false, &mut self.counters).is_some_and(|evidence| evidence.ray.is_some());

@@ -52,6 +52,26 @@ fn a_corner_has_the_published_factors() {
     }
 }
 
+/// Mortar in space: with tension and without crushing a wall overturns at t/H (1 + f_t A/W), and the bounds meet; with crushing
+/// they enclose the strip W/f_c that crushes, and `verify` proves them again.
+#[test]
+fn mortar_has_its_closed_forms() {
+    let mortar = |strengths: &str| {
+        let wall = "scene = \"masonry_wall\"\nblock = [2.0, 1.0, 4.0]\ncourses = 1\nblocks = 1";
+        pushed(wall, 0.8, [0.0, 1.0, 0.0])
+            .replace("coulomb_associated", "mohr_coulomb")
+            .replace("friction = 0.8", &format!("friction = 0.8\n{strengths}"))
+    };
+    let tension = answered(&mortar("cohesion = 40.0\ntensile_strength = 2.0"));
+    assert_eq!(tension.status, Status::Collapse, "{:?}", tension.notes);
+    assert_close(tension.load_factor.expect("a factor"), 0.25 * (1.0 + 2.0 * 2.0 / 8.0), 1e-8);
+    let crushing = answered(&mortar("compressive_strength = 40.0"));
+    let [Some(low), Some(high)] = crushing.bounds.expect("bounds") else { panic!("{crushing:?}") };
+    let exact = (1.0 - 8.0 / (40.0 * 2.0)) / 4.0;
+    assert!(low < exact && exact < high && high - low < 0.1 * exact, "[{low}, {high}] {exact}");
+    assert_eq!(crushing.status, Status::Open);
+}
+
 /// A wall of any length that is pushed across its plane overturns at thickness over height.
 #[test]
 fn a_wall_across_its_plane_has_its_closed_form() {

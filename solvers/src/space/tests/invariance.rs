@@ -29,7 +29,10 @@ fn mapped(
 ) -> SpaceProblem {
     let mut image = problem.clone();
     for contact in &mut image.contacts {
-        contact.points.iter_mut().for_each(|x| *x = point(x));
+        [&mut contact.inner, &mut contact.outer]
+            .into_iter()
+            .flat_map(|set| &mut set.points)
+            .for_each(|x| *x = point(x));
         contact.frame = contact.frame.map(|x| vector(&x));
         if mirror {
             contact.frame.swap(1, 2);
@@ -68,7 +71,8 @@ fn units_do_not_change_the_factor() {
     let problem = scene().problem(&direction());
     for (length, force) in [(1e3, 1.0), (1.0, 1e6), (1e-3, 1e-4)] {
         let mut image = problem.clone();
-        image.contacts.iter_mut().flat_map(|contact| &mut contact.points).for_each(|x| *x *= length);
+        let sets = image.contacts.iter_mut().flat_map(|contact| [&mut contact.inner, &mut contact.outer]);
+        sets.flat_map(|set| &mut set.points).for_each(|x| *x *= length);
         image.length *= length;
         for wrench in image.fixed.iter_mut().chain(&mut image.varying) {
             wrench.iter_mut().for_each(|x| *x *= force);
@@ -89,9 +93,9 @@ fn numbering_does_not_change_the_factor() {
     image.varying.reverse();
     image.contacts.reverse();
     for (k, contact) in image.contacts.iter_mut().enumerate() {
-        let SpaceContact { minus, plus, points, frame, .. } = contact;
+        let SpaceContact { minus, plus, inner, outer, frame, .. } = contact;
         (*minus, *plus) = (renamed(*minus), renamed(*plus));
-        points.rotate_left(k % 3);
+        [inner, outer].into_iter().for_each(|set| set.points.rotate_left(k % 3));
         if k % 2 == 0 {
             (*minus, *plus) = (*plus, *minus);
             *frame = [-frame[0], frame[2], frame[1]];

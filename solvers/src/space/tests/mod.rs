@@ -5,3 +5,4 @@ mod invariance;
 mod random;
 mod scenes;
 mod statuses;
+mod strengths;

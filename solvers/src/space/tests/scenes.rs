@@ -1,10 +1,9 @@
 //! Problems built from convex prisms, with contacts given by their corners.
 
 use voussoir_core::certificate::ROUNDING;
+use voussoir_core::law::FrictionCone;
 use voussoir_core::limit::{LimitQuestion, Status};
-use voussoir_core::space::{
-    Cone, SpaceAnswer, SpaceClaim, SpaceContact, SpaceProblem, SpaceVerdict, Vec3, certify_space,
-};
+use voussoir_core::space::{SpaceAnswer, SpaceClaim, SpaceContact, SpaceProblem, SpaceVerdict, Vec3, certify_space};
 
 /// Distance of the bounds that is accepted.
 pub const GAP: f64 = 1e-8;
@@ -41,15 +40,8 @@ impl Scene {
             self.bodies.iter().map(|(weight, centroid)| SpaceContact::wrench(centroid, &(along * *weight))).collect()
         };
         let contact = |(index, (minus, plus, points, normal, friction)): (usize, &Face)| {
-            let cone = Cone { friction: *friction };
-            SpaceContact {
-                contact: index,
-                minus: *minus,
-                plus: *plus,
-                points: points.clone(),
-                frame: frame(normal),
-                cone,
-            }
+            let law = FrictionCone::dry(*friction, *friction);
+            SpaceContact::new(index, [*minus, *plus], points, frame(normal), (law, 1))
         };
         SpaceProblem {
             free: (0..self.bodies.len()).map(Some).collect(),

@@ -166,16 +166,17 @@ pub fn space_svg(title: &str, space: &SpaceCase, stages: &[Stage], result: &Case
     canvas.finish(&legend, &std::iter::once(views.to_string()).chain(accelerations).collect::<Vec<_>>())
 }
 
-/// Returns the resultant force of each loaded contact and its centre of pressure.
+/// Returns the resultant force of each loaded contact, and the mean of its points weighted by the sizes of their normal forces: its
+/// centre of pressure, if no point is in tension.
 fn resultants(field: &[SpaceFieldEntry], contacts: &[Contact]) -> Vec<(Vec3, Vec3)> {
     let mut sums = vec![(0.0, Vec3::zeros(), Vec3::zeros()); contacts.len()];
     for SpaceFieldEntry { joint, point, force: [n, s, t] } in field {
         let (Some((normal, force, moment)), Some(contact)) = (sums.get_mut(*joint), contacts.get(*joint)) else {
             continue;
         };
-        *normal += n;
+        *normal += n.abs();
         *force += contact.normal * *n + contact.tangents[0] * *s + contact.tangents[1] * *t;
-        *moment += Vec3::from(*point) * *n;
+        *moment += Vec3::from(*point) * n.abs();
     }
     sums.into_iter().filter(|(n, ..)| *n > 0.0).map(|(n, force, moment)| (force, moment / n)).collect()
 }

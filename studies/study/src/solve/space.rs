@@ -9,7 +9,7 @@ use crate::study::SpaceCase;
 use voussoir_core::limit::{Counters, LimitQuestion, Status};
 use voussoir_core::model::{Stage, Target};
 use voussoir_core::space::{
-    Cone, SpaceAnswer, SpaceBody, SpaceClaim, SpaceContact, SpaceField, SpaceLoads, SpaceProblem, SpaceVelocity,
+    SpaceAnswer, SpaceBody, SpaceClaim, SpaceContact, SpaceField, SpaceLoads, SpaceProblem, SpaceVelocity,
     SpaceVerdict, Vec3, certify_space, velocity_at,
 };
 
@@ -22,10 +22,10 @@ pub(crate) fn gap_in_space(tolerance: f64) -> f64 {
     tolerance.max(GAP)
 }
 
-/// Returns the problem of limit analysis of one stage.
+/// Returns the problem of limit analysis of one stage, with contacts divided into parts where their strength is more than a
+/// cone.
 pub(crate) fn space_problem(space: &SpaceCase, loads: &SpaceLoads) -> Result<SpaceProblem, String> {
-    let cones: Vec<Cone> = space.cones()?.iter().map(|cone| Cone { friction: cone.friction }).collect();
-    Ok(SpaceProblem::new(&space.assembly, &cones, &loads.fixed, &loads.varying))
+    Ok(SpaceProblem::new(&space.assembly, (&space.cones()?, space.parts), [&loads.fixed, &loads.varying]))
 }
 
 /// Solves all stages of a case in space.
@@ -158,9 +158,9 @@ fn certified(
         proof: ProofFields {
             field_factor: field.is_some().then_some(answer.field_factor),
             space: Some(Box::new(SpaceProof {
-                field: field.map(|field| field_entries(space, problem, &field)),
+                field: field.map(|field| field_entries(problem, &field)),
                 motion: motion.map(|motion| motion_entries(space, problem, &motion)),
-                ray: ray.map(|ray| field_entries(space, problem, &ray)),
+                ray: ray.map(|ray| field_entries(problem, &ray)),
             })),
             ..ProofFields::default()
         },
@@ -176,12 +176,14 @@ const SELF_STRESS: &str = "self-stress: forces strictly inside all friction cone
      interlock. Every load is then in equilibrium with some forces, so equilibrium alone proves nothing about this scene";
 
 /// Converts forces to entries, one for each point of each contact of the problem.
-fn field_entries(space: &SpaceCase, problem: &SpaceProblem, field: &SpaceField) -> Vec<SpaceFieldEntry> {
+fn field_entries(problem: &SpaceProblem, field: &SpaceField) -> Vec<SpaceFieldEntry> {
     let of_contact = |(contact, forces): (&SpaceContact, &Vec<[f64; 3]>)| {
-        let (joint, points) = (contact.contact, &space.assembly.contacts[contact.contact].points);
-        let entry =
-            |(point, force): (&Vec3, &[f64; 3])| SpaceFieldEntry { joint, point: (*point).into(), force: *force };
-        points.iter().zip(forces).map(entry).collect::<Vec<_>>()
+        let entry = |(point, force): (&Vec3, &[f64; 3])| SpaceFieldEntry {
+            joint: contact.contact,
+            point: (point + problem.pole).into(),
+            force: *force,
+        };
+        contact.inner.points.iter().zip(forces).map(entry).collect::<Vec<_>>()
     };
     problem.contacts.iter().zip(field).flat_map(of_contact).collect()
 }
@@ -213,7 +215,7 @@ impl StoredInSpace {
     /// Reads the entries of a result. An error names the first entry that is not at a point of its contact.
     pub(crate) fn read(space: &SpaceCase, problem: &SpaceProblem, proof: &SpaceProof) -> Result<Self, String> {
         let forces = |what: &str, entries: &Option<Vec<SpaceFieldEntry>>| {
-            entries.as_ref().map(|entries| read_field(space, problem, what, entries)).transpose()
+            entries.as_ref().map(|entries| read_field(problem, what, entries)).transpose()
         };
         let motion = proof.motion.as_ref().map(|entries| read_motion(space, problem, entries));
         Ok(StoredInSpace { field: forces("field", &proof.field)?, motion, ray: forces("ray", &proof.ray)? })
@@ -223,19 +225,14 @@ impl StoredInSpace {
 /// Greatest distance of a stored point from its contact point, as a share of the scene's size.
 const SAME_POINT: f64 = 1e-9;
 
-fn read_field(
-    space: &SpaceCase,
-    problem: &SpaceProblem,
-    what: &str,
-    entries: &[SpaceFieldEntry],
-) -> Result<SpaceField, String> {
+fn read_field(problem: &SpaceProblem, what: &str, entries: &[SpaceFieldEntry]) -> Result<SpaceField, String> {
     let mut rest = entries.iter();
     let mut field = Vec::with_capacity(problem.contacts.len());
     for contact in &problem.contacts {
         let mut forces = Vec::new();
-        for point in &space.assembly.contacts[contact.contact].points {
+        for point in &contact.inner.points {
             let there = |entry: &&SpaceFieldEntry| {
-                let apart = (Vec3::from(entry.point) - point).norm();
+                let apart = (Vec3::from(entry.point) - problem.pole - point).norm();
                 entry.joint == contact.contact && apart <= SAME_POINT * problem.length
             };
             let entry = rest.next().filter(there);

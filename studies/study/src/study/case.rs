@@ -9,7 +9,7 @@ use super::partial_factors::{check, design, multiply_loads, note_of_yielding};
 use super::plausibility::{space_warnings, warnings};
 use super::resolved::Resolved;
 use super::solver::{choose_solver, unused_by_limit_analysis};
-use super::space::{SpaceCase, check_space_solver, space_stages};
+use super::space::{SpaceCase, check_space_solver, space_stages, subdivisions};
 use super::stages::build_stages;
 use super::tables::{OutputKeys, stage_tables};
 use crate::config::check::{Checker, Unused};
@@ -55,7 +55,8 @@ pub(crate) fn build_case(id: usize, expanded: Expanded, known: &KnownKeys<'_>) -
     let mut stages = build_stages(&mut diagnostics, &tables, &written, assembly.as_ref(), &mut notes);
     let mut space = blocks.map(|assembly| {
         let stages = space_stages(&mut diagnostics, &written, stages.as_deref().unwrap_or_default(), &assembly);
-        SpaceCase { assembly, stages }
+        let parts = subdivisions(resolved.get("solver"));
+        SpaceCase { assembly, stages, parts }
     });
     let in_space = space.as_mut().map_or(&mut [][..], |space| &mut space.stages);
     multiply_loads(stages.as_deref_mut().unwrap_or_default(), in_space, &resolved);

@@ -19,6 +19,8 @@ pub struct SpaceCase {
     pub assembly: SpaceAssembly,
     /// Loads, stage by stage.
     pub stages: Vec<SpaceStage>,
+    /// Parts of each side of a contact whose strength is more than a cone.
+    pub parts: usize,
 }
 
 impl SpaceCase {
@@ -34,10 +36,11 @@ impl SpaceCase {
         let laws = self.assembly.catalogue.laws.iter().enumerate();
         let cone = |(index, (name, law)): (usize, &(String, Arc<dyn InterfaceLaw>))| {
             let used = self.assembly.contacts.iter().any(|contact| contact.law == index);
-            match law.cone().filter(FrictionCone::is_dry) {
+            // Without friction cohesion leaves no cone.
+            match law.cone().filter(|cone| cone.friction > 0.0 || cone.cohesion == 0.0) {
                 Some(cone) => Ok(cone),
                 None if used => Err(format!(
-                    "joint law \"{name}\" is not dry isotropic friction, which limit analysis in space needs"
+                    "joint law \"{name}\" is not isotropic friction, or has cohesion without friction; limit analysis in space needs a cone"
                 )),
                 None => Ok(FrictionCone::dry(0.0, 0.0)),
             }
@@ -50,6 +53,11 @@ impl SpaceCase {
         let flows = |law: usize| self.assembly.catalogue.laws[law].1.cone().is_some_and(|cone| !cone.is_associated());
         self.assembly.contacts.iter().any(|contact| flows(contact.law))
     }
+}
+
+/// Returns the key `subdivisions` of the table `[solver]`, or 1 if the table cannot be read.
+pub(super) fn subdivisions(solver: Option<&Json>) -> usize {
+    solver.and_then(own_keys::<SolverKeys>).map_or(1, |keys| keys.subdivisions)
 }
 
 /// Returns the loads of all stages of a scene in space.
@@ -133,7 +141,7 @@ pub(super) fn check_space_solver(diagnostics: &mut DiagnosticList<'_>, solver: &
         diagnostics.wrong("solver.kinematics", message, "set kinematics = \"small\"");
     }
     if let Err(why) = space.cones() {
-        let help = "laws that have it: coulomb, coulomb_associated, mohr_coulomb without cohesion and strengths";
+        let help = "laws that have it: coulomb, coulomb_associated, mohr_coulomb with friction";
         diagnostics.wrong("joints", why, help);
     }
 }
