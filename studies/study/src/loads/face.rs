@@ -124,7 +124,7 @@ mod tests {
             let (shape, mut wrench) = (block(warp), [0.0; 6]);
             for face in 0..6 {
                 let forces = placed(&shape, json!({ "face": face })).unwrap().forces;
-                // The top and its two neighbours at the raised corner; a side stays plane.
+                // Only the top is warped: the sides at the raised corner stay plane.
                 assert_eq!(forces.len(), if warp > 0.0 && face == 1 { 4 } else { 1 });
                 forces.iter().for_each(|force| add_space_force(&mut wrench, &force.point, &force.force, 1.0));
             }
