@@ -13,7 +13,7 @@
 pub use crate::certificate::{SpaceClaim, SpaceVerdict, certify_space};
 pub use crate::limit::{PointSet, SpaceAnswer, SpaceContact, SpaceField, SpaceProblem, SpaceVelocity, power};
 pub use crate::model::space::{
-    Contact, ContactBody, ContactTolerances, FoundContacts, NearMiss, Polyhedron, SpaceAssembly, SpaceBody, SpaceForce,
-    SpaceLoads, SpaceStage, Vec3, Wrench, add_space_force, find_contacts, hull, near_misses, space_loads, tangents,
-    velocity_at,
+    Contact, ContactBody, ContactTolerances, FoundContacts, FoundOverlaps, NearMiss, Polyhedron, SpaceAssembly,
+    SpaceBody, SpaceFill, SpaceForce, SpaceLoads, SpaceOverlap, SpaceStage, Vec3, Wrench, add_space_force,
+    find_contacts, find_overlaps, hull, near_misses, space_loads, tangents, velocity_at,
 };

@@ -102,6 +102,7 @@ const PARTS: [(&str, &[(&str, &str)]); 6] = [
             ("notebook/finite_displacements.md", "Finite displacements"),
             ("notebook/flow_rule.md", "Lower ends of walls"),
             ("notebook/bridges.md", "Random bridges"),
+            ("notebook/space.md", "Blocks in space"),
             ("notebook/verifying.md", "Attacks on results"),
             ("notebook/clusters.md", "Sweeps on several machines"),
         ],

@@ -157,6 +157,35 @@ fn limit_results() {
     }
 }
 
+/// Returns a study of a small wall with a corner that an acceleration or a pressure pushes, after its own weight.
+fn space(friction: f64, law: &str, gravity: &str, load: &str) -> String {
+    format!(
+        "name = \"space\"\n[scene]\nscene = \"masonry_wall\"\nblock = [2.0, 1.0, 0.5]\ncourses = 2\nblocks = 1\n\
+         corner = {{ blocks = 1 }}\nmaterial = \"stone\"\njoint = \"dry\"\n[materials.stone]\nlaw = \"rigid\"\n\
+         density = 2000.0\n[joints.dry]\nlaw = \"{law}\"\nfriction = {friction:?}\n[[stages]]\nname = \"weight\"\n\
+         gravity = {gravity}\n[[stages]]\nname = \"push\"\nuntil = \"collapse\"\nloads = [{load}]\n\
+         [sweep]\n\"joints.dry.friction\" = {{ list = [{friction:?}, {:?}] }}\n",
+        friction + 0.1
+    )
+}
+
+/// Every forged result in space is found: collapse by an acceleration and by a pressure, with flow that is read as
+/// associated, unbounded, and no equilibrium.
+#[test]
+fn space_results() {
+    let push = "{ kind = \"body\", acceleration = [9.81, 0.0, 0.0] }";
+    let pressure = "{ kind = \"pressure\", block = \"x.1.0\", face = [-1, 0, 0], value = 1e4 }";
+    let down = "{ kind = \"body\", acceleration = [0.0, 0.0, -9.81] }";
+    for (name, friction, law, gravity, load) in [
+        ("collapse in space", 0.5, "coulomb_associated", "9.81", push),
+        ("pressure in space", 0.5, "coulomb", "9.81", pressure),
+        ("unbounded in space", 0.5, "coulomb_associated", "9.81", down),
+        ("no equilibrium in space", 0.2, "coulomb_associated", "[6.0, 0.0, -9.81]", push),
+    ] {
+        forged(name, &space(friction, law, gravity, load));
+    }
+}
+
 /// Every forged result of a path is found: from event to event, and Newton's with small and with finite displacements,
 /// each also with a support that moves.
 #[test]

@@ -34,6 +34,17 @@ pub struct Contact {
     pub law: usize,
 }
 
+/// Mass of fill that a body carries.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SpaceFill {
+    /// Index of the body.
+    pub body: usize,
+    /// Centroid of the fill \[m\].
+    pub point: Vec3,
+    /// Mass \[kg\].
+    pub mass: f64,
+}
+
 /// Bodies and contacts in space, with the materials and laws that they refer to.
 #[derive(Debug, Clone, Default)]
 pub struct SpaceAssembly {
@@ -43,6 +54,8 @@ pub struct SpaceAssembly {
     pub bodies: Vec<SpaceBody>,
     /// Contacts. A contact between two supports has no effect and is left out.
     pub contacts: Vec<Contact>,
+    /// Fill on bodies. Gravity acts on it; accelerations do not.
+    pub fill: Vec<SpaceFill>,
 }
 
 impl SpaceAssembly {

@@ -112,9 +112,9 @@ pub fn near_misses(assembly: &SpaceAssembly) -> Vec<NearMiss> {
     near
 }
 
-/// Returns the pairs of bodies whose boxes, enlarged by half a distance, meet; sorted. Boxes are swept along the longest
-/// side of the scene.
-fn neighbours(bodies: &[ContactBody<'_>], distance: f64) -> Vec<(usize, usize)> {
+/// Returns the pairs of bodies whose boxes, enlarged by half a distance, meet; sorted. A negative distance makes them
+/// smaller. Boxes are swept along the longest side of the scene.
+pub(super) fn neighbours(bodies: &[ContactBody<'_>], distance: f64) -> Vec<(usize, usize)> {
     let grow = Vec3::repeat(distance / 2.0);
     let mut boxes: Vec<_> = bodies.iter().map(|body| body.shape.bounding_box()).enumerate().collect();
     boxes.iter_mut().for_each(|(_, (low, high))| (*low, *high) = (*low - grow, *high + grow));

@@ -1,6 +1,6 @@
 //! Loads in space, stage by stage.
 
-use super::assembly::SpaceAssembly;
+use super::assembly::{SpaceAssembly, SpaceFill};
 use super::vector::{Vec3, Wrench};
 use crate::model::loads::{Stage, Target};
 
@@ -45,7 +45,7 @@ pub fn add_space_force(wrench: &mut Wrench, point: &Vec3, force: &Vec3, factor: 
 }
 
 /// Returns the loads of each stage, with the loads of earlier stages at the factors that they reached. The gravity of a
-/// stage acts on all bodies.
+/// stage acts on all bodies and on their fill.
 pub fn space_loads(assembly: &SpaceAssembly, stages: &[(&Stage, &SpaceStage)]) -> Vec<SpaceLoads> {
     let bodies: Vec<(f64, Vec3)> = (0..assembly.bodies.len()).map(|body| assembly.mass_and_centroid(body)).collect();
     let accelerate = |wrenches: &mut [Wrench], acceleration: &Vec3| {
@@ -59,6 +59,9 @@ pub fn space_loads(assembly: &SpaceAssembly, stages: &[(&Stage, &SpaceStage)]) -
         gravity = loads.gravity.unwrap_or(gravity);
         let mut fixed = earlier.clone();
         accelerate(&mut fixed, &gravity);
+        for SpaceFill { body, point, mass } in &assembly.fill {
+            add_space_force(&mut fixed[*body], point, &gravity, *mass);
+        }
         let mut varying = vec![[0.0; 6]; bodies.len()];
         for SpaceForce { body, point, force } in &loads.forces {
             add_space_force(&mut varying[*body], point, force, 1.0);

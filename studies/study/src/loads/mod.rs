@@ -3,6 +3,7 @@
 pub mod axles;
 pub mod body;
 mod extrados;
+pub mod face;
 mod keys;
 pub mod lane;
 mod load_kind;

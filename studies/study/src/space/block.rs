@@ -123,7 +123,7 @@ impl Names<'_> {
         if let Some(name) = self.joint {
             diagnostics.extend(law(catalogue, name, "joint").err());
         }
-        let assembly = SpaceAssembly { catalogue: catalogue.clone(), bodies, contacts: Vec::new() };
+        let assembly = SpaceAssembly { catalogue: catalogue.clone(), bodies, ..SpaceAssembly::default() };
         diagnostics.is_empty().then_some(assembly)
     }
 

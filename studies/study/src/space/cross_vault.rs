@@ -2,6 +2,7 @@
 #![doc = include_str!("cross_vault.md")]
 
 use super::barrel_vault::StripBond;
+use super::fill::{Columns, VaultFill};
 use super::parts::Parts;
 use super::shell_block::ShellBlock;
 use crate::scenes::keys::SceneKeys;
@@ -50,6 +51,9 @@ pub struct CrossVault {
     /// courses at each springing that are part of the supports
     #[key(range = ">= 1, <= MAX_VOUSSOIRS")]
     pub springers: usize,
+    /// fill above the webs up to a level; its weight acts on the blocks below: { height = 2.5, density = 1800.0 }
+    #[key(optional = "no fill")]
+    pub fill: Option<VaultFill>,
     /// Material of the blocks.
     #[key(like = SceneKeys)]
     pub material: String,
@@ -87,6 +91,10 @@ impl CrossVault {
             ("springers", self.springers, 1.0, MAX_VOUSSOIRS),
         ] {
             diagnostics.extend(outside(Range::new(least, false, most as f64, false), key, count as f64));
+        }
+        if let Some(fill) = self.fill {
+            let numbers = [("fill.height", fill.height), ("fill.density", fill.density)];
+            diagnostics.extend(numbers.into_iter().filter_map(|(key, value)| out_of_range::<VaultFill>(key, value)));
         }
         if diagnostics.is_empty() && 2 * self.springers >= self.voussoirs {
             let message = format!("{} of {} courses at each springing leave none", self.springers, self.voussoirs);
@@ -164,12 +172,26 @@ impl CrossVault {
                 let mut from = None;
                 for (strip, cut) in cuts.into_iter().enumerate() {
                     let name = format!("{}.{course}.{strip}", WEBS[web.turns]);
-                    parts.body(name, web.block(&section, from, cut).shape(), springer);
+                    let block = web.block(&section, from, cut);
+                    let body = parts.body(name, block.shape(), springer);
+                    self.add_fill(parts, body, &block, springer);
                     from = Some(cut);
                 }
             }
         }
         parts.find_contacts();
+    }
+}
+
+impl CrossVault {
+    /// Adds the fill above the extrados of a free block.
+    fn add_fill(&self, parts: &mut Parts, body: usize, block: &ShellBlock, springer: bool) {
+        let Some(fill) = self.fill.filter(|_| !springer) else { return };
+        let extrados = (0..block.columns.len() - 1).map(|s| block.outside(s));
+        let columns = Columns::above(extrados, fill.height);
+        if let Some(centroid) = columns.centroid() {
+            parts.fill(body, fill.density * columns.volume, centroid);
+        }
     }
 }
 
@@ -252,6 +274,7 @@ thickness = 0.3
 section = "elliptical"
 voussoirs = 10
 springers = 3
+fill = { height = 2.5, density = 1800.0 }
 material = "brick"
 joint = "mortar""#),
         ],
@@ -315,6 +338,45 @@ mod tests {
                 assert!((contacts - faces).abs() < 1e-9, "{extra} {index}: {contacts} {faces}");
             }
         }
+    }
+
+    /// The mass of the fill is the density times the volume between the extrados and the level over the plan of the free
+    /// courses. Chords of the extrados join points at r + t with equal angles; a web is as wide as the distance to its groins.
+    #[test]
+    fn the_fill_weighs_as_much_as_its_volume() {
+        let outer = |k: usize| {
+            let angle = std::f64::consts::PI * k as f64 / 11.0;
+            [-2.3 * angle.cos(), 2.3 * angle.sin()]
+        };
+        let volume = |level: f64| -> f64 {
+            let parts = 20_000;
+            let of_chord = |k: usize| {
+                let ([v, z], [next_v, next_z]) = (outer(k), outer(k + 1));
+                let at = |i: usize| {
+                    let t = (i as f64 + 0.5) / parts as f64;
+                    (level - z - t * (next_z - z)).max(0.0) * (2.0 - (v + t * (next_v - v)).abs())
+                };
+                (0..parts).map(at).sum::<f64>() * (next_v - v) / parts as f64
+            };
+            4.0 * (3..8).map(of_chord).sum::<f64>()
+        };
+        for level in [2.0, 2.5] {
+            for extra in [json!({}), json!({ "bond": "half", "strips": 2 })] {
+                let mut keys = keys(extra);
+                keys["fill"] = json!({ "height": level, "density": 1800.0 });
+                let scene = built("cross_vault", &keys).unwrap();
+                let mass: f64 = scene.fill.iter().map(|fill| fill.mass).sum();
+                let exact = 1800.0 * volume(level);
+                assert!((mass - exact).abs() < 1e-7 * exact, "{level}: {mass} {exact}");
+                let moment: Vec3 = scene.fill.iter().map(|fill| fill.point * fill.mass).sum();
+                assert!(moment.x.abs() < 1e-9 * mass && moment.y.abs() < 1e-9 * mass, "{moment:?}");
+                assert!(scene.fill.iter().all(|fill| !scene.bodies[fill.body].fixed && fill.point.z < level));
+            }
+        }
+        assert_eq!(
+            wrong("cross_vault", &keys(json!({ "fill": { "height": 0.0, "density": 1.0 } }))),
+            ["scene.fill.height"]
+        );
     }
 
     /// A turn by 90° maps each web of a square vault to the next: volumes and numbers of contacts agree.

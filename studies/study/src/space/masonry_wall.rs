@@ -1,4 +1,4 @@
-//! `masonry_wall`: a wall of one leaf, or two walls that meet in a corner.
+//! `masonry_wall`: a wall of one or more leaves, or two walls that meet in a corner.
 #![doc = include_str!("masonry_wall.md")]
 
 use super::parts::{Parts, cuboid};
@@ -64,11 +64,11 @@ pub enum SideSupports {
     Both,
 }
 
-/// A wall of one leaf in running bond.
+/// A wall in running bond, of leaves that headers can join.
 #[derive(Debug, Clone, PartialEq, Keys)]
 #[keys(check = MasonryWall::validate)]
 pub struct MasonryWall {
-    /// length of a block along the wall, thickness of the leaf, height of a course
+    /// length of a block along the wall, thickness of a leaf, height of a course
     #[key(names = ["length", "thickness", "height"], unit = "m", range = "> 0")]
     pub block: [f64; 3],
     /// number of courses
@@ -77,6 +77,12 @@ pub struct MasonryWall {
     /// whole blocks of an even course, counted from 0 at the bottom; with a corner, the whole blocks behind it
     #[key(range = ">= 1, <= MAX_BLOCKS")]
     pub blocks: usize,
+    /// number of leaves side by side; the wall is as thick as all of them
+    #[key(range = ">= 1, <= MAX_LEAVES", default = 1)]
+    pub leaves: usize,
+    /// every n-th course, counted from the bottom, is of headers: blocks of half the length through all leaves
+    #[key(range = ">= 1, <= MAX_BLOCKS", optional = "no headers: the leaves only touch")]
+    pub header_every: Option<usize>,
     /// a second wall along y that meets the first at x = 0
     #[key(optional = "a single wall")]
     pub corner: Option<Corner>,
@@ -95,6 +101,7 @@ pub struct MasonryWall {
 }
 
 const MAX_BLOCKS: usize = 1000;
+const MAX_LEAVES: usize = 20;
 /// Cuts closer to a block's side than this share of its length coincide with it.
 const SNAP: f64 = 1e-6;
 
@@ -128,16 +135,50 @@ fn running(start: f64, length: f64, blocks: usize, halves: bool) -> Course {
     (0..blocks + usize::from(halves)).map(|k| [side(k), side(k + 1)]).collect()
 }
 
+/// Returns headers of half a block's length between two distances, with a quarter at the start: in a single
+/// wall no head joint of headers is above one of whole and half blocks \[m\].
+fn headers([start, end]: [f64; 2], length: f64) -> Course {
+    let quarters = |k: usize| start + (2 * k + 1) as f64 * 0.25 * length;
+    // A last header shorter than an eighth of a block is part of its neighbour.
+    let inner = (0..).map(quarters).take_while(|cut| *cut < end - 0.125 * length);
+    let cuts: Vec<f64> = [start].into_iter().chain(inner).chain([end]).collect();
+    cuts.windows(2).map(|pair| [pair[0], pair[1]]).collect()
+}
+
 impl MasonryWall {
+    /// Returns the thickness of all leaves \[m\].
+    fn thickness(&self) -> f64 {
+        self.leaves as f64 * self.block[1]
+    }
+
+    /// Returns true if a course is of headers.
+    fn is_header(&self, course: usize) -> bool {
+        self.leaves > 1 && self.header_every.is_some_and(|every| (course + 1).is_multiple_of(every))
+    }
+
+    /// Returns a course of stretchers, or of headers in its place.
+    fn bonded(&self, course: usize, stretchers: Course) -> Course {
+        match (self.is_header(course), stretchers.first(), stretchers.last()) {
+            (true, Some([start, _]), Some([_, end])) => headers([*start, *end], self.block[0]),
+            _ => stretchers,
+        }
+    }
+
     /// Returns the walls, or all mistakes with paths from the scene's table.
     fn walls(&self) -> Result<Vec<WallCourses>, Vec<Diagnostic>> {
         let mut diagnostics = Vec::new();
         let sides = self.block.iter().enumerate();
         diagnostics.extend(sides.filter_map(|(i, side)| out_of_range::<Self>(&format!("block.{i}"), *side)));
         let corner = self.corner.map(|corner| ("corner.blocks", corner.blocks));
-        let counts = [("courses", self.courses), ("blocks", self.blocks)].into_iter().chain(corner);
+        let every = self.header_every.map(|every| ("header_every", every));
+        let counts = [("courses", self.courses), ("blocks", self.blocks)].into_iter().chain(corner).chain(every);
         let range = Range::new(1.0, false, MAX_BLOCKS as f64, false);
         diagnostics.extend(counts.filter_map(|(key, count)| outside(range, key, count as f64)));
+        diagnostics.extend(outside(Range::new(1.0, false, MAX_LEAVES as f64, false), "leaves", self.leaves as f64));
+        if self.leaves == 1 && self.header_every.is_some() {
+            let wrong = Diagnostic::new("header_every", "headers join leaves, but the wall has one leaf");
+            diagnostics.push(wrong.help("give leaves ≥ 2, or remove header_every"));
+        }
         let start = matches!(self.side_supports, SideSupports::Start | SideSupports::Both);
         if start && self.corner.is_some() {
             let wrong = Diagnostic::new("side_supports", "walls that meet in a corner have no start");
@@ -160,16 +201,17 @@ impl MasonryWall {
     }
 
     fn single(&self) -> WallCourses {
-        let course = |course: usize| running(0.0, self.block[0], self.blocks, course % 2 == 1);
+        let stretchers = |course: usize| running(0.0, self.block[0], self.blocks, course % 2 == 1);
+        let course = |course: usize| self.bonded(course, stretchers(course));
         WallCourses { wing: Wing::X, courses: (0..self.courses).map(course).collect() }
     }
 
     /// Returns the wall along x and the wall along y.
     fn corner_walls(&self, corner: Corner) -> Vec<WallCourses> {
-        let [length, thickness, _] = self.block;
+        let (length, thickness) = (self.block[0], self.thickness());
         let (along_x, along_y) = ([self.blocks, 0], [corner.blocks, 1]);
         // A wall that runs through begins at the outer corner with whole blocks, and ends with a block as long as the
-        // leaf is thick. The other begins behind it.
+        // walls are thick. The other begins behind it.
         let through = |blocks: usize| row(0.0, (0..blocks).map(|_| length).chain([thickness]));
         let behind = |blocks: usize| row(thickness, (0..blocks).map(|_| length));
         let shifted = |blocks: usize| row(0.0, [thickness].into_iter().chain((0..blocks).map(|_| length)));
@@ -180,7 +222,8 @@ impl MasonryWall {
             (CornerJoint::Straight, 0) => shifted(blocks),
             (CornerJoint::Straight, _) => running(thickness, length, blocks, course % 2 == 1),
         };
-        let wall = |wing, which| WallCourses { wing, courses: (0..self.courses).map(|k| course(which, k)).collect() };
+        let bonded = |which, k| self.bonded(k, course(which, k));
+        let wall = |wing, which| WallCourses { wing, courses: (0..self.courses).map(|k| bonded(which, k)).collect() };
         vec![wall(Wing::X, along_x), wall(Wing::Y, along_y)]
     }
 
@@ -218,9 +261,9 @@ impl MasonryWall {
         self.walls().err().map(pairs_of).unwrap_or_default()
     }
 
-    /// Returns the lengths of the walls along x and along y; a single wall is as long as its leaf is thick along y \[m\].
+    /// Returns the lengths of the walls along x and along y; a single wall is as long as it is thick along y \[m\].
     fn extent(&self) -> [f64; 2] {
-        let [length, thickness, _] = self.block;
+        let (length, thickness) = (self.block[0], self.thickness());
         let long = |blocks: usize| blocks as f64 * length;
         match self.corner {
             None => [long(self.blocks), thickness],
@@ -236,36 +279,47 @@ impl MasonryWall {
         self.add_piers(parts);
         for wall in walls {
             for (i, course) in wall.courses.iter().enumerate() {
-                for (j, side) in course.iter().enumerate() {
-                    let name = match (self.corner, wall.wing) {
-                        (None, _) => format!("{i}.{j}"),
-                        (_, Wing::X) => format!("x.{i}.{j}"),
-                        (_, Wing::Y) => format!("y.{i}.{j}"),
-                    };
-                    let [low, high] = self.corners(wall.wing, *side, [i, i + 1]);
-                    parts.body(name, cuboid(low, high), false);
-                }
+                course.iter().enumerate().for_each(|(j, side)| self.add_block(parts, wall.wing, [i, j], *side));
             }
         }
         parts.find_contacts();
     }
 
-    /// Returns two corners of a block between two distances along its wall and two bed joints \[m\].
-    fn corners(&self, wing: Wing, [start, end]: [f64; 2], [bottom, top]: [usize; 2]) -> [Vec3; 2] {
-        let [_, thickness, height] = self.block;
-        let [low, high] = [bottom, top].map(|bed| bed as f64 * height);
-        match wing {
-            Wing::X => [Vec3::new(start, 0.0, low), Vec3::new(end, thickness, high)],
-            Wing::Y => [Vec3::new(0.0, start, low), Vec3::new(thickness, end, high)],
+    /// Adds block j of course i: a header through all leaves, or a block of each leaf.
+    fn add_block(&self, parts: &mut Parts, wing: Wing, [i, j]: [usize; 2], side: [f64; 2]) {
+        let name = match (self.corner, wing) {
+            (None, _) => format!("{i}.{j}"),
+            (_, Wing::X) => format!("x.{i}.{j}"),
+            (_, Wing::Y) => format!("y.{i}.{j}"),
+        };
+        if self.leaves == 1 || self.is_header(i) {
+            let [low, high] = self.corners(wing, side, [0, self.leaves], [i, i + 1]);
+            parts.body(name, cuboid(low, high), false);
+            return;
+        }
+        for leaf in 0..self.leaves {
+            let [low, high] = self.corners(wing, side, [leaf, leaf + 1], [i, i + 1]);
+            parts.body(format!("{name}.{leaf}"), cuboid(low, high), false);
         }
     }
 
-    /// Adds a pier as thick as the leaf at each supported end.
+    /// Returns two corners of a block between two distances along its wall, two faces of leaves and two bed joints \[m\].
+    fn corners(&self, wing: Wing, [start, end]: [f64; 2], leaves: [usize; 2], beds: [usize; 2]) -> [Vec3; 2] {
+        let [_, thickness, height] = self.block;
+        let [front, back] = leaves.map(|face| face as f64 * thickness);
+        let [low, high] = beds.map(|bed| bed as f64 * height);
+        match wing {
+            Wing::X => [Vec3::new(start, front, low), Vec3::new(end, back, high)],
+            Wing::Y => [Vec3::new(front, start, low), Vec3::new(back, end, high)],
+        }
+    }
+
+    /// Adds a pier as thick as the wall at each supported end.
     fn add_piers(&self, parts: &mut Parts) {
-        let ([x, y], thickness) = (self.extent(), self.block[1]);
+        let ([x, y], thickness) = (self.extent(), self.thickness());
         let beds = [0, self.courses];
         let mut pier = |name: &str, wing, side| {
-            let [low, high] = self.corners(wing, side, beds);
+            let [low, high] = self.corners(wing, side, [0, self.leaves], beds);
             parts.body(name, cuboid(low, high), true);
         };
         if matches!(self.side_supports, SideSupports::Start | SideSupports::Both) {
@@ -323,7 +377,7 @@ voussoir_core::inventory::submit! {
     Card {
         kind: PluginKind::Scene,
         tag: "masonry_wall",
-        summary: "a wall of one leaf in space, with openings and corners, loaded in any direction",
+        summary: "a wall in space of one or more leaves, with headers, openings and corners, loaded in any direction",
         sources: &["de Felice & Giannini 2001, J. Earthq. Eng. 5 (walls out of plane)"],
         samples: &[
             Sample::keys(r#"block = [0.4, 0.2, 0.2]
@@ -340,6 +394,13 @@ corner = { blocks = 3 }
 side_supports = "end"
 material = "brick"
 joint = "mortar""#),
+            Sample::keys(r#"block = [0.4, 0.2, 0.2]
+courses = 3
+blocks = 2
+leaves = 2
+header_every = 2
+material = "stone"
+joint = "dry""#),
             Sample::keys(r#"block = [0.4, 0.2, 0.2]
 courses = 3
 blocks = 2
@@ -405,6 +466,50 @@ mod tests {
         assert!((volume(&straight) - volume(&toothed)).abs() < 1e-10);
     }
 
+    /// Two leaves of n blocks with headers in the second of three courses: each leaf has n blocks in course 0 and n in course 2,
+    /// and 2 n headers with a quarter at both ends lie between. No head joint is above another one.
+    #[test]
+    fn headers_join_leaves() {
+        let n = 3;
+        let wall = keys(json!({ "blocks": n, "courses": 3, "leaves": 2, "header_every": 2 }));
+        let wall = built("masonry_wall", &wall).unwrap();
+        let headers = 2 * n + 1;
+        let beds = |joints: usize, blocks: usize| joints + blocks;
+        let contacts = [
+            2 * n,                        // the ground
+            2 * (2 * (n - 1) + n),        // head joints and the joint between the leaves, in two courses
+            headers - 1,                  // head joints of headers
+            2 * 2 * beds(n - 1, headers), // beds below and above the headers, for each leaf
+        ];
+        assert_eq!(counts(&wall)[..2], [4 * n + headers, contacts.iter().sum()]);
+        assert_conforming(&wall);
+        let volume: f64 = wall.bodies[1..].iter().map(|body| body.shape.volume_and_centroid().0).sum();
+        assert!((volume - 6.0 * 2.0 * 1.5).abs() < 1e-12);
+        assert!(wall.body("0.2.1").is_some() && wall.body("1.6").is_some() && wall.body("1.6.0").is_none());
+    }
+
+    /// Corners, openings and piers of a wall of three leaves fill the same volume as those of one leaf as thick as three.
+    #[test]
+    fn leaves_fill_the_volume_of_a_thick_leaf() {
+        let opening = json!([{ "from": [3.0, 1.0], "to": [5.0, 2.0] }]);
+        for joint in ["toothed", "straight"] {
+            let extra = json!({
+                "corner": { "blocks": 4, "joint": joint }, "openings": opening, "side_supports": "end",
+            });
+            let thick = keys(json!({ "block": [2.0, 3.0, 0.5] }));
+            let thin = keys(json!({ "leaves": 3, "header_every": 3 }));
+            let [thick, thin] = [thick, thin].map(|mut wall| {
+                extra.as_object().unwrap().iter().for_each(|(key, value)| wall[key] = value.clone());
+                built("masonry_wall", &wall).unwrap()
+            });
+            assert_conforming(&thin);
+            let volume = |scene: &voussoir_core::space::SpaceAssembly| {
+                scene.bodies.iter().map(|body| body.shape.volume_and_centroid().0).sum::<f64>()
+            };
+            assert!((volume(&thick) - volume(&thin)).abs() < 1e-9, "{joint}");
+        }
+    }
+
     #[test]
     fn openings_cut_blocks_of_one_wall() {
         let opening = |wall: &str| json!({ "from": [3.0, 1.0], "to": [5.0, 2.0], "wall": wall });
@@ -423,6 +528,9 @@ mod tests {
     #[test]
     fn mistakes_are_reported_at_their_keys() {
         assert_eq!(wrong("masonry_wall", &keys(json!({ "block": [2.0, 0.0, 0.5] }))), ["scene.block.1"]);
+        assert_eq!(wrong("masonry_wall", &keys(json!({ "leaves": 0 }))), ["scene.leaves"]);
+        assert_eq!(wrong("masonry_wall", &keys(json!({ "header_every": 2 }))), ["scene.header_every"]);
+        assert_eq!(wrong("masonry_wall", &keys(json!({ "leaves": 2, "header_every": 0 }))), ["scene.header_every"]);
         let start = json!({ "corner": { "blocks": 2 }, "side_supports": "both" });
         assert_eq!(wrong("masonry_wall", &keys(start)), ["scene.side_supports"]);
         let between = json!({ "openings": [{ "from": [1.0, 0.3], "to": [2.0, 1.0] }] });

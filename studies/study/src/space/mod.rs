@@ -6,6 +6,7 @@ mod block;
 pub mod blocks_3d;
 pub mod cross_vault;
 pub mod dome;
+pub mod fill;
 pub(crate) mod import;
 pub mod masonry_wall;
 pub mod near;

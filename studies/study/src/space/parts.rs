@@ -4,7 +4,8 @@ use crate::scenes::lookup::{from_root, law, material, take};
 use voussoir_core::model::Catalogue;
 use voussoir_core::plugin::Diagnostic;
 use voussoir_core::space::{
-    Contact, ContactBody, ContactTolerances, Polyhedron, SpaceAssembly, SpaceBody, Vec3, find_contacts, tangents,
+    Contact, ContactBody, ContactTolerances, Polyhedron, SpaceAssembly, SpaceBody, SpaceFill, Vec3, find_contacts,
+    tangents,
 };
 
 /// Bodies of one material with contacts of one law.
@@ -60,6 +61,11 @@ impl Parts {
             tangents: tangents(&normal),
             law: self.law,
         });
+    }
+
+    /// Adds the mass of fill on a body \[kg\], at its centroid \[m\].
+    pub fn fill(&mut self, body: usize, mass: f64, point: Vec3) {
+        self.assembly.fill.push(SpaceFill { body, point, mass });
     }
 
     /// Adds the contacts of all bodies.

@@ -3,7 +3,7 @@
 use super::resolved::Resolved;
 use crate::config::common_keys::tag_of;
 use crate::scenes::bridge::Fill;
-use crate::space::near::near_miss_warnings;
+use crate::space::near::warnings_of_blocks;
 use serde::Deserialize;
 use serde_json::Value as Json;
 use voussoir_core::model::geometry::{Vec2, bounding_box};
@@ -60,7 +60,7 @@ pub(super) fn warnings(resolved: &Resolved, assembly: &Assembly, stages: &[Stage
 pub(super) fn space_warnings(resolved: &Resolved, assembly: &SpaceAssembly) -> Vec<String> {
     // Other scenes create their contacts themselves.
     let given = |scene: &Json| matches!(tag_of(PluginKind::Scene, scene), "assembly" | "blocks_3d");
-    if resolved.get("scene").is_some_and(given) { near_miss_warnings(assembly) } else { Vec::new() }
+    if resolved.get("scene").is_some_and(given) { warnings_of_blocks(assembly) } else { Vec::new() }
 }
 
 fn densities(assembly: &Assembly, found: &mut Vec<String>) {

@@ -116,7 +116,7 @@ fn placed(diagnostics: &mut DiagnosticList<'_>, loads: &[Json], assembly: &Space
             Some(Err(wrong)) => diagnostics.extend(wrong),
             None => {
                 let message = format!("the load \"{}\" exists in plane scenes only", load.typetag_name());
-                diagnostics.wrong(&path, message, "in space use \"body\" or \"point\"");
+                diagnostics.wrong(&path, message, "in space use \"body\", \"point\" or \"pressure\"");
             }
         }
     }

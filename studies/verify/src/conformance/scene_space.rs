@@ -3,7 +3,7 @@
 use super::findings::Recorder;
 use std::collections::BTreeSet;
 use voussoir_core::model::Catalogue;
-use voussoir_core::space::{Contact, SpaceAssembly, Vec3};
+use voussoir_core::space::{Contact, SpaceAssembly, SpaceFill, Vec3};
 
 /// Greatest error of coordinates and unit vectors, as a share of the size of the scene.
 const SAME: f64 = 1e-9;
@@ -38,6 +38,10 @@ fn mistake(assembly: &SpaceAssembly) -> Option<String> {
         if body.shape.volume_and_centroid().0 <= 0.0 {
             return of("has no volume, or faces that point inwards");
         }
+    }
+    let carries = |fill: &SpaceFill| fill.body < assembly.bodies.len() && fill.mass >= 0.0 && fill.mass.is_finite();
+    if !assembly.fill.iter().all(carries) {
+        return Some("some fill is on no block, or has no mass".into());
     }
     let contacts = assembly.contacts.iter().enumerate();
     contacts
@@ -84,12 +88,14 @@ pub(super) fn described(assembly: &SpaceAssembly) -> Vec<String> {
         let law = laws.get(contact.law).map(|(name, _)| name);
         format!("{} {} {:?} {:?} {law:?}", contact.minus, contact.plus, contact.points, contact.normal)
     });
-    bodies.chain(contacts).collect()
+    let fill = assembly.fill.iter().map(|fill| format!("{} {:?} {:?}", fill.body, fill.point, fill.mass));
+    bodies.chain(contacts).chain(fill).collect()
 }
 
 /// Returns all lengths of an assembly, in a fixed order \[m\].
 pub(super) fn lengths(assembly: &SpaceAssembly) -> Vec<f64> {
     let corners = assembly.bodies.iter().flat_map(|body| &body.shape.vertices);
     let points = assembly.contacts.iter().flat_map(|contact| &contact.points);
-    corners.chain(points).flatten().copied().collect()
+    let fill = assembly.fill.iter().map(|fill| &fill.point);
+    corners.chain(points).chain(fill).flatten().copied().collect()
 }
