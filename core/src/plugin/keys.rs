@@ -311,6 +311,44 @@ mod tests {
         assert!(Taper::PARAMETERS[0].doc.ends_with("full stops."));
     }
 
+    /// A field that is `like` an optional key is optional with the same effect, and the default of a key is found by its name.
+    #[test]
+    fn what_a_key_shares_is_its_need() {
+        let optional = otherwise(like(Table::PARAMETERS, "thickness"));
+        assert_eq!(optional, Need::Optional("it is even"));
+        assert_eq!(Table::default_of::<usize>("count"), 3);
+        assert_eq!(Taper::default_of::<f64>("low"), 0.5);
+        assert!(Taper { crown: 1.0, low: 0.5 }.check().is_empty(), "a table without a check has no mistakes");
+    }
+
+    #[test]
+    #[should_panic = "say what happens without this key"]
+    fn a_key_with_a_default_is_no_optional_key() {
+        let _ = otherwise(like(Table::PARAMETERS, "count"));
+    }
+
+    #[test]
+    #[should_panic = "has no default"]
+    fn a_required_key_has_no_default() {
+        Taper::default_of::<f64>("crown");
+    }
+
+    #[test]
+    #[should_panic = "no key of this name"]
+    fn a_key_that_does_not_exist_describes_none() {
+        like(Taper::PARAMETERS, "lo");
+    }
+
+    /// Both ends of the range of an integer are allowed defaults; the numbers beside them are refused.
+    #[test]
+    fn a_default_is_compared_with_both_ends_of_a_range() {
+        let accepted = |number| {
+            let range = Shape::Integer { min: 1, max: 6 };
+            std::panic::catch_unwind(|| check_default(&range, Literal::Number(number))).is_ok()
+        };
+        assert_eq!([0.0, 1.0, 6.0, 7.0].map(accepted), [false, true, true, false]);
+    }
+
     #[test]
     #[should_panic = "out of the range"]
     fn a_default_out_of_its_range_is_refused() {

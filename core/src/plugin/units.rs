@@ -211,6 +211,8 @@ mod tests {
         assert_eq!(read(Quantity::Stress, "10N/mm2"), 1e7);
         assert_eq!(read(Quantity::Length, "600 mm"), 0.6);
         assert_eq!(read(Quantity::Length, "1e-1 m"), 0.1);
+        assert_eq!(read(Quantity::Length, "2E3mm"), 2.0);
+        assert_eq!(read(Quantity::Force, "3e+1 kN"), 30_000.0);
         assert_eq!(read(Quantity::Force, "-1_000"), -1000.0);
         assert!((read(Quantity::Density, "21.582 kN/m3") - 2200.0).abs() < 1e-9);
         assert!((read(Quantity::Stress, "1 psi") - 6_894.757_293_168).abs() < 1e-6);
@@ -300,5 +302,8 @@ mod tests {
         assert!(said(Quantity::Length, "0,60").contains("write \"0.60\""));
         assert!(said(Quantity::Ratio, "35 deg").contains("0.7002"));
         assert!(said(Quantity::Ratio, "35°").contains("friction_angle"));
+        assert!(said(Quantity::Ratio, "0.6 rad").contains("0.6841"));
+        assert_eq!(said(Quantity::Temperature, "20 F"), "unit \"F\" does not fit; units here: K, °C");
+        assert_eq!(said(Quantity::Length, "3em"), "unit \"em\" does not fit; units here: m, mm, cm, ft, in");
     }
 }
