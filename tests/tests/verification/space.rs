@@ -79,6 +79,26 @@ fn a_wall_across_its_plane_has_its_closed_form() {
     assert_close(factor(wall, 0.7, [0.0, 1.0, 0.0]), 0.25, 1e-9);
 }
 
+/// A block of 2 × 1 × 3 m is overturned by a pressure on its side of 2 × 3 m: λ p A h / 2 = W b / 2. If the force is inclined
+/// by 45° downwards, its vertical part acts at the far side and has the arm b.
+#[test]
+fn a_pressure_on_a_side_overturns_a_block() {
+    let wall = "scene = \"masonry_wall\"\nblock = [2.0, 1.0, 3.0]\ncourses = 1\nblocks = 1";
+    let body = pushed(wall, 0.7, [0.0, 1.0, 0.0]);
+    let with = |load: &str| {
+        let load = format!("loads = [{{ kind = \"pressure\", block = \"0.0\", value = 1.0, {load} }}]");
+        let study = body.replace("loads = [{ kind = \"body\", acceleration = [0.0, 1.0, 0.0] }]", &load);
+        let result = answered(&study);
+        assert_eq!(result.status, Status::Collapse, "{:?} {:?}", result.notes, result.certificate);
+        result.load_factor.expect("a factor")
+    };
+    let (weight, area, width, height) = (6.0, 6.0, 1.0, 3.0);
+    assert_close(with("face = [0, -1, 0]"), weight * width / (area * height), 1e-9);
+    assert_close(with("face = 2"), weight * width / (area * height), 1e-9);
+    let inclined = 2f64.sqrt() * weight * width / (area * (height - 2.0 * width));
+    assert_close(with("face = [0, -1, 0], direction = [0, 1, -1]"), inclined, 1e-9);
+}
+
 /// A straight barrel of one strip has the factors that an independent program proved, across and along its axis.
 #[test]
 fn a_barrel_has_the_published_factors() {
