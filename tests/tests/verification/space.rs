@@ -144,3 +144,75 @@ fn friction_without_dilatancy_is_read_as_associated() {
     assert_eq!(result.flow_read_as.as_deref(), Some("associated"));
     assert_close(result.load_factor.expect("a factor"), 0.504872781, 2e-9);
 }
+
+/// A wall of two leaves overturns like one of their thickness, 2 t / H, if every course is of headers. With fewer headers
+/// the load is not greater, and without headers it is less, but not less than that of a single leaf, t / H.
+#[test]
+fn headers_make_two_leaves_one_wall() {
+    let wall = |more: &str| {
+        let wall = "scene = \"masonry_wall\"\nblock = [2.0, 0.5, 0.5]\ncourses = 8\nblocks = 2\nleaves = 2";
+        factor(&format!("{wall}\n{more}"), 0.7, [0.0, 1.0, 0.0])
+    };
+    let [every, second, none] = ["header_every = 1", "header_every = 2", ""].map(wall);
+    assert_close(every, 0.25, 1e-9);
+    assert!(second <= every + 1e-9 && none < second - 1e-3 && none >= 0.125 - 1e-9, "{every} {second} {none}");
+}
+
+/// Stacks of prisms with cohesion, tension and crushing: the load of the plane scene, which another solver and another certificate
+/// prove, is between the bounds of the same prisms in space. Without crushing the bounds meet.
+#[test]
+fn an_extruded_plane_scene_has_the_plane_load() {
+    let strengths = [
+        (3, "cohesion = 2.0\ntensile_strength = 0.7"),
+        (2, "cohesion = 1.0\ntensile_strength = 9.0"),
+        (4, ""),
+        (3, "cohesion = 1.5\ntensile_strength = 0.4\ncompressive_strength = 40.0"),
+        (2, "compressive_strength = 30.0"),
+    ];
+    for (index, (blocks, strength)) in strengths.into_iter().enumerate() {
+        let shift = 0.03 * index as f64;
+        let exact = answered(&stack(blocks, strength, shift, None)).load_factor.expect("the plane scene collapses");
+        let space = answered(&stack(blocks, strength, shift, Some(0.8)));
+        let [Some(low), Some(high)] = space.bounds.expect("bounds") else { panic!("{space:?}") };
+        let rounding = 1e-8 * exact;
+        assert!(low <= exact + rounding && exact <= high + rounding, "{strength}: [{low}, {high}] {exact}");
+        let width = if strength.contains("compressive") { 0.2 } else { 1e-8 };
+        assert!(high - low <= width * exact, "{strength}: [{low}, {high}] {exact}");
+    }
+}
+
+/// Returns a study of a stack of prisms of width 0.8 with inclined joints on a fixed block, in the plane or with a depth along y.
+fn stack(blocks: usize, strength: &str, shift: f64, depth: Option<f64>) -> String {
+    let level = |k: usize| {
+        let (middle, height, tilt) = (shift * k as f64, 0.7 * k as f64, 0.05 * f64::from(k.min(1) as u8));
+        [[middle - 0.45, height - tilt], [middle + 0.4, height + tilt]]
+    };
+    let ground = vec![[-2.0, -1.0], [2.0, -1.0], [2.0, 0.0], [-2.0, 0.0]];
+    let above = (0..blocks).map(|k| {
+        let ([a, b], [d, c]) = (level(k), level(k + 1));
+        vec![a, b, c, d]
+    });
+    let mut list = String::new();
+    for (k, corners) in std::iter::once(ground).chain(above).enumerate() {
+        let fixed = if k == 0 { "fixed = true\n" } else { "" };
+        let shape = match depth {
+            None => format!("vertices = {corners:?}"),
+            Some(depth) => {
+                let at = |y: f64| corners.iter().map(move |[x, z]| [*x, y, *z]);
+                let vertices: Vec<_> = at(0.0).chain(at(depth)).collect();
+                let faces = "[[0,1,2,3],[4,7,6,5],[0,4,5,1],[1,5,6,2],[2,6,7,3],[3,7,4,0]]";
+                format!("vertices = {vertices:?}\nfaces = {faces}")
+            }
+        };
+        list += &format!("[[scene.blocks]]\nname = \"{k}\"\n{fixed}{shape}\n");
+    }
+    let (scene, push) = match depth {
+        None => ("scene = \"blocks\"\nwidth = 0.8", "[1.0, 0.1]"),
+        Some(_) => ("scene = \"blocks_3d\"", "[1.0, 0.0, 0.1]"),
+    };
+    format!(
+        "name = \"stack\"\n[scene]\n{scene}\nmaterial = \"stone\"\njoint = \"mortar\"\n{list}[materials.stone]\nlaw = \"rigid\"\n\
+         density = 1.0\n[joints.mortar]\nlaw = \"mohr_coulomb\"\nfriction = 0.6\n{strength}\n[[stages]]\nname = \"weight\"\n\
+         gravity = 1.0\n[[stages]]\nname = \"push\"\nuntil = \"collapse\"\nloads = [{{ kind = \"body\", acceleration = {push} }}]\n"
+    )
+}
