@@ -146,7 +146,7 @@ fn friction_without_dilatancy_is_read_as_associated() {
 }
 
 /// A wall of two leaves overturns like one of their thickness, 2 t / H, if every course is of headers. With fewer headers
-/// the load is not greater, and without headers it is less, but not less than that of a single leaf, t / H.
+/// the load is not greater. Without headers it is less, but not below the load t / H of a single leaf.
 #[test]
 fn headers_make_two_leaves_one_wall() {
     let wall = |more: &str| {
