@@ -136,17 +136,12 @@ const { carried, twists } = new Function('document', `${script}; return { carrie
 }
 {
   const { page, seen } = await open('space', 1100, false);
-  const ink = () => page.$eval('.space canvas', canvas => {
-    const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
-    let sum = 0;
-    data.forEach((value, i) => { sum = (31 * sum + value * (i % 4 === 3 ? 1 : 7)) % 1000000007; });
-    return sum;
-  });
+  const ink = () => page.$eval('.space canvas', canvas => canvas.toDataURL());
   const first = await ink();
   await page.$eval('.space canvas', canvas => canvas.focus());
   await page.keyboard.press('ArrowRight');
   const turned = await ink();
-  expect(first !== 0 && turned !== first, 'arrow keys turn a scene in space');
+  expect(turned !== first, 'arrow keys turn a scene in space');
   await page.$eval('.space input[type=range]', slider => { slider.value = 100; slider.dispatchEvent(new Event('input')); });
   expect(await ink() !== turned, 'a slider moves its mechanism');
   await shot(page, 'space-moved');
