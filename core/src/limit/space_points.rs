@@ -10,7 +10,7 @@
 //!   *outer* points reach every resultant of tractions in T. If T has no bound in compression, forces in its cone of
 //!   recession at the vertices are limits of tractions in T, and belong to the inner points with no area.
 //!
-//! A motion dissipates at most what it dissipates at the outer points, because dissipation is convex and a rigid motion is
+//! The dissipation of a motion is at most its sum over the outer points, because dissipation is convex in the rate and the rate is
 //! linear in the point.
 
 use crate::law::FrictionCone;
@@ -145,7 +145,7 @@ mod tests {
         }
     }
 
-    /// The polar moment of the inner points is below that of the polygon, of the outer ones above, and both converge with the
+    /// The inner points have a smaller polar moment than the polygon, the outer points a greater one, and both converge with the
     /// square of the size: x² is convex, as dissipation is.
     #[test]
     fn the_sets_enclose_a_convex_integral() {

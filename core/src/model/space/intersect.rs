@@ -124,9 +124,7 @@ mod tests {
     use super::*;
 
     fn cuboid(low: [f64; 3], high: [f64; 3]) -> Polyhedron {
-        let corner = |k: usize| Vec3::from_fn(|axis, _| if k >> axis & 1 == 1 { high[axis] } else { low[axis] });
-        let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-        Polyhedron { vertices: (0..8).map(corner).collect(), faces: faces.map(Vec::from).into() }
+        Polyhedron::cuboid(&low.into(), &high.into())
     }
 
     fn turned(mut shape: Polyhedron, axis: Vec3, angle: f64, by: Vec3) -> Polyhedron {

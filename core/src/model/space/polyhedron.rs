@@ -13,6 +13,13 @@ pub struct Polyhedron {
 }
 
 impl Polyhedron {
+    /// Creates a box with its sides along the axes, between two corners \[m\].
+    pub fn cuboid(low: &Vec3, high: &Vec3) -> Self {
+        let corner = |k: usize| Vec3::from_fn(|axis, _| if k >> axis & 1 == 1 { high[axis] } else { low[axis] });
+        let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        Polyhedron { vertices: (0..8).map(corner).collect(), faces: faces.map(Vec::from).into() }
+    }
+
     /// Returns the mean of the corners of a face \[m\].
     pub fn face_mean(&self, face: &[usize]) -> Vec3 {
         face.iter().map(|&corner| self.vertices[corner]).sum::<Vec3>() / face.len() as f64
@@ -155,9 +162,7 @@ mod tests {
 
     /// A box with one corner at the origin.
     fn cuboid(size: [f64; 3]) -> Polyhedron {
-        let corner = |k: usize| Vec3::from_fn(|axis, _| if k >> axis & 1 == 1 { size[axis] } else { 0.0 });
-        let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-        Polyhedron { vertices: (0..8).map(corner).collect(), faces: faces.map(Vec::from).into() }
+        Polyhedron::cuboid(&Vec3::zeros(), &size.into())
     }
 
     fn moved(mut shape: Polyhedron, by: Vec3) -> Polyhedron {
