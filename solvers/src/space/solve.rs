@@ -104,7 +104,8 @@ impl Case<'_> {
     /// Solves the program of the inner points; if the outer points differ, their program gives the motions.
     fn evidence(&mut self, method: Method, held: bool) -> Option<Evidence> {
         let mut evidence = method(self.program, held, &mut self.counters)?;
-        if let Some(outer) = self.outer {
+        // A field at the start needs no motion beside it.
+        if let Some(outer) = self.outer.filter(|_| !(held && evidence.start.is_some())) {
             let around = method(outer, held, &mut self.counters)?;
             (evidence.upper, evidence.refutation, evidence.unique) = (around.upper, around.refutation, None);
         }

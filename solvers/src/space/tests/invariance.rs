@@ -21,7 +21,7 @@ fn direction() -> Vec3 {
 }
 
 /// Maps the points and directions of a problem; moments of loads follow.
-fn mapped(
+pub fn mapped(
     problem: &SpaceProblem,
     point: impl Fn(&Vec3) -> Vec3,
     vector: impl Fn(&Vec3) -> Vec3,
