@@ -36,8 +36,8 @@ pub struct SolverKeys {
     #[key(unit = "-", range = "> 0, <= 0.01", default = 1e-9)]
     pub tolerance: f64,
     /// scenes in space whose joints have more strength than a cone: parts of each side of a contact
-    #[key(range = ">= 1, <= 64", default = 4)]
-    pub subdivisions: usize,
+    #[key(range = ">= 1, <= 64", optional = "4 parts")]
+    pub subdivisions: Option<usize>,
     /// how far to go after a peak
     #[key(optional = "the path ends at collapse")]
     pub stop: Option<Stop>,

@@ -98,12 +98,10 @@ mod tests {
     /// A box of 1 × 2 × 4 m far from the origin, with its top raised at one corner by `warp` \[m\].
     fn block(warp: f64) -> Polyhedron {
         let size = [1.0, 2.0, 4.0];
-        let corner = |k: usize| Vec3::from_fn(|axis, _| if k >> axis & 1 == 1 { size[axis] } else { 0.0 });
-        let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-        let mut vertices: Vec<Vec3> = (0..8).map(corner).collect();
-        vertices[7].z += warp;
-        vertices.iter_mut().for_each(|vertex| *vertex += Vec3::new(3.0, -5.0, 7.0));
-        Polyhedron { vertices, faces: faces.map(Vec::from).into() }
+        let low = Vec3::new(3.0, -5.0, 7.0);
+        let mut shape = Polyhedron::cuboid(&low, &(low + Vec3::from(size)));
+        shape.vertices[7].z += warp;
+        shape
     }
 
     fn placed(shape: &Polyhedron, keys: Value) -> Result<SpacePlaced, String> {

@@ -94,7 +94,9 @@ fn asked_of_solvers(
             continue;
         };
         let result = certified(input, space, (&input.stages[index], problem), asked, (tag, answer));
-        if result.certificate.passed {
+        // Two sets of points leave a distance between the bounds, whatever the solver.
+        let enclosed = !problem.is_exact() && matches!(result.bounds, Some([Some(_), Some(_)]));
+        if result.certificate.passed || enclosed {
             return result;
         }
         notes.extend(result.certificate.failures.iter().map(|failure| format!("{tag}: {failure}")));

@@ -1,12 +1,12 @@
 //! `masonry_wall`: a wall of one or more leaves, or two walls that meet in a corner.
 #![doc = include_str!("masonry_wall.md")]
 
-use super::parts::{Parts, cuboid};
+use super::parts::Parts;
 use crate::scenes::keys::SceneKeys;
 use crate::scenes::lookup::{out_of_range, outside, pairs_of};
 use voussoir_core::model::{Assembly, Catalogue, Scene};
 use voussoir_core::plugin::{Card, Diagnostic, Keys, PluginKind, Range, Sample};
-use voussoir_core::space::{SpaceAssembly, Vec3};
+use voussoir_core::space::{Polyhedron, SpaceAssembly, Vec3};
 
 /// Joint of two walls in a corner.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Keys)]
@@ -275,7 +275,7 @@ impl MasonryWall {
         let [length, _, height] = self.block;
         let [x, y] = self.extent();
         let ground = [Vec3::new(-length, -length, -height), Vec3::new(x + length, y + length, 0.0)];
-        parts.body("ground", cuboid(ground[0], ground[1]), true);
+        parts.body("ground", Polyhedron::cuboid(&ground[0], &ground[1]), true);
         self.add_piers(parts);
         for wall in walls {
             for (i, course) in wall.courses.iter().enumerate() {
@@ -294,12 +294,12 @@ impl MasonryWall {
         };
         if self.leaves == 1 || self.is_header(i) {
             let [low, high] = self.corners(wing, side, [0, self.leaves], [i, i + 1]);
-            parts.body(name, cuboid(low, high), false);
+            parts.body(name, Polyhedron::cuboid(&low, &high), false);
             return;
         }
         for leaf in 0..self.leaves {
             let [low, high] = self.corners(wing, side, [leaf, leaf + 1], [i, i + 1]);
-            parts.body(format!("{name}.{leaf}"), cuboid(low, high), false);
+            parts.body(format!("{name}.{leaf}"), Polyhedron::cuboid(&low, &high), false);
         }
     }
 
@@ -320,7 +320,7 @@ impl MasonryWall {
         let beds = [0, self.courses];
         let mut pier = |name: &str, wing, side| {
             let [low, high] = self.corners(wing, side, [0, self.leaves], beds);
-            parts.body(name, cuboid(low, high), true);
+            parts.body(name, Polyhedron::cuboid(&low, &high), true);
         };
         if matches!(self.side_supports, SideSupports::Start | SideSupports::Both) {
             pier("start", Wing::X, [-thickness, 0.0]);

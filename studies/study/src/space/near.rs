@@ -76,6 +76,7 @@ mod tests {
         assert_eq!(warnings.len(), 1, "{warnings:?}");
         assert!(warnings[0].contains("\"low\" and \"high\"") && warnings[0].contains("1.000e-3"), "{warnings:?}");
     }
+
     /// A block 1 mm or 10 cm deep in another one is named once, with the depth; a block that rests on it is not.
     #[test]
     fn blocks_that_intersect_are_named() {

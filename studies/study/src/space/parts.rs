@@ -86,13 +86,6 @@ pub(super) fn found_contacts(assembly: &SpaceAssembly, tolerances: &ContactToler
     find_contacts(&ContactBody::all(assembly), tolerances).contacts
 }
 
-/// Returns a box between two corners \[m\].
-pub(super) fn cuboid(low: Vec3, high: Vec3) -> Polyhedron {
-    let corner = |k: usize| Vec3::from_fn(|axis, _| if k >> axis & 1 == 1 { high[axis] } else { low[axis] });
-    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    Polyhedron { vertices: (0..8).map(corner).collect(), faces: faces.map(Vec::from).into() }
-}
-
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;

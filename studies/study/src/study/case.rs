@@ -9,7 +9,7 @@ use super::partial_factors::{check, design, multiply_loads, note_of_yielding};
 use super::plausibility::{space_warnings, warnings};
 use super::resolved::Resolved;
 use super::solver::{choose_solver, unused_by_limit_analysis};
-use super::space::{SpaceCase, check_space_solver, space_stages, subdivisions};
+use super::space::{SpaceCase, check_space_solver, space_stages, subdivisions, unused_subdivisions};
 use super::stages::build_stages;
 use super::tables::{OutputKeys, stage_tables};
 use crate::config::check::{Checker, Unused};
@@ -88,6 +88,7 @@ pub(crate) fn build_case(id: usize, expanded: Expanded, known: &KnownKeys<'_>) -
             };
             notes.extend(warnings(&resolved, &assembly, &stages));
             notes.extend(space.iter().flat_map(|space| space_warnings(&resolved, &space.assembly)));
+            notes.extend(unused_subdivisions(resolved.get("solver"), space.as_ref()));
             note_of_yielding(&assembly, &resolved, &mut notes);
             let numbers = || numeric_keys(study_keys(), &resolved.to_json(), LONGEST);
             let output_sensitivities = if output.sensitivities { numbers() } else { Vec::new() };

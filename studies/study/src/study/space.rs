@@ -55,9 +55,21 @@ impl SpaceCase {
     }
 }
 
-/// Returns the key `subdivisions` of the table `[solver]`, or 1 if the table cannot be read.
+/// Parts of each side of a contact if the study does not give them: bounds of joints that crush are then some percent apart.
+const PARTS: usize = 4;
+
+/// Returns the parts of each side of a contact, from the table `[solver]`.
 pub(super) fn subdivisions(solver: Option<&Json>) -> usize {
-    solver.and_then(own_keys::<SolverKeys>).map_or(1, |keys| keys.subdivisions)
+    solver.and_then(own_keys::<SolverKeys>).and_then(|keys| keys.subdivisions).unwrap_or(PARTS)
+}
+
+/// Returns a note if the key `subdivisions` is given and has no effect.
+pub(super) fn unused_subdivisions(solver: Option<&Json>, space: Option<&SpaceCase>) -> Option<String> {
+    solver?.get("subdivisions")?;
+    let one_tip = |space: &SpaceCase| space.cones().is_ok_and(|cones| cones.iter().all(FrictionCone::has_one_tip));
+    space.is_none_or(one_tip).then(|| {
+        "solver.subdivisions has no effect: it divides contacts in space with tension cut-off or crushing".to_string()
+    })
 }
 
 /// Returns the loads of all stages of a scene in space.
