@@ -43,6 +43,8 @@ pub fn above_gates(result: &CaseResult, tolerance: f64, uncertain: f64) -> Vec<S
     if !result.certificate.passed {
         return Vec::new();
     }
+    // Bounds in space come from an interior-point method.
+    let tolerance = if result.proof.space.is_some() { tolerance.max(1e-8) } else { tolerance };
     let residuals = &result.certificate.residuals;
     let above = |(name, value): (&String, &f64)| {
         let fine = match (name.as_str(), gate(name, &result.solver, tolerance)) {
