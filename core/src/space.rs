@@ -11,7 +11,9 @@
 //! load factor from below, and outer points from above (see [`PointSet`]).
 
 pub use crate::certificate::{SpaceClaim, SpaceVerdict, certify_space};
-pub use crate::limit::{PointSet, SpaceAnswer, SpaceContact, SpaceField, SpaceProblem, SpaceVelocity, power};
+pub use crate::limit::{
+    PointSet, SpaceAnswer, SpaceContact, SpaceField, SpaceNonAssociated, SpaceProblem, SpaceVelocity, power,
+};
 pub use crate::model::space::{
     Contact, ContactBody, ContactTolerances, FoundContacts, FoundOverlaps, NearMiss, Polyhedron, SpaceAssembly,
     SpaceBody, SpaceFill, SpaceForce, SpaceLoads, SpaceOverlap, SpaceStage, Vec3, Wrench, add_space_force,

@@ -12,9 +12,15 @@
 //!
 //! so that a field proves a lower bound and a motion an upper bound of the greatest factor. Source: Drucker, Prager and
 //! Greenberg (1952), *Q. Appl. Math.* 9, 381–389.
+//!
+//! With the laws' own flow a collapse needs a field and a mechanism at one factor: v_n ≥ ψ |v_t|, and no contact has power left,
+//! n (v_n − ψ |v_t|) + μ n |v_t| + t·v_t = 0. Both terms are at least zero for admissible forces and rates.
 
 use super::residuals::Certificate;
-use crate::limit::{Greatest, SpaceContact, SpaceField, SpaceProblem, SpaceVelocity, Status, power};
+use crate::law::FrictionCone;
+use crate::limit::{
+    Greatest, SpaceContact, SpaceField, SpaceNonAssociated, SpaceProblem, SpaceVelocity, Status, power,
+};
 use crate::model::space::{Vec3, Wrench, velocity_at};
 use std::collections::BTreeMap;
 
@@ -56,6 +62,8 @@ pub struct SpaceClaim<'a> {
     pub motion: Option<&'a [SpaceVelocity]>,
     /// Forces that balance the varying loads alone \[N\].
     pub ray: Option<&'a SpaceField>,
+    /// Set if the claim is about the laws' own flow.
+    pub non_associated: Option<&'a SpaceNonAssociated>,
 }
 
 /// The result of checking a claim.
@@ -104,14 +112,20 @@ fn misfit(problem: &SpaceProblem, claim: &SpaceClaim) -> Option<String> {
     if !fields().all(fits) {
         return Some("the field does not have one force for each point of each contact".into());
     }
-    if claim.motion.is_some_and(|motion| motion.len() != *bodies) {
+    let motions = || claim.motion.into_iter().chain(associated_motion(claim));
+    if motions().any(|motion| motion.len() != *bodies) {
         return Some("the motion does not have one velocity for each free body".into());
     }
-    let velocities = claim.motion.unwrap_or_default().iter().flatten();
+    let velocities = motions().flatten().flatten();
     if !fields().flatten().flatten().flatten().chain(velocities).all(|x| x.is_finite()) {
         return Some("a force or velocity is not finite".into());
     }
     None
+}
+
+/// Returns the motion that proves the associated factor.
+fn associated_motion<'a>(claim: &SpaceClaim<'a>) -> Option<&'a [SpaceVelocity]> {
+    claim.non_associated.and_then(|own| own.associated_motion.as_deref())
 }
 
 /// Returns the size of wrenches \[N\]: forces, and moments divided by a length.
@@ -147,7 +161,9 @@ impl<'a> Check<'a> {
             let certificate = std::mem::replace(&mut self.certificate, Certificate::blank());
             match bounds {
                 Some(bounds) if certificate.passed => {
-                    let greatest = if status == Status::Stands { Greatest::Open } else { Greatest::ProvedOptimal };
+                    let open =
+                        status == Status::Stands || (status == Status::Collapse && claim.non_associated.is_some());
+                    let greatest = if open { Greatest::Open } else { Greatest::ProvedOptimal };
                     return SpaceVerdict { certificate, status, bounds, greatest };
                 }
                 _ if status == claim.hint => first = Some(certificate),
@@ -160,9 +176,11 @@ impl<'a> Check<'a> {
     /// Returns the verdict with the ends that field and motion prove by themselves.
     fn open(&mut self, claim: &SpaceClaim, mut certificate: Certificate) -> SpaceVerdict {
         self.certificate = Certificate::blank();
-        let lower = self.field(claim).filter(|lower| *lower > claim.start);
+        // A field does not bound factors of other than associated flow, but every motion of associated flow does.
+        let own = claim.non_associated.is_some();
+        let lower = if own { None } else { self.field(claim).filter(|lower| *lower > claim.start) };
         self.certificate = Certificate::blank();
-        let upper = self.upper_bound(claim);
+        let upper = self.upper_bound(if own { associated_motion(claim) } else { claim.motion });
         let consistent = lower.zip(upper).is_none_or(|(lower, upper)| lower <= upper);
         let bounds = if consistent { [lower, upper] } else { [None; 2] };
         let status = if bounds == [None; 2] { Status::Stalled } else { Status::Open };
@@ -177,7 +195,10 @@ impl<'a> Check<'a> {
     fn proves(&mut self, status: Status, claim: &SpaceClaim, gap: f64) -> Option<[Option<f64>; 2]> {
         match status {
             Status::Stands => self.stands(claim).map(|()| [None; 2]),
-            Status::Collapse => self.collapse(claim, gap).map(|bounds| bounds.map(Some)),
+            Status::Collapse => match claim.non_associated {
+                Some(own) => self.own_flow(claim, own, gap).map(|bounds| bounds.map(Some)),
+                None => self.collapse(claim, gap).map(|bounds| bounds.map(Some)),
+            },
             Status::Unbounded => self.field(claim).and(self.ray(claim)).map(|()| [None; 2]),
             Status::NoEquilibrium => self.refutation(claim).map(|()| [None; 2]),
             Status::LimitPoint | Status::Open | Status::Stalled => None,
@@ -195,7 +216,7 @@ impl<'a> Check<'a> {
     }
 
     fn collapse(&mut self, claim: &SpaceClaim, gap: f64) -> Option<[f64; 2]> {
-        let (Some(lower), Some(upper)) = (self.field(claim), self.upper_bound(claim)) else {
+        let (Some(lower), Some(upper)) = (self.field(claim), self.upper_bound(claim.motion)) else {
             self.certificate.fail("a collapse needs a factor, an admissible field and a mechanism");
             return None;
         };
@@ -206,6 +227,56 @@ impl<'a> Check<'a> {
             self.certificate.fail(format!("the collapse lies beyond the target {} of the stage", claim.target));
         }
         Some([lower.min(upper), upper.max(lower)])
+    }
+
+    /// Checks that field and mechanism exist at one factor with the laws' own flow, and that the bound of associated flow is not
+    /// exceeded. Returns \[start, factor\]: there may be lower factors.
+    fn own_flow(&mut self, claim: &SpaceClaim, own: &SpaceNonAssociated, gap: f64) -> Option<[f64; 2]> {
+        let (Some(factor), Some(motion)) = (self.field(claim), claim.motion) else {
+            self.certificate.fail("a collapse needs a factor, an admissible field and a mechanism");
+            return None;
+        };
+        if claim.factor != Some(factor) || factor < claim.start || factor > claim.target {
+            self.certificate.fail("the field is not at the collapse factor, or the factor is outside the stage");
+        }
+        if !self.problem.contacts.iter().all(|contact| contact.law.is_dry()) {
+            self.certificate.fail("the own flow of joints with cohesion, tension or crushing is not checked in space");
+        }
+        let varying = power(&self.problem.varying, motion);
+        self.certificate.residual("motion_scale", (varying - 1.0).abs(), UNIT_POWER);
+        let (largest, _) = self.flow(motion, FrictionCone::violation_of_own_flow)?;
+        let scale = self.load_scale(factor, claim.field?) * largest;
+        let idle = self.idle_power(claim.field?, motion);
+        self.certificate.residual("complementarity", idle / scale, ROUNDING);
+        if let Some(greatest) = own.associated_factor {
+            let scale = factor.abs().max(greatest.abs()).max(self.factor_scale());
+            self.certificate.residual("above_associated", ((factor - greatest) / scale).max(0.0), gap);
+            let shown = self.associated_bound(own.associated_motion.as_deref());
+            let distance = shown.map_or(f64::INFINITY, |shown| (shown - greatest).abs() / scale);
+            self.certificate.residual("associated_gap", distance, gap);
+        }
+        Some([claim.start, factor])
+    }
+
+    /// Returns the factor that a motion of associated flow proves. Its residuals have separate names.
+    fn associated_bound(&mut self, motion: Option<&[SpaceVelocity]>) -> Option<f64> {
+        let own = std::mem::replace(&mut self.certificate, Certificate::blank());
+        let shown = self.upper_bound(motion);
+        let Certificate { passed, residuals, failures } = std::mem::replace(&mut self.certificate, own);
+        let named = |name: String| format!("associated_{name}");
+        self.certificate.residuals.extend(residuals.into_iter().map(|(name, value)| (named(name), value)));
+        self.certificate.failures.extend(failures.into_iter().map(named));
+        self.certificate.passed &= passed;
+        shown
+    }
+
+    /// Returns the power that the forces lack from the laws' own flow on a motion \[W\].
+    fn idle_power(&self, field: &SpaceField, motion: &[SpaceVelocity]) -> f64 {
+        let of = |(contact, forces): (&SpaceContact, &Vec<[f64; 3]>)| -> f64 {
+            let points = contact.inner.points.iter().zip(forces);
+            points.map(|(point, force)| contact.law.idle_power(force, &jump(contact, point, motion)).abs()).sum()
+        };
+        self.problem.contacts.iter().zip(field).map(of).sum()
     }
 
     /// Checks the field and returns its factor.
@@ -236,8 +307,11 @@ impl<'a> Check<'a> {
 
     /// Checks that the loads at the start do more work on the motion than admissible forces can do against it.
     fn refutation(&mut self, claim: &SpaceClaim) -> Option<()> {
-        let (largest, flow) = self.flow(claim.motion)?;
-        let motion = claim.motion?;
+        let Some(motion) = claim.motion else {
+            self.certificate.fail("no motion");
+            return None;
+        };
+        let (largest, flow) = self.flow(motion, FrictionCone::violation_of_flow)?;
         let (fixed, varying) = (power(&self.problem.fixed, motion), power(&self.problem.varying, motion));
         let dissipated = self.dissipation(motion);
         let excess = fixed + claim.start * varying - dissipated;
@@ -253,28 +327,26 @@ impl<'a> Check<'a> {
     }
 
     /// Returns the factor that the motion proves to be the greatest possible one.
-    fn upper_bound(&mut self, claim: &SpaceClaim) -> Option<f64> {
-        self.flow(claim.motion)?;
-        let motion = claim.motion?;
+    fn upper_bound(&mut self, motion: Option<&[SpaceVelocity]>) -> Option<f64> {
+        let Some(motion) = motion else {
+            self.certificate.fail("no motion");
+            return None;
+        };
+        self.flow(motion, FrictionCone::violation_of_flow)?;
         let (fixed, varying) = (power(&self.problem.fixed, motion), power(&self.problem.varying, motion));
         self.certificate
             .residual("motion_scale", (varying - 1.0).abs(), UNIT_POWER)
             .then_some((self.dissipation(motion) - fixed) / varying)
     }
 
-    /// Checks the rates of a motion. Returns the greatest jump, and the greatest distance from the dual cones relative
-    /// to it.
-    fn flow(&mut self, motion: Option<&[SpaceVelocity]>) -> Option<(f64, f64)> {
-        let Some(motion) = motion else {
-            self.certificate.fail("no motion");
-            return None;
-        };
+    /// Checks that no rate of a motion violates the flow. Returns the greatest jump, and the greatest violation relative to it.
+    fn flow(&mut self, motion: &[SpaceVelocity], violation: fn(&FrictionCone, &[f64; 3]) -> f64) -> Option<(f64, f64)> {
         let (mut largest, mut worst) = (0.0f64, 0.0f64);
         for contact in &self.problem.contacts {
             for point in &contact.outer.points {
                 let rate = jump(contact, point, motion);
                 largest = largest.max(Vec3::from(rate).norm());
-                worst = worst.max(contact.law.violation_of_flow(&rate));
+                worst = worst.max(violation(&contact.law, &rate));
             }
         }
         let speed = motion
@@ -377,7 +449,6 @@ fn jump(contact: &SpaceContact, point: &Vec3, motion: &[SpaceVelocity]) -> [f64;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::FrictionCone;
 
     /// A cube of side 1 and weight 1 on a plane with μ = 0.4, pushed along x at its centroid: it slides at λ = 0.4.
     fn cube() -> SpaceProblem {
@@ -416,6 +487,7 @@ mod tests {
             field: Some(field),
             motion: Some(motion),
             ray: None,
+            non_associated: None,
         }
     }
 

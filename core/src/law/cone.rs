@@ -64,6 +64,24 @@ impl FrictionCone {
         (self.friction * s.hypot(*t) - n) / 1.0f64.hypot(self.friction)
     }
 
+    /// Returns true if a contact without compression carries nothing, and nothing crushes it.
+    pub fn is_dry(&self) -> bool {
+        self.cohesion == 0.0 && self.tension() == 0.0 && self.compressive_strength == f64::INFINITY
+    }
+
+    /// Returns by how much a rate (n, s, t) of a gap closes it more than slip with the own dilatancy opens it.
+    pub fn violation_of_own_flow(&self, [n, s, t]: &[f64; 3]) -> f64 {
+        self.dilatancy * s.hypot(*t) - n
+    }
+
+    /// Returns the power that a force (n, s, t) of dry friction lacks from its own flow: zero if the contact opens without a
+    /// force, sticks, or slips against the greatest friction; otherwise positive.
+    pub fn idle_power(&self, force: &[f64; 3], rate: &[f64; 3]) -> f64 {
+        let slip = rate[1].hypot(rate[2]);
+        let against = self.friction * force[0] * slip + force[1] * rate[1] + force[2] * rate[2];
+        force[0] * (rate[0] - self.dilatancy * slip) + against
+    }
+
     /// Returns the greatest work of tractions of the set against a rate (n, s, t) of a gap \[m/s\], per area \[W/m²\]: at one of
     /// the two ends of the normal traction.
     pub fn dissipation(&self, [n, s, t]: &[f64; 3]) -> f64 {
@@ -90,6 +108,26 @@ mod tests {
         tensile_strength: 0.5,
         compressive_strength: 30.0,
     };
+
+    /// Sticking, opening and slip against friction leave no power; slip along the force, slip below the greatest friction, and
+    /// a force in an opening contact do.
+    #[test]
+    fn own_flow_leaves_no_power() {
+        let law = FrictionCone::dry(0.5, 0.2);
+        for (force, rate) in
+            [([2.0, 0.3, 0.4], [0.0; 3]), ([0.0; 3], [0.7, 0.1, 0.3]), ([2.0, -0.6, -0.8], [0.2 * 5.0, 3.0, 4.0])]
+        {
+            assert!(law.idle_power(&force, &rate).abs() < 1e-14 && law.violation_of_own_flow(&rate) < 1e-14);
+        }
+        for (force, rate) in [
+            ([2.0, 0.6, 0.8], [1.0, 3.0, 4.0]),
+            ([2.0, -0.3, -0.4], [1.0, 3.0, 4.0]),
+            ([2.0, 0.0, 0.0], [0.1, 0.0, 0.0]),
+        ] {
+            assert!(law.idle_power(&force, &rate) > 0.1);
+        }
+        assert!(law.violation_of_own_flow(&[0.9, 3.0, 4.0]) > 0.0);
+    }
 
     /// The dissipation is the greatest work of a fine grid of admissible tractions.
     #[test]

@@ -30,10 +30,22 @@ pub struct SpaceAnswer {
     pub self_stress: bool,
     /// True if the motion is the only one.
     pub unique: Option<bool>,
+    /// Set if each contact has the flow of its law.
+    pub non_associated: Option<SpaceNonAssociated>,
     /// Work done.
     pub counters: Counters,
     /// Notes for the user.
     pub notes: Vec<String>,
+}
+
+/// Additional results if each contact follows its law. Such collapse factors are not unique: `factor` of the answer is one at
+/// which a mechanism with the laws' own flow and an admissible field exist together.
+#[derive(Debug, Clone, Default)]
+pub struct SpaceNonAssociated {
+    /// An upper bound of all such factors: that of associated flow.
+    pub associated_factor: Option<f64>,
+    /// The motion with associated flow that proves it, scaled as `motion`.
+    pub associated_motion: Option<Vec<SpaceVelocity>>,
 }
 
 impl SpaceAnswer {

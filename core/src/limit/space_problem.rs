@@ -97,6 +97,11 @@ impl SpaceProblem {
         SpaceProblem { fixed: gather(fixed), varying: gather(varying), free, bodies, contacts, pole, length }
     }
 
+    /// Returns true if the flow of some contact is not associated.
+    pub fn non_associated(&self) -> bool {
+        !self.contacts.iter().all(|contact| contact.law.is_associated())
+    }
+
     /// Returns true if forces at the vertices represent all tractions: both bounds can meet.
     pub fn is_exact(&self) -> bool {
         self.contacts.iter().all(|contact| contact.law.has_one_tip())
