@@ -3,12 +3,13 @@
 //! [`solve`] uses an interior point method on second-order cones (`interior_point`); each contact is condensed to a
 //! 6 × 6 block of the normal equations (`stiffness`). Its iterates are repaired to exact evidence (`evidence`):
 //! forces in equilibrium inside the cones, and mechanisms inside the dual cones. [`solve_by_clarabel`] is the second
-//! route and the fallback. The certificate of `voussoir_core::space` decides the status.
+//! route and the fallback. [`solve_with_own_flow`] finds collapse states with the flow rules of the laws (`joints`). The certificate of `voussoir_core::space` decides the status.
 
 mod by_clarabel;
 mod cone;
 mod evidence;
 mod interior_point;
+mod joints;
 mod limit_cones;
 mod program;
 mod settings;
@@ -18,4 +19,5 @@ mod stiffness;
 mod tests;
 mod uniqueness;
 
+pub use self::joints::answer as solve_with_own_flow;
 pub use self::solve::{solve, solve_by_clarabel};

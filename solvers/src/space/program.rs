@@ -184,6 +184,11 @@ impl Program {
         self.differences(&y.iter().zip(&self.offsets).map(less).collect::<Vec<_>>())
     }
 
+    /// Returns forces (n, s, t) of all points in units of the program.
+    pub fn scaled(&self, field: &[Vec<[f64; 3]>]) -> Vec<[f64; 3]> {
+        field.iter().flatten().map(|force| force.map(|f| f / self.force)).collect()
+    }
+
     /// Returns differences of forces (n, s, t) of all points \[N\], contact by contact.
     pub fn differences(&self, y: &[Cone]) -> Vec<Vec<[f64; 3]>> {
         let force = |member: &Member, y: &Cone| -> [f64; 3] { (member.force(y) * self.force).into() };

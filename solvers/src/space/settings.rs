@@ -78,3 +78,94 @@ pub const SETTINGS: SpaceSettings = SpaceSettings {
     corrections: 6,
     repairs: 12,
 };
+
+/// Numbers of the steps of elastic joints. Forces are relative to the sum of the loads; the power of a step is divided by the power per
+/// unit of the load factor before joints slip.
+#[derive(Debug, Clone, Copy)]
+pub struct JointSettings {
+    /// Tangential over normal stiffness of the courses that are tried.
+    pub ratios: [f64; 3],
+    /// Least stiffness of a point, relative to the mean.
+    pub softest: f64,
+    /// Relative distance of the factors of two states that differ.
+    pub differ: f64,
+    /// Greatest number of courses that start at a lower state.
+    pub rounds: usize,
+    /// Jump, relative to the greatest, of a point that neither slips nor opens.
+    pub at_rest: f64,
+    /// Unbalanced force of a step with the law's own friction.
+    pub balanced: f64,
+    /// The same if iterations reduce it no further.
+    pub nearly: f64,
+    /// The same with fictitious cohesion: such steps lead to a state but prove nothing.
+    pub lagged: f64,
+    /// Error of the flow, relative to the greatest jump, and power left, also relative to the loads. The certificate allows 1e-12.
+    pub settled: f64,
+    /// Increase of pivots under dead load: a body may have no contact yet.
+    pub shift: f64,
+    /// Increase of pivots with fictitious cohesion, where sliding joints leave no stiffness.
+    pub regular: f64,
+    /// Slope at the end of a line search, relative to that at its start.
+    pub slope: f64,
+    /// Fictitious normal force, relative to the loads, with which joints hardly slip.
+    pub endless: f64,
+    /// Share of the new normal force in the next fictitious cohesion.
+    pub relaxed: f64,
+    /// Power, relative to the norm of the live load, of the step that measures the compliance.
+    pub probe: f64,
+    /// Power of the first step.
+    pub first: f64,
+    /// Power of the greatest step: beyond, rounding of the jumps shows in the forces.
+    pub greatest: f64,
+    /// Power below which no step is tried.
+    pub least: f64,
+    /// Ratio of a step to the one before.
+    pub growth: f64,
+    /// Share of a step that is tried after a failure.
+    pub shorter: f64,
+    /// Iterations of a step with the law's own friction.
+    pub newton: usize,
+    /// Iterations of a step with fictitious cohesion.
+    pub convex: usize,
+    /// Trials of a line search.
+    pub search: usize,
+    /// Steps under dead load with fictitious cohesion.
+    pub passes: usize,
+    /// Greatest number of steps with fictitious cohesion before the law's own friction is tried again.
+    pub longest: usize,
+    /// Steps whose factors are reported if the course does not settle.
+    pub reported: usize,
+    /// Greatest number of iterations of a course.
+    pub iterations: u64,
+}
+
+/// The numbers in use.
+pub const JOINTS: JointSettings = JointSettings {
+    ratios: [1e-4, 0.1, 1.0],
+    softest: 1e-2,
+    differ: 1e-9,
+    rounds: 8,
+    at_rest: 1e-10,
+    balanced: 1e-14,
+    nearly: 1e-12,
+    lagged: 1e-10,
+    settled: 1e-13,
+    shift: 1e-12,
+    regular: 1e-9,
+    slope: 0.3,
+    endless: 1e3,
+    relaxed: 0.5,
+    probe: 1e-3,
+    first: 0.01,
+    greatest: 1e3,
+    least: 1e-8,
+    growth: 1.6,
+    shorter: 0.25,
+    newton: 15,
+    convex: 60,
+    search: 30,
+    passes: 60,
+    longest: 16,
+    reported: 20,
+    iterations: 1500,
+};

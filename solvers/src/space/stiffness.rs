@@ -9,7 +9,7 @@ use super::settings::SETTINGS;
 use voussoir_core::linear::{BlockCholesky, elimination_order};
 
 /// A 6 × 6 matrix by rows.
-type Block = [[f64; 6]; 6];
+pub type Block = [[f64; 6]; 6];
 
 /// Start of a 3 × 3 block in the factor, and the distance between its columns.
 type Place = (usize, usize);
@@ -137,7 +137,7 @@ fn condensed<'a>(program: &Program, member: &Member, roots: &mut impl Iterator<I
 
 impl Member {
     /// Returns the maps from a wrench of the contact to the wrenches of plus and minus.
-    fn moves(&self) -> [Block; 2] {
+    pub fn moves(&self) -> [Block; 2] {
         let of = |side: usize| {
             let sign = [1.0, -1.0][side];
             let mut map = [[0.0; 6]; 6];
@@ -156,7 +156,7 @@ impl Member {
 }
 
 /// Returns a b.
-fn times(a: &Block, b: &Block) -> Block {
+pub fn times(a: &Block, b: &Block) -> Block {
     let mut out = [[0.0; 6]; 6];
     for (out, a) in out.iter_mut().zip(a) {
         for (a, b) in a.iter().zip(b) {
@@ -169,7 +169,7 @@ fn times(a: &Block, b: &Block) -> Block {
 }
 
 /// Returns a bᵀ.
-fn times_transposed(a: &Block, b: &Block) -> Block {
+pub fn times_transposed(a: &Block, b: &Block) -> Block {
     a.map(|a| std::array::from_fn(|j| (0..6).map(|k| a[k] * b[j][k]).sum()))
 }
 

@@ -3,6 +3,7 @@
 use super::sequence::{Sequence, sequence};
 use crate::limit::associated::{NO_ENVELOPES, associated, associated_bound, settled_by_association};
 use crate::limit::settlement::settle;
+use crate::space::solve_with_own_flow;
 use voussoir_core::law::FlowRule;
 use voussoir_core::limit::{
     LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, LowerProof, LowerProofKind, SettlementAnswer, Status,
@@ -10,6 +11,7 @@ use voussoir_core::limit::{
 };
 use voussoir_core::model::Wrenches;
 use voussoir_core::plugin::{Capability, Card, Keys, PluginKind};
+use voussoir_core::space::{SpaceAnswer, SpaceProblem};
 
 /// Sequential linear programming.
 #[derive(Debug, Clone, Default, Keys)]
@@ -20,6 +22,7 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::LimitSolver,
         tag: "limit_sequential",
         summary: "a load factor with the flow rules of the laws, by sequential linear programs with fictitious cohesion",
+        provides: &[Capability::SPACE],
         requires: &[&[Capability::FACETS], &[Capability::RIGID_LIMIT]],
         sources: &["Gilbert, Casapulla & Ahmed 2006, Computers & Structures 84"],
         file: file!(),
@@ -71,6 +74,10 @@ impl LimitSolver for LimitSequential {
 
     fn settle(&self, problem: &LimitProblem, loads: &Wrenches, openings: &[[f64; 3]]) -> SettlementAnswer {
         settle(problem, loads, openings, FlowRule::NonAssociated)
+    }
+
+    fn solve_space(&self, problem: &SpaceProblem, question: LimitQuestion) -> Option<SpaceAnswer> {
+        Some(solve_with_own_flow(problem, question))
     }
 
     fn refuses(&self, problem: &LimitProblem) -> Option<String> {

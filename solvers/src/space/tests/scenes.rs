@@ -86,6 +86,7 @@ pub fn certified(problem: &SpaceProblem, answer: &SpaceAnswer, question: LimitQu
         field: answer.field.as_ref(),
         motion: answer.motion.as_deref(),
         ray: answer.ray.as_ref(),
+        non_associated: answer.non_associated.as_ref(),
     };
     certify_space(problem, &claim, GAP)
 }

@@ -1,0 +1,142 @@
+//! The answer with the laws' own flow: the associated bound, and the least state that the courses find.
+
+use super::course::{End, State, course, live_load};
+use super::least::least;
+use super::point::{Contact, Spring};
+use super::step::Joints;
+use crate::space::cone::Cone;
+use crate::space::program::{Program, Side};
+use crate::space::settings::JOINTS;
+use crate::space::solve::solve;
+use voussoir_core::limit::{Counters, LimitQuestion, Status};
+use voussoir_core::space::{
+    SpaceAnswer, SpaceContact, SpaceField, SpaceNonAssociated, SpaceProblem, SpaceVelocity, power,
+};
+
+const STRENGTHS: &str = "joints with cohesion, tension or crushing are read with associated flow";
+
+/// Answers a question with the laws' own flow, without panic. The associated answer is the bound; it remains if no flow differs, no
+/// load varies, the dead load is not carried, or some joint is not dry. For each ratio of the stiffnesses one course of elastic joints
+/// searches a collapse state; the least one is the answer.
+pub fn answer(problem: &SpaceProblem, question: LimitQuestion) -> SpaceAnswer {
+    let mut associated = solve(problem, question);
+    let LimitQuestion::Collapse { start, max } = question else { return associated };
+    if !problem.non_associated() || !matches!(associated.status, Status::Collapse | Status::Unbounded | Status::Open) {
+        return associated;
+    }
+    if !problem.contacts.iter().all(|contact| contact.law.is_dry()) {
+        associated.notes.push(STRENGTHS.into());
+        return associated;
+    }
+    let program = Program::new(problem, start, Side::Inner);
+    let (mut states, mut notes): (Vec<Found>, Vec<String>) = (Vec::new(), Vec::new());
+    let mut counters = std::mem::take(&mut associated.counters);
+    for ratio in JOINTS.ratios {
+        let mut joints = Joints::new(&program, springs(problem, ratio));
+        match course(&mut joints) {
+            End::Settled(state) => states.push(lowest(problem, &mut joints, state, &mut counters)),
+            End::Wanders([least, greatest], excess) => {
+                let [least, greatest] = [least, greatest].map(|lambda| start + lambda * program.unit);
+                notes.push(format!(
+                    "elastic joints with k_t/k_n = {ratio}: no state was reached; the last factors are between {least:.6} and \
+                     {greatest:.6}, which is no bound, with shear forces up to {excess:.1e} of the loads beyond friction"
+                ));
+            }
+            End::Fell => notes.push(format!(
+                "elastic joints with k_t/k_n = {ratio}: no state under the dead load was found from zero stress"
+            )),
+        }
+        *counters.entry("joint_iterations".into()).or_default() += joints.iterations;
+    }
+    let collapses = associated.status == Status::Collapse;
+    let own = SpaceNonAssociated {
+        associated_factor: associated.factor.filter(|_| collapses),
+        associated_motion: associated.motion.filter(|_| collapses),
+    };
+    states.sort_by(|a, b| a.factor.total_cmp(&b.factor));
+    if let (Some(least), Some(greatest)) = (states.first(), states.last())
+        && greatest.factor - least.factor > JOINTS.differ * greatest.factor.abs()
+    {
+        let (least, greatest) = (least.factor, greatest.factor);
+        notes.push(format!("collapse states were found from {least:.9} to {greatest:.9}; the least is given"));
+    }
+    let answer = SpaceAnswer { non_associated: Some(own), counters, ..SpaceAnswer::default() };
+    match states.into_iter().next().filter(|state| state.factor <= max) {
+        Some(Found { factor, field, motion }) => SpaceAnswer {
+            status: Status::Collapse,
+            factor: Some(factor),
+            field_factor: factor,
+            field: Some(field),
+            motion: Some(motion),
+            notes,
+            ..answer
+        },
+        None => {
+            notes.push("no collapse state with the laws' own flow was found".into());
+            SpaceAnswer { status: Status::Open, notes, ..answer }
+        }
+    }
+}
+
+/// A state in the units of the problem.
+struct Found {
+    factor: f64,
+    field: SpaceField,
+    motion: Vec<SpaceVelocity>,
+}
+
+/// Returns the lowest state that is reached from a state: the least one of its mechanism, then of the mechanism of joints that are
+/// loaded from there, and so on.
+fn lowest(problem: &SpaceProblem, joints: &mut Joints, mut state: State, counters: &mut Counters) -> Found {
+    let mut lowest = found(problem, joints, &state, counters);
+    for _ in 0..JOINTS.rounds {
+        let forces = joints.program.scaled(&lowest.field);
+        joints.contacts = forces.into_iter().map(|force| Contact { force, gap: 0.0 }).collect();
+        let lambda = (lowest.factor - joints.program.start) / joints.program.unit;
+        let End::Settled(next) = live_load(joints, lambda) else { break };
+        state = next;
+        let next = found(problem, joints, &state, counters);
+        let lower = next.factor < lowest.factor - JOINTS.differ * lowest.factor.abs();
+        if next.factor <= lowest.factor {
+            lowest = next;
+        }
+        if !lower {
+            break;
+        }
+    }
+    lowest
+}
+
+/// Returns the state of the least factor with the mechanism of a state.
+fn found(problem: &SpaceProblem, joints: &Joints, state: &State, counters: &mut Counters) -> Found {
+    let program = joints.program;
+    let mut motion = program.motion(&state.motion);
+    let unit = power(&problem.varying, &motion);
+    motion.iter_mut().flatten().for_each(|v| *v /= unit);
+    let factor = program.start + state.lambda * program.unit;
+    let least = least(problem, solve, (program.start, factor), &joints.jumps(&state.motion), counters);
+    let (factor, field) = least.unwrap_or_else(|| (factor, program.differences(&weighted(program, &state.forces))));
+    Found { factor, field, motion }
+}
+
+/// Returns y of all points for forces (n, s, t).
+fn weighted(program: &Program, forces: &[[f64; 3]]) -> Vec<Cone> {
+    let mut forces = forces.to_vec();
+    for member in &program.members {
+        forces[member.points.clone()].iter_mut().for_each(|y| y[0] /= member.strengths[0]);
+    }
+    forces
+}
+
+/// Returns springs in proportion to the areas of the points, with the mean normal stiffness of one.
+fn springs(problem: &SpaceProblem, ratio: f64) -> Vec<Spring> {
+    let points =
+        || problem.contacts.iter().flat_map(|contact| contact.inner.areas.iter().map(move |area| (contact, area)));
+    let mean = points().map(|(_, area)| area).sum::<f64>() / points().count().max(1) as f64;
+    let spring = |(contact, area): (&SpaceContact, &f64)| {
+        // A point without area carries too.
+        let normal = if mean > 0.0 { (area / mean).max(JOINTS.softest) } else { 1.0 };
+        Spring { stiffness: [normal, ratio * normal], dilatancy: contact.law.dilatancy, friction: contact.law.friction }
+    };
+    points().map(spring).collect()
+}

@@ -1,0 +1,14 @@
+//! Collapse in space with the laws' own flow, found by rigid blocks on elastic joints.
+//!
+//! The dead load is applied at zero stress, then the power of the live load grows in steps (`course`). Each step is one implicit step
+//! of joints with friction, solved by semismooth Newton iterations (`step`) on the response of single points (`point`). As steps grow, the
+//! elastic deformation becomes a vanishing share of them; the forces become constant and the motion a mechanism. That end is a collapse
+//! state with the laws' own flow. Its mechanism may have states at lower factors (`least`).
+
+mod answer;
+mod course;
+mod least;
+mod point;
+mod step;
+
+pub use self::answer::answer;
