@@ -170,7 +170,7 @@ fn space(friction: f64, law: &str, gravity: &str, load: &str) -> String {
 }
 
 /// Every forged result in space is found: collapse by an acceleration and by a pressure, with flow that is read as
-/// associated, unbounded, no equilibrium, and bounds by points.
+/// associated, unbounded, no equilibrium, bounds by points, and flow of the laws.
 #[test]
 fn space_results() {
     let push = "{ kind = \"body\", acceleration = [9.81, 0.0, 0.0] }";
@@ -184,6 +184,8 @@ fn space_results() {
     ] {
         forged(name, &space(friction, law, gravity, load));
     }
+    let own = space(0.5, "coulomb", "9.81", push) + "[solver]\nsolver = \"limit_sequential\"\n";
+    forged("own flow in space", &own);
     let mortar = "mohr_coulomb\"\ncohesion = 2e3\ntensile_strength = 1e3\ncompressive_strength = \"2 MPa";
     forged("strengths in space", &space(0.5, mortar, "9.81", push));
 }

@@ -278,9 +278,9 @@ fn results_are_verified_and_changes_found() {
             |r| r.load_factor = r.load_factor.map(|f| f * 0.999),
             |r| r.flow_read_as = Some("associated".into()),
             |r| r.non_associated.associated_load_factor = r.non_associated.associated_load_factor.map(|f| f * 1.001),
-            |r| r.non_associated.associated_motion = None,
+            |r| r.proof.associated_motion = None,
             |r| r.proof.field.as_mut().expect("a field")[0].force[0] += 1.0,
-            |r| r.proof.motion = r.non_associated.associated_motion.clone(),
+            |r| r.proof.motion = r.proof.associated_motion.clone(),
         ];
         for (index, change) in changes.iter().enumerate() {
             let mut changed = results.clone();

@@ -265,8 +265,8 @@ fn verify_finds_each_violation_of_limit_analysis() {
         ("motion_scale:", &thin, |r| slower(&mut r.proof.motion, 1.0 + 1e-6)),
         ("complementarity:", &slides, |r| forces(r).iter_mut().for_each(|entry| entry.force[0] += 1e4)),
         ("above_associated:", &slides, |r| r.non_associated.associated_load_factor = Some(1e-3)),
-        ("associated_flow:", &slides, |r| speeds(&mut r.non_associated.associated_motion)[1].velocity[1] -= 1e-3),
-        ("associated_motion_scale:", &slides, |r| slower(&mut r.non_associated.associated_motion, 1.0 + 1e-6)),
+        ("associated_flow:", &slides, |r| speeds(&mut r.proof.associated_motion)[1].velocity[1] -= 1e-3),
+        ("associated_motion_scale:", &slides, |r| slower(&mut r.proof.associated_motion, 1.0 + 1e-6)),
         ("associated_gap:", &slides, |r| {
             let factor = &mut r.non_associated.associated_load_factor;
             *factor = factor.map(|f| f * (1.0 + 1e-6));

@@ -52,6 +52,23 @@ fn a_corner_has_the_published_factors() {
     }
 }
 
+/// The corner with slip that does not open the joints collapses below the associated factor, which stays beside it. A mirrored scene
+/// has the same load.
+#[test]
+fn a_corner_collapses_earlier_with_its_own_flow() {
+    let own = |push: [f64; 3]| {
+        let text = pushed(CORNER, 0.5, push).replace("coulomb_associated", "coulomb");
+        answered(&(text + "[solver]\nsolver = \"limit_sequential\"\n"))
+    };
+    let along = own([-1.0, 0.0, 0.0]);
+    assert_eq!((along.status, along.flow_read_as.clone()), (Status::Collapse, None), "{:?}", along.notes);
+    let associated = along.non_associated.associated_load_factor.expect("an associated factor");
+    assert_close(associated, 0.435121373, 2e-8);
+    let least = along.load_factor.expect("a factor");
+    assert!(least < associated, "{least} {associated}");
+    assert_close(own([0.0, -1.0, 0.0]).load_factor.expect("a factor"), least, 1e-6);
+}
+
 /// Mortar in space: with tension and without crushing a wall overturns at t/H (1 + f_t A/W), and the bounds meet; with crushing
 /// they enclose the strip W/f_c that crushes, and `verify` proves them again.
 #[test]

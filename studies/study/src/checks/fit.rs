@@ -188,8 +188,7 @@ impl Fit<'_> {
     }
 
     fn motions(&mut self, result: &CaseResult) {
-        let motions =
-            [("motion", &result.proof.motion), ("associated_motion", &result.non_associated.associated_motion)];
+        let motions = [("motion", &result.proof.motion), ("associated_motion", &result.proof.associated_motion)];
         for (what, motion) in motions {
             let Some(motion) = motion else { continue };
             self.bodies(what, motion.iter().map(|entry| &entry.body));

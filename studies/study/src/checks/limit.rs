@@ -33,7 +33,7 @@ impl Stored {
             field: forces(result.proof.field.as_deref())?,
             ray: forces(result.proof.ray.as_deref())?,
             motion: motions(result.proof.motion.as_deref())?,
-            associated_motion: motions(result.non_associated.associated_motion.as_deref())?,
+            associated_motion: motions(result.proof.associated_motion.as_deref())?,
         })
     }
 }

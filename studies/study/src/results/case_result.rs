@@ -1,7 +1,7 @@
 //! The result of a case, as stored in `results.json`.
 
 use super::carried::CarriedLoad;
-use super::entries::{DisplacementEntry, EventEntry, LoadEntry, MotionEntry, StateEntry, YieldedEntry};
+use super::entries::{DisplacementEntry, EventEntry, LoadEntry, StateEntry, YieldedEntry};
 use super::limit_points::{BranchEntry, FollowedTo, LimitPointEntry, StabilityEntry};
 use super::load_factor_error::LoadFactorError;
 use super::output_entry::OutputEntry;
@@ -47,9 +47,6 @@ pub struct CaseLabel {
 pub struct NonAssociatedAnswer {
     /// The factor with associated flow, if the solver did not use associated flow.
     pub associated_load_factor: Option<f64>,
-    /// Velocities of the mechanism that proves `associated_load_factor`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub associated_motion: Option<Vec<MotionEntry>>,
     /// The evidence for the lower bound with the laws' own flow, with the data that `verify` needs to check it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lower_proof: Option<LowerProof>,
@@ -252,7 +249,6 @@ impl CaseResult {
         let ray = self.proof.ray.take().filter(|_| self.status == Status::NoEquilibrium);
         self.proof = ProofFields { field_factor: self.proof.field_factor, ray, ..ProofFields::default() };
         self.carried.joints.clear();
-        self.non_associated.associated_motion = None;
         self.non_associated.lower_proof.iter_mut().for_each(|proof| proof.steps.clear());
         (self.path.displacements, self.path.joint_states) = (None, None);
         (self.path.joint_time_step, self.path.joint_gaps) = (None, None);

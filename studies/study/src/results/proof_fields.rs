@@ -18,6 +18,8 @@ pub struct ProofFields {
     pub fill: Vec<FillEntry>,
     /// Velocities of the mechanism.
     pub motion: Option<Vec<MotionEntry>>,
+    /// Velocities of the mechanism that proves `associated_load_factor`.
+    pub associated_motion: Option<Vec<MotionEntry>>,
     /// For `unbounded`: contact forces that balance the live load alone. Empty for supports that blocks cannot follow.
     pub ray: Option<Vec<FieldEntry>>,
     /// On arches: the point where the resultant crosses each joint \[m\]; `null` if a joint is not loaded.
@@ -33,6 +35,8 @@ pub struct SpaceProof {
     pub field: Option<Vec<SpaceFieldEntry>>,
     /// Velocities of the mechanism.
     pub motion: Option<Vec<SpaceMotionEntry>>,
+    /// Velocities of the mechanism that proves `associated_load_factor`.
+    pub associated_motion: Option<Vec<SpaceMotionEntry>>,
     /// For `unbounded`: contact forces that balance the live load alone.
     pub ray: Option<Vec<SpaceFieldEntry>>,
 }
@@ -129,6 +133,8 @@ struct StoredProof {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     fill: Vec<FillEntry>,
     motion: Option<Vec<StoredVelocity>>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    associated_motion: Option<Vec<StoredVelocity>>,
     ray: Option<Vec<StoredForce>>,
     thrust_line: Option<Vec<Option<[f64; 2]>>>,
 }
@@ -167,20 +173,21 @@ fn read<S, T>(list: Option<Vec<S>>, one: impl Fn(S) -> Result<T, String>) -> Res
 
 impl From<ProofFields> for StoredProof {
     fn from(proof: ProofFields) -> Self {
-        let ProofFields { field_factor, field, fill, motion, ray, thrust_line, space } = proof;
-        let (field, motion, ray) = match space {
+        let ProofFields { field_factor, field, fill, motion, associated_motion, ray, thrust_line, space } = proof;
+        let (field, motion, associated_motion, ray) = match space {
             None => {
                 let force = |own: FieldEntry| StoredForce::of(own.joint, own.point, own.force);
                 let velocity = |own: MotionEntry| StoredVelocity::of(own.body, own.velocity);
-                (each(field, force), each(motion, velocity), each(ray, force))
+                (each(field, force), each(motion, velocity), each(associated_motion, velocity), each(ray, force))
             }
             Some(space) => {
                 let force = |own: SpaceFieldEntry| StoredForce::of(own.joint, own.point, own.force);
                 let velocity = |own: SpaceMotionEntry| StoredVelocity::of(own.body, own.velocity);
-                (each(space.field, force), each(space.motion, velocity), each(space.ray, force))
+                let associated = each(space.associated_motion, velocity);
+                (each(space.field, force), each(space.motion, velocity), associated, each(space.ray, force))
             }
         };
-        StoredProof { field_factor, field, fill, motion, ray, thrust_line }
+        StoredProof { field_factor, field, fill, motion, associated_motion, ray, thrust_line }
     }
 }
 
@@ -188,9 +195,10 @@ impl TryFrom<StoredProof> for ProofFields {
     type Error = String;
 
     fn try_from(stored: StoredProof) -> Result<Self, String> {
-        let StoredProof { field_factor, field, fill, motion, ray, thrust_line } = stored;
+        let StoredProof { field_factor, field, fill, motion, associated_motion, ray, thrust_line } = stored;
         let forces = field.iter().chain(&ray).flatten().any(|entry| entry.force.count == 3);
-        let in_space = forces || motion.iter().flatten().any(|entry| entry.velocity.count == 6);
+        let in_space =
+            forces || motion.iter().chain(&associated_motion).flatten().any(|entry| entry.velocity.count == 6);
         let plane = ProofFields { field_factor, fill, thrust_line, ..ProofFields::default() };
         if in_space {
             let force =
@@ -198,12 +206,17 @@ impl TryFrom<StoredProof> for ProofFields {
             let velocity =
                 |own: StoredVelocity| own.parts().map(|(body, velocity)| SpaceMotionEntry { body, velocity });
             let (field, motion, ray) = (read(field, force)?, read(motion, velocity)?, read(ray, force)?);
-            return Ok(ProofFields { space: Some(Box::new(SpaceProof { field, motion, ray })), ..plane });
+            let associated_motion = read(associated_motion, velocity)?;
+            return Ok(ProofFields {
+                space: Some(Box::new(SpaceProof { field, motion, associated_motion, ray })),
+                ..plane
+            });
         }
         let force = |own: StoredForce| own.parts().map(|(joint, point, force)| FieldEntry { joint, point, force });
         let velocity = |own: StoredVelocity| own.parts().map(|(body, velocity)| MotionEntry { body, velocity });
         let (field, motion, ray) = (read(field, force)?, read(motion, velocity)?, read(ray, force)?);
-        Ok(ProofFields { field, motion, ray, ..plane })
+        let associated_motion = read(associated_motion, velocity)?;
+        Ok(ProofFields { field, motion, associated_motion, ray, ..plane })
     }
 }
 
@@ -214,7 +227,12 @@ mod tests {
     fn space() -> ProofFields {
         let force = SpaceFieldEntry { joint: 3, point: [1.0, 2.0, 3.0], force: [4.0, 5.0, 6.0] };
         let motion = SpaceMotionEntry { body: "b".into(), velocity: [1.0, 2.0, 3.0, 4.0, 5.0, 6.0] };
-        let space = SpaceProof { field: Some(vec![force]), motion: Some(vec![motion]), ray: None };
+        let space = SpaceProof {
+            field: Some(vec![force]),
+            motion: Some(vec![motion.clone()]),
+            associated_motion: Some(vec![motion]),
+            ray: None,
+        };
         ProofFields { field_factor: Some(0.5), space: Some(Box::new(space)), ..ProofFields::default() }
     }
 

@@ -104,11 +104,11 @@ pub(super) fn certified(
             field: field.as_deref().map(field_entries),
             ray: ray.as_deref().map(field_entries),
             motion: motion.map(|motion| motion_entries(assembly, motion)),
+            associated_motion: associated_motion.map(|motion| motion_entries(assembly, motion)),
             space: None,
         },
         non_associated: NonAssociatedAnswer {
             associated_load_factor: own.and_then(|own| own.associated_factor).filter(|_| believed),
-            associated_motion: associated_motion.map(|motion| motion_entries(assembly, motion)),
             bracket: own.map(|own| own.bracket.clone()).unwrap_or_default(),
             lower_proof: solved.non_associated.and_then(|own| own.lower_proof),
         },

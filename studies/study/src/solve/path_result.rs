@@ -168,6 +168,7 @@ pub(super) fn path_result(
             field: Some(field_entries(&field)),
             ray: solved.ray.as_ref().map(|ray| field_entries(&contact_forces(assembly, problem, ray))),
             motion: motion.map(|motion| motion_entries(assembly, motion)),
+            associated_motion: None,
             space: None,
         },
         certificate,

@@ -4,7 +4,7 @@ use super::auto::space_solvers;
 use super::case_input::CaseInput;
 use super::limit::{READ_AS_ASSOCIATED, ask, record_stages, start_is_open};
 use super::ours::is_ours;
-use crate::results::{CaseResult, ProofFields, SpaceFieldEntry, SpaceMotionEntry, SpaceProof};
+use crate::results::{CaseResult, NonAssociatedAnswer, ProofFields, SpaceFieldEntry, SpaceMotionEntry, SpaceProof};
 use crate::study::SpaceCase;
 use voussoir_core::limit::{Counters, LimitQuestion, Status};
 use voussoir_core::model::{Stage, Target};
@@ -43,9 +43,9 @@ pub(crate) fn solve_in_space(input: &CaseInput, space: &SpaceCase) -> CaseResult
         }
         record_stages(&mut done, input.stages, index, (&result, Vec::new()));
         if result.status != Status::Stands || index + 1 == input.stages.len() {
-            let flow = (result.status != Status::Stalled && space.non_associated()).then(|| "associated".to_string());
-            result.notes.extend(flow.iter().map(|_| READ_AS_ASSOCIATED.to_string()));
-            return CaseResult { stages: done, counters, flow_read_as: flow, ..result };
+            let read = result.flow_read_as.iter().map(|_| READ_AS_ASSOCIATED.to_string());
+            result.notes.extend(read);
+            return CaseResult { stages: done, counters, ..result };
         }
     }
     CaseResult::stalled("the study has no stage")
@@ -130,6 +130,7 @@ fn certified(
         field: answer.field.as_ref(),
         motion: answer.motion.as_deref(),
         ray: answer.ray.as_ref(),
+        non_associated: answer.non_associated.as_ref(),
     };
     let SpaceVerdict { certificate, status, bounds, greatest } =
         certify_space(problem, &claim, gap_in_space(input.settings.tolerance));
@@ -137,6 +138,8 @@ fn certified(
     let field = answer.field.filter(|_| shows(&[Status::Stands, Status::Collapse, Status::Unbounded, Status::Open]));
     let motion = answer.motion.filter(|_| shows(&[Status::Collapse, Status::NoEquilibrium, Status::Open]));
     let ray = answer.ray.filter(|_| shows(&[Status::Unbounded]));
+    let own = answer.non_associated.filter(|_| shows(&[Status::Collapse, Status::Open]));
+    let read = status != Status::Stalled && space.non_associated() && own.is_none();
     let mut notes = answer.notes;
     if answer.self_stress && status == Status::Unbounded && is_ours(tag) {
         notes.push(SELF_STRESS.to_string());
@@ -162,9 +165,18 @@ fn certified(
             space: Some(Box::new(SpaceProof {
                 field: field.map(|field| field_entries(problem, &field)),
                 motion: motion.map(|motion| motion_entries(space, problem, &motion)),
+                associated_motion: own
+                    .as_ref()
+                    .and_then(|own| own.associated_motion.as_ref())
+                    .map(|motion| motion_entries(space, problem, motion)),
                 ray: ray.map(|ray| field_entries(problem, &ray)),
             })),
             ..ProofFields::default()
+        },
+        flow_read_as: read.then(|| "associated".into()),
+        non_associated: NonAssociatedAnswer {
+            associated_load_factor: own.and_then(|own| own.associated_factor),
+            ..NonAssociatedAnswer::default()
         },
         certificate,
         counters: answer.counters,
@@ -210,6 +222,7 @@ fn moved_pole(velocity: &SpaceVelocity, arm: &Vec3) -> SpaceVelocity {
 pub(crate) struct StoredInSpace {
     pub field: Option<SpaceField>,
     pub motion: Option<Vec<SpaceVelocity>>,
+    pub associated_motion: Option<Vec<SpaceVelocity>>,
     pub ray: Option<SpaceField>,
 }
 
@@ -219,8 +232,16 @@ impl StoredInSpace {
         let forces = |what: &str, entries: &Option<Vec<SpaceFieldEntry>>| {
             entries.as_ref().map(|entries| read_field(problem, what, entries)).transpose()
         };
-        let motion = proof.motion.as_ref().map(|entries| read_motion(space, problem, entries));
-        Ok(StoredInSpace { field: forces("field", &proof.field)?, motion, ray: forces("ray", &proof.ray)? })
+        let motion = |entries: &Option<Vec<SpaceMotionEntry>>| {
+            entries.as_ref().map(|entries| read_motion(space, problem, entries))
+        };
+        let (motion, associated_motion) = (motion(&proof.motion), motion(&proof.associated_motion));
+        Ok(StoredInSpace {
+            field: forces("field", &proof.field)?,
+            motion,
+            associated_motion,
+            ray: forces("ray", &proof.ray)?,
+        })
     }
 }
 
