@@ -578,6 +578,41 @@ mod tests {
         assert_ne!(certify_space(&problem, &forged, 1e-8).status, Status::Unbounded);
     }
 
+    /// With its own flow the cube slides without opening, and the associated slip proves the bound beside it. Changed forces, motions and
+    /// bounds are refused, and so is the field alone as a lower bound.
+    #[test]
+    fn a_state_with_its_own_flow_is_certified() {
+        const LEVEL: [SpaceVelocity; 1] = [[1.0, 0.0, 0.0, 0.0, 0.0, 0.0]];
+        let mut problem = cube();
+        problem.contacts[0].law = FrictionCone::dry(0.4, 0.0);
+        let forces = forces();
+        let own = |factor, motion: Option<SpaceVelocity>| SpaceNonAssociated {
+            associated_factor: factor,
+            associated_motion: motion.map(|motion| vec![motion]),
+        };
+        let honest = own(Some(0.4), Some(SLIP[0]));
+        fn state<'a>(field: &'a SpaceField, own: &'a SpaceNonAssociated) -> SpaceClaim<'a> {
+            SpaceClaim { non_associated: Some(own), ..claim(field, &LEVEL) }
+        }
+        let verdict = certify_space(&problem, &state(&forces, &honest), 1e-8);
+        assert_eq!((verdict.status, verdict.greatest), (Status::Collapse, Greatest::Open), "{:?}", verdict.certificate);
+        assert_eq!(verdict.bounds, [Some(0.0), Some(0.4)]);
+        for forged in [own(Some(0.39), Some(SLIP[0])), own(Some(0.4), Some(LEVEL[0])), own(Some(0.4), None)] {
+            assert_ne!(certify_space(&problem, &state(&forces, &forged), 1e-8).status, Status::Collapse);
+        }
+        for k in [1, 2, 3, 4, 5] {
+            let mut motion = LEVEL;
+            motion[0][k] += 1e-5;
+            let forged = SpaceClaim { motion: Some(&motion), ..state(&forces, &honest) };
+            assert_eq!(certify_space(&problem, &forged, 1e-8).status, Status::Open, "{k}");
+        }
+        // A field below friction with the same motion is a state that does not move.
+        let low = vec![[0.2, 0.3, 0.3, 0.2].map(|n| [n, -0.05, 0.0]).to_vec()];
+        let idle = SpaceClaim { factor: Some(0.2), field_factor: 0.2, ..state(&low, &honest) };
+        let verdict = certify_space(&problem, &idle, 1e-8);
+        assert_eq!((verdict.status, verdict.bounds), (Status::Open, [None, Some(0.4)]));
+    }
+
     /// Evidence of the wrong size and numbers that are not finite are refused without a panic.
     #[test]
     fn evidence_that_does_not_fit_is_refused() {
