@@ -84,7 +84,7 @@ pub const SETTINGS: SpaceSettings = SpaceSettings {
 #[derive(Debug, Clone, Copy)]
 pub struct JointSettings {
     /// Tangential over normal stiffness of the courses that are tried.
-    pub ratios: [f64; 3],
+    pub ratios: [f64; 4],
     /// Least stiffness of a point, relative to the mean.
     pub softest: f64,
     /// Relative distance of the factors of two states that differ.
@@ -141,7 +141,7 @@ pub struct JointSettings {
 
 /// The numbers in use.
 pub const JOINTS: JointSettings = JointSettings {
-    ratios: [1e-4, 0.1, 1.0],
+    ratios: [1e-4, 0.1, 0.3, 1.0],
     softest: 1e-2,
     differ: 1e-9,
     rounds: 8,
@@ -167,5 +167,5 @@ pub const JOINTS: JointSettings = JointSettings {
     passes: 60,
     longest: 16,
     reported: 20,
-    iterations: 1500,
+    iterations: 1000,
 };

@@ -3,7 +3,7 @@
 use super::sequence::{Sequence, sequence};
 use crate::limit::associated::{NO_ENVELOPES, associated, associated_bound, settled_by_association};
 use crate::limit::settlement::settle;
-use crate::space::solve_with_own_flow;
+use crate::space::{solve, solve_with_own_flow};
 use voussoir_core::law::FlowRule;
 use voussoir_core::limit::{
     LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, LowerProof, LowerProofKind, SettlementAnswer, Status,
@@ -77,7 +77,7 @@ impl LimitSolver for LimitSequential {
     }
 
     fn solve_space(&self, problem: &SpaceProblem, question: LimitQuestion) -> Option<SpaceAnswer> {
-        Some(solve_with_own_flow(problem, question))
+        Some(solve_with_own_flow(problem, question, solve))
     }
 
     fn refuses(&self, problem: &LimitProblem) -> Option<String> {

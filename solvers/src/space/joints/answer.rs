@@ -1,13 +1,12 @@
 //! The answer with the laws' own flow: the associated bound, and the least state that the courses find.
 
 use super::course::{End, State, course, live_load};
-use super::least::least;
+use super::least::{Associated, least};
 use super::point::{Contact, Spring};
 use super::step::Joints;
 use crate::space::cone::Cone;
 use crate::space::program::{Program, Side};
 use crate::space::settings::JOINTS;
-use crate::space::solve::solve;
 use voussoir_core::limit::{Counters, LimitQuestion, Status};
 use voussoir_core::space::{
     SpaceAnswer, SpaceContact, SpaceField, SpaceNonAssociated, SpaceProblem, SpaceVelocity, power,
@@ -15,10 +14,10 @@ use voussoir_core::space::{
 
 const STRENGTHS: &str = "joints with cohesion, tension or crushing are read with associated flow";
 
-/// Answers a question with the laws' own flow, without panic. The associated answer is the bound; it remains if no flow differs, no
-/// load varies, the dead load is not carried, or some joint is not dry. For each ratio of the stiffnesses one course of elastic joints
-/// searches a collapse state; the least one is the answer.
-pub fn answer(problem: &SpaceProblem, question: LimitQuestion) -> SpaceAnswer {
+/// Answers a question with the laws' own flow, without panic. `solve` gives the associated answer, which is the bound. It is returned
+/// if no flow differs, no load varies, the dead load is not carried, or some joint is not dry. Otherwise one course of elastic joints
+/// for each ratio of the stiffnesses searches a collapse state, and the least one is the answer.
+pub fn answer(problem: &SpaceProblem, question: LimitQuestion, solve: Associated) -> SpaceAnswer {
     let mut associated = solve(problem, question);
     let LimitQuestion::Collapse { start, max } = question else { return associated };
     if !problem.non_associated() || !matches!(associated.status, Status::Collapse | Status::Unbounded | Status::Open) {
@@ -34,7 +33,7 @@ pub fn answer(problem: &SpaceProblem, question: LimitQuestion) -> SpaceAnswer {
     for ratio in JOINTS.ratios {
         let mut joints = Joints::new(&program, springs(problem, ratio));
         match course(&mut joints) {
-            End::Settled(state) => states.push(lowest(problem, &mut joints, state, &mut counters)),
+            End::Settled(state) => states.push(lowest((problem, solve), &mut joints, state, &mut counters)),
             End::Wanders([least, greatest], excess) => {
                 let [least, greatest] = [least, greatest].map(|lambda| start + lambda * program.unit);
                 notes.push(format!(
@@ -87,15 +86,14 @@ struct Found {
 
 /// Returns the lowest state that is reached from a state: the least one of its mechanism, then of the mechanism of joints that are
 /// loaded from there, and so on.
-fn lowest(problem: &SpaceProblem, joints: &mut Joints, mut state: State, counters: &mut Counters) -> Found {
-    let mut lowest = found(problem, joints, &state, counters);
+fn lowest(asked: (&SpaceProblem, Associated), joints: &mut Joints, state: State, counters: &mut Counters) -> Found {
+    let mut lowest = found(asked, joints, &state, counters);
     for _ in 0..JOINTS.rounds {
         let forces = joints.program.scaled(&lowest.field);
         joints.contacts = forces.into_iter().map(|force| Contact { force, gap: 0.0 }).collect();
         let lambda = (lowest.factor - joints.program.start) / joints.program.unit;
-        let End::Settled(next) = live_load(joints, lambda) else { break };
-        state = next;
-        let next = found(problem, joints, &state, counters);
+        let End::Settled(state) = live_load(joints, lambda) else { break };
+        let next = found(asked, joints, &state, counters);
         let lower = next.factor < lowest.factor - JOINTS.differ * lowest.factor.abs();
         if next.factor <= lowest.factor {
             lowest = next;
@@ -108,7 +106,12 @@ fn lowest(problem: &SpaceProblem, joints: &mut Joints, mut state: State, counter
 }
 
 /// Returns the state of the least factor with the mechanism of a state.
-fn found(problem: &SpaceProblem, joints: &Joints, state: &State, counters: &mut Counters) -> Found {
+fn found(
+    (problem, solve): (&SpaceProblem, Associated),
+    joints: &Joints,
+    state: &State,
+    counters: &mut Counters,
+) -> Found {
     let program = joints.program;
     let mut motion = program.motion(&state.motion);
     let unit = power(&problem.varying, &motion);

@@ -13,7 +13,7 @@ use voussoir_core::space::{PointSet, SpaceAnswer, SpaceContact, SpaceField, Spac
 /// Solves a problem with associated flow.
 pub type Associated = fn(&SpaceProblem, LimitQuestion) -> SpaceAnswer;
 
-/// What a mechanism lets a point carry.
+/// The part of a point in a mechanism.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Role {
     Open,
@@ -47,7 +47,7 @@ fn points(contact: &SpaceContact, keep: impl Fn(usize) -> bool) -> PointSet {
     PointSet { areas: vec![0.0; points.len()], points }
 }
 
-/// Returns the contacts that the roles leave, each with the points that it stands for.
+/// Returns the contacts that the roles leave, each with its points.
 fn replaced(problem: &SpaceProblem, roles: &[Vec<Role>]) -> Vec<(SpaceContact, Vec<(usize, usize)>)> {
     let mut contacts = Vec::new();
     for (index, (contact, roles)) in problem.contacts.iter().zip(roles).enumerate() {

@@ -8,7 +8,7 @@
 /// A 3 × 3 matrix by rows.
 pub type Matrix = [[f64; 3]; 3];
 
-/// What limits the shear force: |t| ≤ `slope` n + `cohesion`.
+/// Limit of the shear force: |t| ≤ `slope` n + `cohesion`.
 #[derive(Debug, Clone, Copy)]
 pub struct Limit {
     /// m.
@@ -105,7 +105,7 @@ mod tests {
                 let shear = force[1].hypot(force[2]);
                 assert!(force[0] >= 0.0 && gap >= 0.0 && shear <= bound + 1e-14 && force[0] * gap == 0.0);
                 if force[0] > 0.0 {
-                    // The slip is what the springs do not take.
+                    // The springs take the rest of the jump.
                     let slip: [f64; 2] =
                         std::array::from_fn(|i| jump[1 + i] + (force[1 + i] - BEFORE.force[1 + i]) / 0.7);
                     let opened = jump[0] + (force[0] - BEFORE.force[0]) / 2.0;

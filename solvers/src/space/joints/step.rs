@@ -14,7 +14,7 @@ use crate::space::stiffness::{Block, times, times_transposed};
 use std::ops::Range;
 use voussoir_core::linear::{Analysis, Entries, SparseLu};
 
-/// What a step holds.
+/// The quantity that is given in a step.
 #[derive(Debug, Clone, Copy)]
 pub enum Control {
     /// The factor of the live load.

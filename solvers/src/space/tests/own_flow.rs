@@ -1,7 +1,7 @@
 //! Collapse states with slip that does not open the joints: scenes whose least load is known.
 
 use super::scenes::{COLLAPSE, Scene, certified, rectangle};
-use crate::space::solve_with_own_flow;
+use crate::space::{solve, solve_with_own_flow};
 use voussoir_core::law::FrictionCone;
 use voussoir_core::limit::Status;
 use voussoir_core::space::{SpaceProblem, Vec3};
@@ -18,7 +18,7 @@ fn without_dilatancy(scene: &Scene, direction: &Vec3) -> SpaceProblem {
 
 /// Returns the certified collapse factor and the associated one.
 fn found(problem: &SpaceProblem) -> (f64, Option<f64>) {
-    let answer = solve_with_own_flow(problem, COLLAPSE);
+    let answer = solve_with_own_flow(problem, COLLAPSE, solve);
     let verdict = certified(problem, &answer, COLLAPSE);
     assert_eq!(verdict.status, Status::Collapse, "{:?} {:?}", answer.notes, verdict.certificate);
     (answer.factor.unwrap(), answer.non_associated.unwrap().associated_factor)
