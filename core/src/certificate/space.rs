@@ -606,6 +606,9 @@ mod tests {
             let forged = SpaceClaim { motion: Some(&motion), ..state(&forces, &honest) };
             assert_eq!(certify_space(&problem, &forged, 1e-8).status, Status::Open, "{k}");
         }
+        // The associated slip opens joints that carry.
+        let opens = SpaceClaim { motion: Some(&SLIP), ..state(&forces, &honest) };
+        assert_eq!(certify_space(&problem, &opens, 1e-8).status, Status::Open);
         // A field below friction with the same motion is a state that does not move.
         let low = vec![[0.2, 0.3, 0.3, 0.2].map(|n| [n, -0.05, 0.0]).to_vec()];
         let idle = SpaceClaim { factor: Some(0.2), field_factor: 0.2, ..state(&low, &honest) };
