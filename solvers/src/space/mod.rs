@@ -1,9 +1,10 @@
-//! Limit analysis in space with associated flow: the greatest factor with forces inside cones of friction.
+//! Limit analysis in space: the greatest factor with forces inside cones of friction, and collapse with the laws' own flow.
 //!
 //! [`solve`] uses an interior point method on second-order cones (`interior_point`); each contact is condensed to a
 //! 6 × 6 block of the normal equations (`stiffness`). Its iterates are repaired to exact evidence (`evidence`):
 //! forces in equilibrium inside the cones, and mechanisms inside the dual cones. [`solve_by_clarabel`] is the second
-//! route and the fallback. [`solve_with_own_flow`] finds collapse states with the flow rules of the laws (`joints`). The certificate of `voussoir_core::space` decides the status.
+//! route and the fallback. [`solve_with_own_flow`] finds collapse states with the flow rules of the laws (`joints`). The
+//! certificate of `voussoir_core::space` decides the status.
 
 mod by_clarabel;
 mod cone;

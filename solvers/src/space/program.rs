@@ -184,6 +184,12 @@ impl Program {
         self.differences(&y.iter().zip(&self.offsets).map(less).collect::<Vec<_>>())
     }
 
+    /// Returns forces (n, s, t) of all points \[N\], contact by contact, from forces in units of the program.
+    pub fn by_contacts(&self, forces: &[[f64; 3]]) -> Vec<Vec<[f64; 3]>> {
+        let of = |member: &Member| forces[member.points.clone()].iter().map(|f| f.map(|f| f * self.force)).collect();
+        self.members.iter().map(of).collect()
+    }
+
     /// Returns forces (n, s, t) of all points in units of the program.
     pub fn scaled(&self, field: &[Vec<[f64; 3]>]) -> Vec<[f64; 3]> {
         field.iter().flatten().map(|force| force.map(|f| f / self.force)).collect()

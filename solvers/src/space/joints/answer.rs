@@ -4,7 +4,6 @@ use super::course::{End, State, course, live_load};
 use super::least::{Associated, least};
 use super::point::{Contact, Spring};
 use super::step::Joints;
-use crate::space::cone::Cone;
 use crate::space::program::{Program, Side};
 use crate::space::settings::JOINTS;
 use voussoir_core::limit::{Counters, LimitQuestion, Status};
@@ -40,6 +39,9 @@ pub fn answer(problem: &SpaceProblem, question: LimitQuestion, solve: Associated
                     "elastic joints with k_t/k_n = {ratio}: no state was reached; the last factors are between {least:.6} and \
                      {greatest:.6}, which is no bound, with shear forces up to {excess:.1e} of the loads beyond friction"
                 ));
+            }
+            End::Stuck => {
+                notes.push(format!("elastic joints with k_t/k_n = {ratio}: no step under the live load was solved"))
             }
             End::Fell => notes.push(format!(
                 "elastic joints with k_t/k_n = {ratio}: no state under the dead load was found from zero stress"
@@ -93,12 +95,12 @@ fn lowest(asked: (&SpaceProblem, Associated), joints: &mut Joints, state: State,
         joints.contacts = forces.into_iter().map(|force| Contact { force, gap: 0.0 }).collect();
         let lambda = (lowest.factor - joints.program.start) / joints.program.unit;
         let End::Settled(state) = live_load(joints, lambda) else { break };
+        let before = lowest.factor;
         let next = found(asked, joints, &state, counters);
-        let lower = next.factor < lowest.factor - JOINTS.differ * lowest.factor.abs();
-        if next.factor <= lowest.factor {
+        if next.factor <= before {
             lowest = next;
         }
-        if !lower {
+        if lowest.factor >= before - JOINTS.differ * before.abs() {
             break;
         }
     }
@@ -118,17 +120,8 @@ fn found(
     motion.iter_mut().flatten().for_each(|v| *v /= unit);
     let factor = program.start + state.lambda * program.unit;
     let least = least(problem, solve, (program.start, factor), &joints.jumps(&state.motion), counters);
-    let (factor, field) = least.unwrap_or_else(|| (factor, program.differences(&weighted(program, &state.forces))));
+    let (factor, field) = least.unwrap_or_else(|| (factor, program.by_contacts(&state.forces)));
     Found { factor, field, motion }
-}
-
-/// Returns y of all points for forces (n, s, t).
-fn weighted(program: &Program, forces: &[[f64; 3]]) -> Vec<Cone> {
-    let mut forces = forces.to_vec();
-    for member in &program.members {
-        forces[member.points.clone()].iter_mut().for_each(|y| y[0] /= member.strengths[0]);
-    }
-    forces
 }
 
 /// Returns springs in proportion to the areas of the points, with the mean normal stiffness of one.

@@ -1,10 +1,10 @@
 //! The course of the steps: dead load, then growing steps of the live load's power, until forces and motion are constant.
 //!
-//! A step with the friction of the law may have no solution, for example where elastic energy would set blocks in motion. Such steps
-//! are replaced by some with the fictitious cohesion of the normal forces reached so far, which always have one. When the law's own
-//! steps succeed again, the end is a state of the law, whatever the way there.
+//! A step with the friction of the law may have no solution, for example where elastic energy would set blocks in motion. A few steps
+//! with a fictitious cohesion then replace it; the cohesion follows from the normal forces of the steps before. Then the law's own
+//! friction is tried again. A course ends only at a state of the law, so the steps before it need not obey the law.
 
-use super::point::Contact;
+use super::point::{Contact, Spring};
 use super::step::{Control, Joints, Step};
 use crate::space::interior_point::dot;
 use crate::space::program::{Bodies, Program};
@@ -27,6 +27,8 @@ pub enum End {
     Settled(State),
     /// Least and greatest factor of the last steps, and the greatest shear force beyond friction relative to the loads.
     Wanders([f64; 2], f64),
+    /// No step under the live load was solved.
+    Stuck,
     /// The dead load was not carried.
     Fell,
 }
@@ -111,7 +113,7 @@ pub fn live_load(joints: &mut Joints, mut lambda: f64) -> End {
     wanders(joints, &factors, lambda)
 }
 
-/// Returns the power per factor of joints that neither slip nor open.
+/// Returns the power of the live load per factor in a small first step.
 fn compliance(joints: &mut Joints, unit: f64) -> f64 {
     if let Some(known) = joints.compliance {
         return known;
@@ -150,11 +152,15 @@ fn settled(joints: &Joints, rate: &[f64], lambda: f64) -> bool {
     closing <= JOINTS.settled * largest && idle <= JOINTS.settled * largest * joints.loads(lambda)
 }
 
+/// Returns the end of a course without a state.
 fn wanders(joints: &Joints, factors: &[f64], lambda: f64) -> End {
+    if factors.is_empty() {
+        return End::Stuck;
+    }
     let last = &factors[factors.len().saturating_sub(JOINTS.reported)..];
     let least = last.iter().copied().fold(f64::INFINITY, f64::min);
     let greatest = last.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let beyond = |(contact, spring): (&Contact, &super::point::Spring)| {
+    let beyond = |(contact, spring): (&Contact, &Spring)| {
         contact.force[1].hypot(contact.force[2]) - spring.friction * contact.force[0]
     };
     let excess = joints.contacts.iter().zip(&joints.springs).map(beyond).fold(0.0, f64::max);

@@ -1,7 +1,7 @@
 //! The least load of a mechanism: a program on cones.
 //!
-//! A mechanism fixes which points open, slip, and stick. Open points carry nothing, a slipping point carries n (1, −μ d) against its slip
-//! d, and a sticking point any force of its cone. All admissible forces of this kind are collapse states with the same mechanism, and
+//! A mechanism fixes which points open, slip, and stick. Open points carry nothing, a slipping point carries n (1, −μ d)
+//! against its slip d, and a sticking point any force of its cone. All admissible forces of this kind are collapse states with the same mechanism, and
 //! they are a convex set. Its least factor is found by the solver of associated flow, which treats each slipping point as a contact
 //! without friction along (1, −μ d), and reduces the load of a known state.
 

@@ -1,9 +1,9 @@
 //! One step of rigid blocks on elastic joints: semismooth Newton iterations.
 //!
-//! A step finds the motion u with A f(Aᵀ u) + w + λ p = 0, at a given λ, or with the power p·u of the first guess and λ unknown. With the law's own friction the
-//! matrix is unsymmetric, and the iteration may fail. With a fictitious cohesion (`lagged`) the step is the minimum of a convex
-//! function, and a line search makes the iteration converge. Source of the iteration: Alart and Curnier (1991), *Comput. Methods Appl.
-//! Mech. Eng.* 92, 353–375.
+//! A step finds the motion u with A f(Aᵀ u) + w + λ p = 0, at a given λ, or with the power p·u of the first guess and λ unknown. With
+//! the law's own friction the matrix is unsymmetric, and the iteration may fail. With a fictitious cohesion (`lagged`) the step is the
+//! minimum of a convex function, and a line search makes the iteration converge. Source of the iteration:
+//! Alart and Curnier (1991), *Comput. Methods Appl. Mech. Eng.* 92, 353–375.
 
 use super::point::{Contact, Limit, Matrix, Spring};
 use crate::space::cone::Cone;
@@ -41,7 +41,7 @@ pub struct Joints<'a> {
     pub springs: Vec<Spring>,
     /// The state of all points.
     pub contacts: Vec<Contact>,
-    /// Power of the live load per factor at the first load, once known.
+    /// Power of the live load per factor in a small step from the dead load; set by the first course.
     pub compliance: Option<f64>,
     /// Newton iterations done.
     pub iterations: u64,

@@ -1,9 +1,11 @@
 //! Collapse states with slip that does not open the joints: scenes whose least load is known.
 
+use super::invariance::mapped;
 use super::scenes::{COLLAPSE, Scene, certified, rectangle};
 use crate::space::{solve, solve_with_own_flow};
 use voussoir_core::law::FrictionCone;
 use voussoir_core::limit::Status;
+use voussoir_core::nalgebra::Rotation3;
 use voussoir_core::space::{SpaceProblem, Vec3};
 
 /// Relative distance to loads that are exact.
@@ -89,7 +91,8 @@ fn under_a_block(friction: f64, walls: &[Vec3], direction: &Vec3) -> SpaceProble
     problem
 }
 
-/// A slab drawn out from under a cube at a wall: μ (1 + 2 w / (1 + μ²)) with w = .5; the associated factor is μ (1 + 2 w / (1 − μ²)).
+/// A slab drawn out from under a cube at a wall: μ (1 + 2 w / (1 + μ²)) with w = .5; the associated factor is
+/// μ (1 + 2 w / (1 − μ²)).
 #[test]
 fn a_slab_is_drawn_out_from_under_a_block_at_a_wall() {
     for friction in [0.6, 0.4] {
@@ -99,7 +102,8 @@ fn a_slab_is_drawn_out_from_under_a_block_at_a_wall() {
     }
 }
 
-/// In a corner of two walls the slab may turn while it slides: the factor is at most that of a pure translation.
+/// In a corner of two walls the slab may turn while it slides: the factor is at most the factor of a pure
+/// translation.
 #[test]
 fn a_slab_is_drawn_out_from_a_corner() {
     let diagonal = Vec3::new(1.0, 1.0, 0.0).normalize();
@@ -107,4 +111,16 @@ fn a_slab_is_drawn_out_from_a_corner() {
     meets(associated.unwrap(), 2.250_147_330_8, "associated");
     let ratio = f64::sqrt(2.0) * 0.36 / 0.8;
     assert!(least <= 0.6 * (1.0 + 1.0 / (1.0 + ratio)) * (1.0 + EXACT), "{least}");
+}
+
+/// A mirrored and turned scene has the same load.
+#[test]
+fn loads_do_not_depend_on_the_frame() {
+    let turn = Rotation3::from_euler_angles(0.4, -1.1, 2.3);
+    let mirror = |x: &Vec3| Vec3::new(x.x, -x.y, x.z);
+    for problem in [groove(45.0, 0.5, 6.0), under_a_block(0.6, &[Vec3::x()], &Vec3::x())] {
+        let own = found(&problem).0;
+        meets(found(&mapped(&problem, |x| turn * x, |x| turn * x, false)).0, own, "turned");
+        meets(found(&mapped(&problem, mirror, mirror, true)).0, own, "mirrored");
+    }
 }
