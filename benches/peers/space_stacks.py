@@ -249,7 +249,8 @@ def main():
             if own and case["status"] == "collapse" and case["flow_read_as"] is None:
                 error = state_error(case, scene, friction, gravity, push, *placed)
                 errors.append(error)
-                below.append(case["load_factor"] / (case["associated_load_factor"] or np.inf))
+                if case["associated_load_factor"]:
+                    below.append(case["load_factor"] / case["associated_load_factor"])
                 why = why or (f"a state with an error of {error}" if error > STATE else None)
             if why:
                 wrong += 1
@@ -261,7 +262,9 @@ def main():
     if widths:
         print(f"median width of the brackets {np.median(widths):.4f}")
     if errors:
-        print(f"{len(errors)} states, greatest error {max(errors):.1e}; own over associated factor, where there is one, from {min(own for own in below if own > 0):.4f}")
+        print(f"{len(errors)} states, greatest error {max(errors):.1e}")
+    if below:
+        print(f"least ratio of own to associated factor {min(below):.4f}")
 
 
 main()
