@@ -83,8 +83,10 @@ pub const SETTINGS: SpaceSettings = SpaceSettings {
 /// unit of the load factor before joints slip.
 #[derive(Debug, Clone, Copy)]
 pub struct JointSettings {
-    /// Tangential over normal stiffness of the courses that are tried.
+    /// Tangential over normal stiffness of the courses from zero stress.
     pub ratios: [f64; 4],
+    /// The same of the courses from the forces of the associated load.
+    pub ratios_from_field: [f64; 3],
     /// Least stiffness of a point, relative to the mean.
     pub softest: f64,
     /// Relative distance of the factors of two states that differ.
@@ -142,6 +144,7 @@ pub struct JointSettings {
 /// The numbers in use.
 pub const JOINTS: JointSettings = JointSettings {
     ratios: [1e-4, 0.1, 0.3, 1.0],
+    ratios_from_field: [0.1, 0.3, 1.0],
     softest: 1e-2,
     differ: 1e-9,
     rounds: 8,

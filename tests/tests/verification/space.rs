@@ -92,6 +92,18 @@ fn mortar_has_its_closed_forms() {
     assert_eq!(crushing.status, Status::Open);
 }
 
+/// If courses slide on their bed, both flow rules give the friction coefficient. From zero stress no state is reached.
+#[test]
+fn a_corner_that_slides_has_one_load_with_both_flow_rules() {
+    let corner = "scene = \"masonry_wall\"\nblock = [2.0, 1.0, 0.5]\ncourses = 2\nblocks = 2\ncorner = { blocks = 2, joint = \"toothed\" }";
+    let text = pushed(corner, 0.5, [1.0, 0.0, 0.0]).replace("coulomb_associated", "coulomb");
+    let result = answered(&(text + "[solver]\nsolver = \"limit_sequential\"\n"));
+    assert_eq!((result.status, result.flow_read_as), (Status::Collapse, None), "{:?}", result.notes);
+    let associated = result.non_associated.associated_load_factor.expect("an associated factor");
+    assert_close(associated, 0.5, 1e-8);
+    assert_close(result.load_factor.expect("a factor"), 0.5, 1e-8);
+}
+
 /// A wall of any length that is pushed across its plane overturns at thickness over height.
 #[test]
 fn a_wall_across_its_plane_has_its_closed_form() {

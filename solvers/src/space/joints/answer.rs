@@ -2,7 +2,7 @@
 
 use super::course::{End, State, course, live_load};
 use super::least::{Associated, least};
-use super::point::{Contact, Spring};
+use super::point::Spring;
 use super::step::Joints;
 use crate::space::program::{Program, Side};
 use crate::space::settings::JOINTS;
@@ -14,8 +14,9 @@ use voussoir_core::space::{
 const STRENGTHS: &str = "joints with cohesion, tension or crushing are read with associated flow";
 
 /// Answers a question with the laws' own flow, without panic. `solve` gives the associated answer, which is the bound. It is returned
-/// if no flow differs, no load varies, the dead load is not carried, or some joint is not dry. Otherwise one course of elastic joints
-/// for each ratio of the stiffnesses searches a collapse state, and the least one is the answer.
+/// if no flow differs, no load varies, the dead load is not carried, or some joint is not dry. Otherwise courses of elastic joints
+/// search collapse states, and the least one is the answer. Their stiffnesses differ; some start at zero stress, the others at the
+/// forces of the associated load, which carry the greatest factor.
 pub fn answer(problem: &SpaceProblem, question: LimitQuestion, solve: Associated) -> SpaceAnswer {
     let mut associated = solve(problem, question);
     let LimitQuestion::Collapse { start, max } = question else { return associated };
@@ -27,39 +28,56 @@ pub fn answer(problem: &SpaceProblem, question: LimitQuestion, solve: Associated
         return associated;
     }
     let program = Program::new(problem, start, Side::Inner);
-    let (mut states, mut notes): (Vec<Found>, Vec<String>) = (Vec::new(), Vec::new());
+    let (mut states, mut failures): (Vec<Found>, Vec<String>) = (Vec::new(), Vec::new());
     let mut counters = std::mem::take(&mut associated.counters);
-    for ratio in JOINTS.ratios {
-        let mut joints = Joints::new(&program, springs(problem, ratio));
-        match course(&mut joints) {
+    let zero_stress = JOINTS.ratios.map(|ratio| (ratio, None));
+    let known = associated.field.as_ref().filter(|_| associated.status == Status::Collapse);
+    let from_field = known.map(|field| JOINTS.ratios_from_field.map(|ratio| (ratio, Some(field))));
+    let courses: Vec<_> = zero_stress.into_iter().chain(from_field.into_iter().flatten()).collect();
+    for (ratio, field) in &courses {
+        let mut joints = Joints::new(&program, springs(problem, *ratio));
+        let end = match field {
+            None => course(&mut joints),
+            Some(field) => {
+                joints.press(field);
+                live_load(&mut joints, (associated.field_factor - start) / program.unit)
+            }
+        };
+        let from = if field.is_some() { "the associated forces" } else { "zero stress" };
+        let mut fails =
+            |why: String| failures.push(format!("elastic joints with k_t/k_n = {ratio}, from {from}: {why}"));
+        match end {
             End::Settled(state) => states.push(lowest((problem, solve), &mut joints, state, &mut counters)),
             End::Wanders([least, greatest], excess) => {
                 let [least, greatest] = [least, greatest].map(|lambda| start + lambda * program.unit);
-                notes.push(format!(
-                    "elastic joints with k_t/k_n = {ratio}: no state was reached; the last factors are between {least:.6} and \
-                     {greatest:.6}, which is no bound, with shear forces up to {excess:.1e} of the loads beyond friction"
+                fails(format!(
+                    "no state was reached; the last factors are between {least:.6} and {greatest:.6}, which is no bound, \
+                     with shear forces up to {excess:.1e} of the loads beyond friction"
                 ));
             }
-            End::Stuck => {
-                notes.push(format!("elastic joints with k_t/k_n = {ratio}: no step under the live load was solved"))
-            }
-            End::Fell => notes.push(format!(
-                "elastic joints with k_t/k_n = {ratio}: no state under the dead load was found from zero stress"
-            )),
+            End::Stuck => fails("no step under the live load was solved".into()),
+            End::Fell => fails("no state under the dead load was found".into()),
         }
         *counters.entry("joint_iterations".into()).or_default() += joints.iterations;
     }
-    let collapses = associated.status == Status::Collapse;
+    let bound = associated.motion.filter(|_| associated.status == Status::Collapse);
     let own = SpaceNonAssociated {
-        associated_factor: associated.factor.filter(|_| collapses),
-        associated_motion: associated.motion.filter(|_| collapses),
+        // The upper end of its bounds: no state of any flow rule is above it.
+        associated_factor: bound.as_ref().map(|motion| -power(&problem.fixed, motion)),
+        associated_motion: bound,
     };
     states.sort_by(|a, b| a.factor.total_cmp(&b.factor));
+    let mut notes = if states.is_empty() { failures } else { Vec::new() };
     if let (Some(least), Some(greatest)) = (states.first(), states.last())
         && greatest.factor - least.factor > JOINTS.differ * greatest.factor.abs()
     {
         let (least, greatest) = (least.factor, greatest.factor);
-        notes.push(format!("collapse states were found from {least:.9} to {greatest:.9}; the least is given"));
+        notes.push(format!(
+            "{} of {} courses of elastic joints end at a collapse state; the factors are from {least:.9} to {greatest:.9}, and the \
+             least is given",
+            states.len(),
+            courses.len()
+        ));
     }
     let answer = SpaceAnswer { non_associated: Some(own), counters, ..SpaceAnswer::default() };
     match states.into_iter().next().filter(|state| state.factor <= max) {
@@ -91,8 +109,7 @@ struct Found {
 fn lowest(asked: (&SpaceProblem, Associated), joints: &mut Joints, state: State, counters: &mut Counters) -> Found {
     let mut lowest = found(asked, joints, &state, counters);
     for _ in 0..JOINTS.rounds {
-        let forces = joints.program.scaled(&lowest.field);
-        joints.contacts = forces.into_iter().map(|force| Contact { force, gap: 0.0 }).collect();
+        joints.press(&lowest.field);
         let lambda = (lowest.factor - joints.program.start) / joints.program.unit;
         let End::Settled(state) = live_load(joints, lambda) else { break };
         let before = lowest.factor;

@@ -13,6 +13,7 @@ use crate::space::settings::JOINTS;
 use crate::space::stiffness::{Block, times, times_transposed};
 use std::ops::Range;
 use voussoir_core::linear::{Analysis, Entries, SparseLu};
+use voussoir_core::space::SpaceField;
 
 /// The quantity that is given in a step.
 #[derive(Debug, Clone, Copy)]
@@ -63,6 +64,12 @@ impl<'a> Joints<'a> {
         let contacts = vec![Contact::default(); springs.len()];
         let moves = program.members.iter().map(Member::moves).collect();
         Joints { program, springs, contacts, compliance: None, iterations: 0, moves, analysis: Analysis::default() }
+    }
+
+    /// Puts forces \[N\] on all points, contact by contact, with closed gaps.
+    pub fn press(&mut self, field: &SpaceField) {
+        let forces = self.program.scaled(field);
+        self.contacts = forces.into_iter().map(|force| Contact { force, gap: 0.0 }).collect();
     }
 
     /// Returns the limits of the law.

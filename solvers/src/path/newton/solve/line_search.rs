@@ -35,12 +35,11 @@ use crate::path::newton::quantities::response::update_tractions;
 use std::rc::Rc;
 
 /// Returns ‖F‖ of a state in the units of the unknowns.
-fn merit(system: &mut StepSystem, start: &State, state: &State, gradient: &Gradient, control: &Control) -> f64 {
+fn merit(system: &StepSystem, start: &State, state: &State, gradient: &Gradient, control: &Control) -> f64 {
     let u = system.units();
     let mut rows = residual_of(system, start, state, gradient);
     let last = rows.len() - 1;
     rows[last] = control_value(system, start, state, control);
-    system.count("law_evaluations", state.gap.len() as u64);
     for c in (0..state.gap.len()).filter(|c| !system.laws.responses.is(*c)) {
         let (rho, gap) = (system.stiffness(c), system.step_gap(start, state, c));
         let pulled = [0, 1].map(|k| rho[k] * gap[k]);
@@ -86,7 +85,9 @@ pub fn searched(
     (step, most): (&[f64], f64),
     search: &mut LineSearch,
 ) -> Result<(State, Rc<Gradient>, bool), String> {
+    let points = state.gap.len() as u64;
     if search.merits.is_empty() {
+        system.count("law_evaluations", points);
         search.merits.push(merit(system, start, state, gradient, control));
     }
     let at = |halvings: i32, share: f64| {
@@ -96,6 +97,7 @@ pub fn searched(
             _ => system.count("halvings", 1),
         }
         let (next, gradient) = advanced(system, start, state, step, share)?;
+        system.count("law_evaluations", points);
         let merit = merit(system, start, &next, &gradient, control);
         Ok((merit, (next, gradient)))
     };
@@ -204,7 +206,7 @@ mod tests {
                 }
                 let mut at = |share: f64| {
                     let (state, gradient) = advanced(&mut system, &start, &state, &step, share).expect("a state");
-                    merit(&mut system, &start, &state, &gradient, &control)
+                    merit(&system, &start, &state, &gradient, &control)
                 };
                 let (here, small) = (at(0.0), 1e-7);
                 let slope = (at(small) - here) / small;

@@ -1,8 +1,9 @@
 //! The entries of results.json: one for each case of the study and each direction.
 
+use super::checks;
 use super::conversion::{MovingBlock, Participation, displacement_capacity};
+use super::push::{Push, made_id};
 use super::request::Request;
-use super::{Push, checks, made_id};
 use std::collections::BTreeMap;
 use voussoir_core::limit::Status;
 use voussoir_study::results::{CaseResult, KindEntries, PushDirection, SeismicEntry};

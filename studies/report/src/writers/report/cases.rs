@@ -67,6 +67,8 @@ fn columns<'a>(study: &'a StudyOutput) -> Vec<Column<'a>> {
     let force = move |place: usize| loads[place].map_or(String::new(), |load| force(&cases[place], load));
     add(with_load, "load", Box::new(force));
     add(true, "bounds", Box::new(|place| proved_interval(&cases[place]).unwrap_or_default()));
+    let associated = cases.iter().any(|case| case.non_associated.associated_load_factor.is_some());
+    add(associated, "with associated flow", Box::new(|place| with_associated_flow(&cases[place])));
     add(true, "mechanism", Box::new(|place| mechanism(&cases[place])));
     add(true, "hinges at joints", Box::new(|place| hinges(&cases[place])));
     add(true, "certificate", Box::new(|place| certificate_verdict(&cases[place]).into()));
@@ -80,6 +82,14 @@ fn factor(case: &CaseResult) -> String {
         None => snap_words(case.load_factor, case.path.first_limit_point, |x| format_number(x, 7))
             .unwrap_or_else(|| format_number(factor, 7)),
     })
+}
+
+/// The load factor with associated flow, an upper bound, and its ratio to the load factor of the laws' own flow.
+fn with_associated_flow(case: &CaseResult) -> String {
+    let Some(bound) = case.non_associated.associated_load_factor else { return String::new() };
+    let ratio = case.load_factor.filter(|factor| *factor > 0.0).map(|factor| bound / factor);
+    let ratio = ratio.map_or(String::new(), |ratio| format!(" ({} ×)", format_short(ratio, 4)));
+    format!("{}{ratio}", format_number(bound, 7))
 }
 
 /// The load of a case; `unit` is the load at factor 1 \[N\].
@@ -140,5 +150,24 @@ pub(super) fn certificates(cases: &[CaseResult]) -> Markup {
             (page::table(&header, rows))
             @if cases.len() > ROWS { p { "In the order of the table of cases; all are in results.json." } }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use voussoir_study::results::NonAssociatedAnswer;
+
+    /// The cell has the associated load factor and its ratio to the found one; without a found one it has no ratio.
+    #[test]
+    fn both_flow_rules_stand_side_by_side() {
+        let case = |associated_load_factor, load_factor| CaseResult {
+            load_factor,
+            non_associated: NonAssociatedAnswer { associated_load_factor, ..NonAssociatedAnswer::default() },
+            ..CaseResult::stalled("")
+        };
+        assert_eq!(with_associated_flow(&case(Some(0.55), Some(0.5))), "0.5500000 (1.1 ×)");
+        assert_eq!(with_associated_flow(&case(Some(0.55), None)), "0.5500000");
+        assert_eq!(with_associated_flow(&case(None, Some(0.5))), "");
     }
 }
