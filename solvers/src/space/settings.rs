@@ -137,7 +137,7 @@ pub struct JointSettings {
     pub longest: usize,
     /// Steps whose factors are reported if the course does not settle.
     pub reported: usize,
-    /// Greatest number of iterations of a course.
+    /// Greatest number of iterations of a course, and of its steps.
     pub iterations: u64,
 }
 

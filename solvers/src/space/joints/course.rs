@@ -76,11 +76,13 @@ pub fn live_load(joints: &mut Joints, mut lambda: f64) -> End {
     let mut rate = along(joints.program, 1.0);
     let compliance = compliance(joints, unit);
     let mut power = JOINTS.first * compliance;
-    let most = joints.iterations + JOINTS.iterations;
+    let first = joints.iterations;
+    let most = first + JOINTS.iterations;
     let (mut lag, mut wait) = (0, 0);
     let mut normals = Vec::new();
     let mut factors = Vec::new();
-    while joints.iterations < most && power >= JOINTS.least * compliance {
+    // A step whose guess is its solution costs no iteration: the number of steps has a limit too.
+    while joints.iterations.max(first + factors.len() as u64) < most && power >= JOINTS.least * compliance {
         let guess: Bodies = rate.iter().map(|q| q * power).collect();
         let mut step = None;
         if wait == 0 {
