@@ -21,7 +21,7 @@ import time
 for threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(threads, "1")  # before NumPy and GetFEM are loaded: waiting threads count as processor time
 
-from limit_load import arguments, by_paths, by_voussoir, report
+from limit_load import append_rows, arguments, by_paths, by_voussoir, report
 from scenes import RING, area_and_centre, ring, ring_joints
 
 YOUNG, POISSON = 5e9, 0.3
@@ -193,17 +193,16 @@ def by_getfem(peer, first, augmentation, tolerance):
 
 
 def measure(count, program, getfem, rounds):
-    """The limit load of rigid blocks, and name → [(seconds, error)], by turns."""
+    """The limit load of rigid blocks, and name → [(seconds, load factor)], by turns."""
     reference = by_voussoir(program, ring(count))[0]
-    error = lambda factor: abs(factor / reference - 1.0)
     peer = GetfemRing(count) if getfem else None
     results = {}
     for _ in range(rounds):
-        by_paths(program, reference, lambda solver: elastic(count, solver), results)
+        by_paths(program, lambda solver: elastic(count, solver), results)
         settings = [(i, a, t) for i in INCREMENTS for a in AUGMENTATIONS for t in TOLERANCES] if getfem else []
         for setting in settings:
             seconds, factor = by_getfem(peer, *setting)
-            results.setdefault("GetFEM, best setting", []).append((seconds, error(factor)))
+            results.setdefault("GetFEM", []).append((seconds, factor))
     return reference, results
 
 
@@ -218,7 +217,9 @@ def main():
         print("GetFEM is not installed for this Python, left out (Debian: python3-getfem, for /usr/bin/python3)")
     for word in options.scenes:
         count = int(word.removeprefix("ring:"))
-        report(elastic(count, "auto"), *measure(count, options.voussoir, getfem is not None, options.rounds))
+        reference, results = measure(count, options.voussoir, getfem is not None, options.rounds)
+        report(elastic(count, "auto"), reference, results)
+        append_rows(options.csv, f"elastic, scene.voussoirs = {count}", results)
 
 
 if __name__ == "__main__":

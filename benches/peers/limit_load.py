@@ -12,6 +12,7 @@ import argparse
 import csv
 import importlib.metadata
 import math
+import os
 import platform
 import subprocess
 import tempfile
@@ -32,8 +33,15 @@ def scene_of(word):
     if kind == "ring":
         return ring(int(size))
     if kind == "wall":
-        return wall(running_bond(int(size)), f"wall of {size} x {size}")
-    raise SystemExit(f"{word}: scenes are ring:N and wall:N")
+        bricks, _, courses = size.partition("x")
+        return wall(running_bond(int(bricks), int(courses or bricks)), f"wall of {bricks} x {courses or bricks}")
+    raise SystemExit(f"{word}: scenes are ring:N, wall:N and wall:BRICKSxCOURSES")
+
+
+def problem_of(word):
+    """The name of a scene of this script in the studies of `benches/scenes`."""
+    kind, _, size = word.partition(":")
+    return f"{kind}, scene.{'voussoirs' if kind == 'ring' else 'bricks'} = {size.partition('x')[0]}"
 
 
 def by_voussoir(program, scene):
@@ -63,24 +71,22 @@ def timed(solve, data, tolerance):
 
 
 def measure(scene, program, contestants, rounds):
-    """Name → [(seconds, error)], all by turns."""
+    """Name → [(seconds, load factor)], all by turns."""
     data = Data(scene)
     reference, seconds = by_voussoir(program, scene)
-    results = {"Voussoir, certified": [(seconds, 0.0)]}
+    results = {"Voussoir, certified": [(seconds, reference)]}
     best = {}
     slow = set()
     for _ in range(rounds):
         own = by_voussoir(program, scene)[1]
-        results["Voussoir, certified"].append((own, 0.0))
+        results["Voussoir, certified"].append((own, reference))
         for name, solve in contestants.items():
             for tolerance in TOLERANCES:
                 if name in slow:
                     break
                 factor, seconds = timed(solve, data, tolerance)
-                error = abs(factor / reference - 1.0)
-                error = error if math.isfinite(error) else math.inf
-                before = best.get((name, tolerance), (math.inf, error))
-                best[name, tolerance] = (min(before[0], seconds), error)
+                before = best.get((name, tolerance), (math.inf, factor))
+                best[name, tolerance] = (min(before[0], seconds), factor)
                 if seconds > PATIENCE:
                     slow.add(name)
     for (name, _), found in best.items():
@@ -88,7 +94,28 @@ def measure(scene, program, contestants, rounds):
     return reference, results
 
 
+def error_of(factor, reference):
+    """The relative error; infinite for a run that failed."""
+    return abs(factor / reference - 1.0) if math.isfinite(factor) else math.inf
+
+
+def append_rows(file, problem, results):
+    """Appends the runs of other programs to a CSV file for `voussoir bench --others`."""
+    if file is None:
+        return
+    new = not os.path.exists(file)
+    with open(file, "a", newline="") as rows:
+        writer = csv.writer(rows, lineterminator="\n")
+        if new:
+            writer.writerow(["problem", "program", "load_factor [-]", "seconds [s]"])
+        for name, found in results.items():
+            if not name.endswith("certified"):
+                known = (run for run in found if all(map(math.isfinite, run)))
+                writer.writerows([problem, name, repr(float(factor)), f"{seconds:.4g}"] for seconds, factor in known)
+
+
 def report(scene, reference, results):
+    results = {name: [(s, error_of(factor, reference)) for s, factor in found] for name, found in results.items()}
     own = min(seconds for seconds, _ in next(iter(results.values())))
     print(f"\n{scene.name}: load factor {reference:.12g}")
     header = "".join(f" | {'to ' + format(error, 'g'):>22}" for error in ERRORS)
@@ -108,17 +135,18 @@ def arguments(doc, scenes, rounds):
     parser.add_argument("scenes", nargs="*", default=scenes)
     parser.add_argument("--voussoir", default="voussoir", help="the program")
     parser.add_argument("--rounds", type=int, default=rounds)
+    parser.add_argument("--csv", help="append the runs of other programs to this file")
     options = parser.parse_args()
     version = subprocess.run([options.voussoir, "--version"], check=True, capture_output=True, text=True).stdout.strip()
     print(f"{version}; Python {platform.python_version()}; {platform.machine()}, {platform.system()}")
     return options
 
 
-def by_paths(program, reference, scene, results):
-    """Adds seconds and error of both path solvers on their own scenes to name → [(seconds, error)]."""
+def by_paths(program, scene, results):
+    """Adds seconds and load factor of both path solvers on their own scenes to name → [(seconds, load factor)]."""
     for solver in ("event_path", "newton_path"):
         factor, seconds = by_voussoir(program, scene(solver))
-        results.setdefault(f"{solver}, certified", []).append((seconds, abs(factor / reference - 1.0)))
+        results.setdefault(f"{solver}, certified", []).append((seconds, factor))
 
 
 def main():
@@ -132,7 +160,9 @@ def main():
             print(f"{name}: {package} is not installed, left out")
     for word in options.scenes:
         scene = scene_of(word)
-        report(scene, *measure(scene, options.voussoir, contestants, options.rounds))
+        reference, results = measure(scene, options.voussoir, contestants, options.rounds)
+        report(scene, reference, results)
+        append_rows(options.csv, problem_of(word), results)
 
 
 if __name__ == "__main__":

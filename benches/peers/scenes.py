@@ -132,9 +132,9 @@ def wall(rows, name, law="coulomb_associated", solver="auto"):
     return Scene(name, text, *program(polygons, joints, fixed, varying), WALL_FRICTION, 1.0)
 
 
-def running_bond(side):
-    """Courses of a wall of side × side bricks."""
-    return [[1] * side if level % 2 == 0 else [0.5] + [1] * (side - 1) + [0.5] for level in range(side)]
+def running_bond(bricks, courses):
+    """Courses of a wall: so many bricks in every second one, a half brick at both ends of the others."""
+    return [[1] * bricks if level % 2 == 0 else [0.5] + [1] * (bricks - 1) + [0.5] for level in range(courses)]
 
 
 def friction_rows(count, friction):

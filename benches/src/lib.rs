@@ -2,6 +2,7 @@
 
 pub mod boundary;
 pub mod point;
+pub mod walk;
 
 use voussoir::cli::processor_time;
 use voussoir::study::Case;

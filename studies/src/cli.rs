@@ -94,11 +94,14 @@ enum Command {
         /// Reference of the errors: a variant, a contestant, or a known load factor
         #[arg(long, value_name = "NAME|NUMBER")]
         reference: Option<String>,
+        /// CSV file with measurements of other programs, shown in the same charts
+        #[arg(long, value_name = "FILE")]
+        others: Option<PathBuf>,
         /// Greatest relative error of a solved problem in the performance profile
         #[arg(long, default_value_t = 1e-3)]
         within: f64,
         /// Measure each case with five values of each setting: tolerance, first_step, mesh
-        #[arg(long, value_name = "NAME,…", value_delimiter = ',', conflicts_with_all = ["reference", "out"])]
+        #[arg(long, value_name = "NAME,…", value_delimiter = ',', conflicts_with_all = ["reference", "others", "out"])]
         sweep: Vec<String>,
         /// CSV file for the ladders of --sweep
         #[arg(long, value_name = "FILE", requires = "sweep")]
@@ -233,9 +236,9 @@ impl Command {
             Command::Merge { dirs, out, jobs, quiet } => {
                 commands::merge::merge(&dirs, &commands::merge::MergeOptions { out, jobs, quiet })
             }
-            Command::Bench { studies, out, set, runs, reference, within, sweep, output, quiet } => {
+            Command::Bench { studies, out, set, runs, reference, others, within, sweep, output, quiet } => {
                 let arguments =
-                    commands::bench::BenchArguments { out, set, runs, reference, within, sweep, output, quiet };
+                    commands::bench::BenchArguments { out, set, runs, reference, others, within, sweep, output, quiet };
                 commands::bench::measure(&studies, &arguments)
             }
             Command::Serve { study, set, open, port } => commands::serve::serve(&study, &set, open, port),

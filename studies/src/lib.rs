@@ -81,7 +81,8 @@ pub mod difference {
 
 /// Drawings and charts as SVG, and how numbers and words are written in them.
 pub mod figures {
-    pub use voussoir_plot::chart::chart_svg;
+    pub use voussoir_plot::chart::{chart, chart_svg};
+    pub use voussoir_plot::panels::panels;
     pub use voussoir_plot::series::{ChartStyle, Marker, Series, Spot};
     pub use voussoir_report::figures::hinges::hinge_list;
     pub use voussoir_report::figures::map::map_svg;

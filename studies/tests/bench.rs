@@ -118,6 +118,37 @@ fn variants_are_measured_side_by_side_from_what_is_asked_for() {
     drop(std::fs::remove_dir_all(folder));
 }
 
+/// Measurements of other programs are shown beside the contestants. Each study is a class: it has one panel, and a profile if it
+/// has several cases.
+#[test]
+fn other_programs_take_their_places_in_each_class() {
+    let folder = folder("others");
+    let second = STUDY.replace("name = \"small\"", "name = \"single\"");
+    std::fs::write(folder.join("single.toml"), second).expect("a study");
+    let row = |problem: &str| {
+        format!("problem,program,load_factor [-],seconds [s]\n\"{problem}\",another program,20.0,1e-3\n")
+    };
+    std::fs::write(folder.join("others.csv"), row("small, scene.profile.rise = 2.4")).expect("a file");
+    let text = format!("{STUDY}{VARIANTS}").replace("event_path", "limit_conic");
+    let more = ["single.toml", "--quiet", "--within", "10", "--set", "solver.solver=limit_chain"];
+    let output = bench(&folder, &text, &[&more[..], &["--others", "others.csv"]].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let found = rows(&folder);
+    let other = found.iter().find(|row| row[1] == "another program").expect("a row");
+    let same = found.iter().find(|row| row[0] == other[0] && row[1] == "limit analysis").expect("a row");
+    let error = (20.0 / same[5].parse::<f64>().expect("a load factor") - 1.0).abs();
+    assert!((other[9].parse::<f64>().expect("an error") - error).abs() < 1e-12, "{other:?}");
+    let read = |name: &str| std::fs::read_to_string(folder.join("out").join(name)).expect("a chart");
+    assert!(read("profile.svg").contains("another program") && read("profile.svg").contains("bench: small"));
+    assert!(read("bench.svg").contains("rise = 2.0") && !read("bench.svg").contains("rise = 2.4"));
+    // A problem that is not measured.
+    std::fs::write(folder.join("others.csv"), row("small, scene.profile.rise = 2.5")).expect("a file");
+    let output = bench(&folder, &text, &[&more[..], &["--others", "others.csv"]].concat());
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.code() == Some(2) && said.contains("others.csv: line 2: no problem"), "{said}");
+    drop(std::fs::remove_dir_all(folder));
+}
+
 /// `--sweep` measures ladders of five rungs, and prints the difference from the finest rung and the order of the mesh.
 #[test]
 fn ladders_of_settings_are_measured() {

@@ -1,6 +1,6 @@
 //! Axes: values to pixels, ranges and ticks, straight or logarithmic.
 
-use super::number::{round_values, tick_label};
+use super::number::{decimal, round_values, tick_label};
 
 /// An axis is logarithmic if its greatest value is this many times its least.
 pub const WIDE: f64 = 50.0;
@@ -62,11 +62,11 @@ impl Scale {
         }
         let [low, high] = self.axis.values;
         let (first, last) = (low.floor() as i32, high.ceil() as i32);
-        let steps: &[f64] = if high - low > 3.0 { &[1.0] } else { &[1.0, 2.0, 5.0] };
+        let steps: &[i64] = if high - low > 3.0 { &[1] } else { &[1, 2, 5] };
         // No more than a dozen decades have a line.
         let every = 1 + (last - first) / 13;
         let decades = (first..=last).filter(|power| power.rem_euclid(every) == 0);
-        let all = decades.flat_map(|power| steps.iter().map(move |step| step * 10f64.powi(power)));
+        let all = decades.flat_map(|power| steps.iter().map(move |step| decimal(*step, power)));
         let within: Vec<f64> = all.filter(|tick| (low - 1e-9..=high + 1e-9).contains(&tick.log10())).collect();
         // Less than a decade has hardly any of these.
         if within.len() < 3 { round_values(10f64.powf(low), 10f64.powf(high), count) } else { within }

@@ -3,7 +3,7 @@
 use voussoir_core::number_text::format_short;
 
 /// `digits` · 10^`exponent` to the nearest double.
-fn decimal(digits: i64, exponent: i32) -> f64 {
+pub fn decimal(digits: i64, exponent: i32) -> f64 {
     format!("{digits}e{exponent}").parse().unwrap_or(f64::NAN)
 }
 

@@ -43,9 +43,26 @@ impl Measurement {
     }
 }
 
+/// The measurement of another program.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Other {
+    /// Index of the problem.
+    pub problem: usize,
+    /// Name of the program.
+    pub program: String,
+    /// Its load factor.
+    pub factor: f64,
+    /// Its time \[s\].
+    pub seconds: f64,
+    /// Relative error of the load factor. `None` if there is no reference.
+    pub error: Option<f64>,
+}
+
 /// A case of the study without its variant, with the reference of its errors.
 #[derive(Debug, Clone, Default)]
 pub struct Problem {
+    /// Name of the study, if several are measured.
+    pub class: String,
     /// Scene and swept values.
     pub name: String,
     /// Reference of the errors.
@@ -63,6 +80,13 @@ pub struct Source {
     pub band: Option<f64>,
 }
 
+impl Source {
+    /// Returns the relative error of a load factor, or its magnitude if λ* = 0.
+    pub fn error_of(&self, factor: f64) -> f64 {
+        if self.factor == 0.0 { factor.abs() } else { (factor / self.factor - 1.0).abs() }
+    }
+}
+
 /// All measurements of a bench.
 #[derive(Debug, Clone, Default)]
 pub struct Bench {
@@ -70,20 +94,24 @@ pub struct Bench {
     pub problems: Vec<Problem>,
     /// Measurements of every contestant, sorted by problem.
     pub measurements: Vec<Measurement>,
+    /// Measurements of other programs.
+    pub others: Vec<Other>,
     /// Contestants that cannot solve a problem: (problem, contestant, reason).
     pub refused: Vec<(usize, String, String)>,
     /// True if the bench was stopped before the last measurement.
     pub cut_short: bool,
 }
 
+/// Returns the name of a problem if several studies are measured.
+pub(super) fn name_in(study: &str, problem: &str) -> String {
+    if problem.is_empty() { study.to_string() } else { format!("{study}, {problem}") }
+}
+
 impl Bench {
     /// Adds the measurements of another study; the names of its problems get the name of the study.
     pub fn join(&mut self, name: &str, other: Bench) {
         let offset = self.problems.len();
-        let named = |own: Problem| {
-            let name = if own.name.is_empty() { name.to_string() } else { format!("{name}, {}", own.name) };
-            Problem { name, ..own }
-        };
+        let named = |own: Problem| Problem { class: name.to_string(), name: name_in(name, &own.name), ..own };
         self.problems.extend(other.problems.into_iter().map(named));
         let moved = |own: Measurement| Measurement { problem: own.problem + offset, ..own };
         self.measurements.extend(other.measurements.into_iter().map(moved));

@@ -1,8 +1,9 @@
 //! Output of a bench: a table, a CSV file and the performance profile.
 
-use super::measured::{Bench, Measurement};
+use super::measured::{Bench, Measurement, Other};
 use comfy_table::{ContentArrangement, Table, presets};
 use voussoir_plot::chart::chart;
+use voussoir_plot::panels::panels;
 use voussoir_plot::series::{ChartStyle, Series};
 use voussoir_report::writers::csv_table::csv_table;
 use voussoir_study::results::format::{format_number, format_short, status_word};
@@ -37,6 +38,17 @@ pub fn table(bench: &Bench) -> String {
         row.splice(0..0, several.then(|| bench.problems[own.problem].name.clone()));
         table.add_row(row);
     }
+    for own in &bench.others {
+        let mut row = vec![
+            own.program.clone(),
+            String::new(),
+            format_number(own.factor, 10),
+            text(own.error, |error| format_short(error, 2)),
+            format_short(own.seconds, 3),
+        ];
+        row.splice(0..0, several.then(|| bench.problems[own.problem].name.clone()));
+        table.add_row(row);
+    }
     let mut text: String = table.to_string().lines().map(|line| line.trim_end().to_string() + "\n").collect();
     for (problem, name, why) in &bench.refused {
         let of = if several { format!("{}: ", bench.problems[*problem].name) } else { String::new() };
@@ -45,7 +57,7 @@ pub fn table(bench: &Bench) -> String {
     text
 }
 
-/// Returns the same table as CSV, with all digits.
+/// Returns the same table as CSV, with all digits; the measurements of other programs follow, without status.
 pub fn csv(bench: &Bench) -> String {
     let header = [
         "problem",
@@ -79,46 +91,93 @@ pub fn csv(bench: &Bench) -> String {
             counters(own),
         ]
     };
-    csv_table(header.map(String::from).to_vec(), bench.measurements.iter().map(row))
+    let other = |own: &Other| {
+        let problem = &bench.problems[own.problem];
+        let reference = problem.reference.as_ref();
+        let mut cells = vec![String::new(); header.len()];
+        cells[0].clone_from(&problem.name);
+        cells[1].clone_from(&own.program);
+        cells[5] = number(own.factor);
+        cells[6] = text(reference, |source| number(source.factor));
+        cells[7] = text(reference, |source| source.from.clone());
+        cells[8] = text(reference.and_then(|source| source.band), number);
+        cells[9] = text(own.error, number);
+        cells[10] = number(own.seconds);
+        cells
+    };
+    let rows = bench.measurements.iter().map(row).chain(bench.others.iter().map(other));
+    csv_table(header.map(String::from).to_vec(), rows)
 }
 
-/// Returns the names of the contestants in order of appearance.
-fn names(bench: &Bench) -> Vec<&str> {
-    let mut names: Vec<&str> = Vec::new();
-    for own in &bench.measurements {
-        if !names.contains(&own.contestant.as_str()) {
-            names.push(&own.contestant);
-        }
-    }
-    names
-}
+/// A run that counts in a profile: its problem, who ran, and the time.
+type Run<'a> = (usize, &'a str, f64);
 
-/// Draws a performance profile: the share of problems that a contestant solves within an error, over its time divided by
-/// the least time of all contestants (Dolan and Moré, Math. Program. 91, 2002). Returns `None` for a single problem.
-pub fn profile_chart(title: &str, bench: &Bench, within: f64) -> Option<String> {
-    let count = bench.problems.len();
-    if count < 2 {
-        return None;
-    }
+/// Returns the runs of contestants and other programs whose errors are at most `within`, and the references. A run with
+/// another setting counts for its solver.
+fn solved(bench: &Bench, within: f64) -> Vec<Run<'_>> {
     let reference = |own: &Measurement| {
         bench.problems[own.problem].reference.as_ref().is_some_and(|source| source.from == own.contestant)
     };
-    let solved = |own: &&Measurement| reference(own) || own.error.is_some_and(|error| error <= within);
-    let of = |problem: usize| bench.measurements.iter().filter(move |own| own.problem == problem).filter(solved);
-    let least: Vec<f64> =
-        (0..count).map(|problem| of(problem).map(|own| own.seconds).fold(f64::INFINITY, f64::min)).collect();
+    let near = |error: Option<f64>| error.is_some_and(|error| error <= within);
+    let own = bench.measurements.iter().filter(|own| reference(own) || near(own.error));
+    let own = own.map(|own| {
+        let name = if own.rung.is_some() { &own.result.solver } else { &own.contestant };
+        (own.problem, name.as_str(), own.seconds)
+    });
+    let others = bench.others.iter().filter(|own| near(own.error));
+    own.chain(others.map(|own| (own.problem, own.program.as_str(), own.seconds))).collect()
+}
+
+/// Draws performance profiles: the share of problems that a contestant solves within an error, over its time divided by
+/// the least time of all contestants (Dolan and Moré, Math. Program. 91, 2002). A solver has its fastest setting. Each study with several cases has its own
+/// profile. Studies with one case share one. Returns `None` if there is no profile with at least two problems.
+pub fn profile_chart(title: &str, bench: &Bench, within: f64) -> Option<String> {
+    let runs = solved(bench, within);
+    let mut classes: Vec<(&str, Vec<usize>)> = Vec::new();
+    let class = |problem: usize| bench.problems[problem].class.as_str();
+    let alone = |problem: usize| bench.problems.iter().filter(|own| own.class == class(problem)).count() == 1;
+    for problem in 0..bench.problems.len() {
+        let name = if alone(problem) { "" } else { class(problem) };
+        match classes.iter_mut().find(|(own, _)| *own == name) {
+            Some((_, problems)) => problems.push(problem),
+            None => classes.push((name, vec![problem])),
+        }
+    }
+    let some = |problems: &[usize]| runs.iter().any(|run| problems.contains(&run.0));
+    let several = classes.iter().filter(|(_, problems)| problems.len() > 1 && some(problems));
+    let drawn = several.map(|(name, problems)| {
+        let title = if name.is_empty() { title.to_string() } else { format!("{title}: {name}") };
+        profile(&title, &runs, problems, within)
+    });
+    let drawn: Vec<String> = drawn.collect();
+    (!drawn.is_empty()).then(|| panels(&drawn))
+}
+
+/// Draws the profile of one class of problems.
+fn profile(title: &str, runs: &[Run], problems: &[usize], within: f64) -> String {
+    let own: Vec<Run> = runs.iter().copied().filter(|run| problems.contains(&run.0)).collect();
+    let best = |problem: usize, name: Option<&str>| {
+        let times = own.iter().filter(|run| run.0 == problem && name.is_none_or(|name| run.1 == name));
+        times.map(|run| run.2).fold(f64::INFINITY, f64::min)
+    };
+    let mut names: Vec<&str> = Vec::new();
+    for run in &own {
+        if !names.contains(&run.1) {
+            names.push(run.1);
+        }
+    }
     let ratios = |name: &str| -> Vec<f64> {
-        let own = bench.measurements.iter().filter(|own| own.contestant == name).filter(solved);
-        let mut ratios: Vec<f64> = own.map(|own| (own.seconds / least[own.problem]).max(1.0)).collect();
+        let times = problems.iter().map(|&problem| best(problem, Some(name)) / best(problem, None));
+        let mut ratios: Vec<f64> = times.filter(|ratio| ratio.is_finite()).collect();
         ratios.sort_by(f64::total_cmp);
         ratios
     };
-    let all: Vec<(&str, Vec<f64>)> = names(bench).into_iter().map(|name| (name, ratios(name))).collect();
+    let all: Vec<(&str, Vec<f64>)> = names.into_iter().map(|name| (name, ratios(name))).collect();
     let last = all.iter().flat_map(|(_, ratios)| ratios).fold(1.0, |a: f64, b| a.max(*b));
     let series: Vec<Series> = all
         .into_iter()
         .map(|(name, ratios)| {
-            let share = |answered: usize| answered as f64 / count as f64;
+            let share = |answered: usize| answered as f64 / problems.len() as f64;
             let mut points = vec![(1.0, 0.0)];
             for (i, ratio) in ratios.iter().enumerate() {
                 points.extend([(*ratio, share(i)), (*ratio, share(i + 1))]);
@@ -128,10 +187,11 @@ pub fn profile_chart(title: &str, bench: &Bench, within: f64) -> Option<String> 
         })
         .collect();
     let note = format!(
-        "Answered: a certified collapse or limit point within a relative error of {}.",
+        "Answered: a certified collapse or limit point within a relative error of {}, with the fastest setting. Other programs \
+         certify nothing.",
         format_short(within, 2)
     );
     let style = ChartStyle { log: [true, false] };
     let label = "time over the least of all [-]";
-    Some(chart(title, label, "share of problems answered [-]", &series, &[note], &style))
+    chart(title, label, "share of problems answered [-]", &series, &[note], &style)
 }

@@ -13,17 +13,29 @@ const FLAT: f64 = -0.05;
 /// Greatest number of panels; further problems are in the CSV file only.
 const MOST_PANELS: usize = 16;
 
-/// Draws error over time in one panel for each problem. Returns `None` if no measurement has an error.
+/// Draws error over time in one panel for each problem; if several studies are measured, for the first problem of each.
+/// Returns `None` if no measurement has an error.
 pub fn error_chart(title: &str, bench: &Bench) -> Option<String> {
-    let drawn: Vec<String> = (0..bench.problems.len()).filter_map(|problem| panel(title, bench, problem)).collect();
-    (!drawn.is_empty()).then(|| panels(&drawn[..drawn.len().min(MOST_PANELS)]))
+    let drawn = error_panels(title, bench);
+    (!drawn.is_empty()).then(|| panels(&drawn))
+}
+
+/// Returns the panels of [`error_chart`], one drawing each.
+pub fn error_panels(title: &str, bench: &Bench) -> Vec<String> {
+    let class = |problem: usize| &bench.problems[problem].class;
+    let shown = |&problem: &usize| problem == 0 || class(problem).is_empty() || class(problem) != class(problem - 1);
+    let drawn = (0..bench.problems.len()).filter(shown).filter_map(|problem| panel(title, bench, problem));
+    drawn.take(MOST_PANELS).collect()
 }
 
 fn panel(title: &str, bench: &Bench, problem: usize) -> Option<String> {
     let source = bench.problems[problem].reference.as_ref()?;
-    let own: Vec<&Measurement> =
-        bench.measurements.iter().filter(|own| own.problem == problem && own.error.is_some()).collect();
-    let mut series: Vec<Series> = Vec::new();
+    let all = || bench.measurements.iter().filter(|own| own.problem == problem);
+    let own: Vec<&Measurement> = all().filter(|own| own.error.is_some()).collect();
+    let reference = all().filter(|own| own.contestant == source.from);
+    let mut series: Vec<Series> = reference
+        .map(|own| ladder(&format!("{}, the reference", source.from), vec![(own.seconds, 0.0)], 0.0))
+        .collect();
     for base in own.iter().filter(|own| own.rung.is_none()) {
         let rungs = || own.iter().filter(|rung| rung.rung.is_some() && rung.result.solver == base.result.solver);
         let mut ladders: Vec<&str> = rungs().filter_map(|rung| Some(rung.rung?.ladder)).collect();
@@ -36,6 +48,7 @@ fn panel(title: &str, bench: &Bench, problem: usize) -> Option<String> {
             series.push(line(&base.contestant, source, [base].into_iter()));
         }
     }
+    series.extend(others(bench, problem));
     let times = || series.iter().flat_map(|own| own.points.iter().map(|point| point.0));
     let ends = [times().fold(f64::INFINITY, f64::min), times().fold(0.0, f64::max)];
     if let Some(band) = source.band.filter(|_| ends[1] > 0.0) {
@@ -55,11 +68,37 @@ fn panel(title: &str, bench: &Bench, problem: usize) -> Option<String> {
         .then(|| chart(&title, "processor time [s]", "relative error of the load factor [-]", &series, &notes, &style))
 }
 
-/// Returns the line of a ladder by growing time; its name has the slope if three of its errors exceed the band and they fall.
+/// Returns one line for each other program that was measured: at each error the least time of a run that has at most this error.
+fn others(bench: &Bench, problem: usize) -> Vec<Series> {
+    let own = || bench.others.iter().filter(|own| own.problem == problem && own.error.is_some());
+    let mut programs: Vec<&str> = own().map(|own| own.program.as_str()).collect();
+    programs.sort_unstable();
+    programs.dedup();
+    let line = |program: &str| {
+        let runs = own().filter(|own| own.program == program);
+        let mut runs: Vec<(f64, f64)> = runs.filter_map(|own| Some((own.seconds, own.error?.max(NO_ERROR)))).collect();
+        runs.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        let mut points: Vec<(f64, f64)> = Vec::new();
+        for run in runs {
+            if points.last().is_none_or(|last| run.1 < last.1) {
+                points.push(run);
+            }
+        }
+        Series { name: program.into(), points, ..Series::default() }
+    };
+    programs.into_iter().map(line).collect()
+}
+
 fn line<'a>(name: &str, source: &Source, own: impl Iterator<Item = &'a &'a Measurement>) -> Series {
-    let mut points: Vec<(f64, f64)> = own.filter_map(|own| Some((own.seconds, own.error?.max(NO_ERROR)))).collect();
+    ladder(name, own.filter_map(|own| Some((own.seconds, own.error?))).collect(), source.band.unwrap_or(0.0))
+}
+
+/// Returns the line of a ladder from pairs of time and error, by growing time. Its name has the slope if at least three errors
+/// exceed `band`, the error of the reference, and fall.
+pub fn ladder(name: &str, mut points: Vec<(f64, f64)>, band: f64) -> Series {
+    points.iter_mut().for_each(|point| point.1 = point.1.max(NO_ERROR));
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let least = source.band.unwrap_or(0.0).max(1e3 * NO_ERROR);
+    let least = band.max(1e3 * NO_ERROR);
     let above: Vec<[f64; 2]> =
         points.iter().filter(|(_, error)| *error > least).map(|(time, error)| [time.ln(), error.ln()]).collect();
     let name = match slope(&above).filter(|slope| *slope < FLAT) {

@@ -6,14 +6,15 @@ use super::files;
 use super::folder::ResultFolder;
 use super::print::{complain, say};
 use crate::bench::{
-    Bench, BenchOptions, Measurement, PARAMETERS, Reference, bench, csv, error_chart, names, profile_chart, sweep,
-    sweep_csv, sweep_table, table,
+    Bench, BenchOptions, Measurement, Other, PARAMETERS, Reference, bench, csv, error_chart, names, problems,
+    profile_chart, read_others, sweep, sweep_csv, sweep_table, table,
 };
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use voussoir_plot::svg::as_file;
 use voussoir_study::config::diagnostic::suggest;
 use voussoir_study::file::HELD;
+use voussoir_study::kind::LoadedStudy;
 use voussoir_study::results::format::{format_short, status_word};
 use voussoir_study::study::Study;
 
@@ -27,6 +28,8 @@ pub struct BenchArguments {
     pub runs: usize,
     /// The reference: the name of a solver or variant, or a load factor.
     pub reference: Option<String>,
+    /// A CSV file with measurements of other programs.
+    pub others: Option<PathBuf>,
     /// Greatest error of a solved problem in the performance profile.
     pub within: f64,
     /// Names of settings: each case is measured on a ladder of values of each.
@@ -42,14 +45,16 @@ pub fn measure(paths: &[PathBuf], arguments: &BenchArguments) -> Outcome {
     if paths.len() > 1 && !arguments.sweep.is_empty() {
         return Err(CliError::wrong_input("--sweep measures one study; give one study file"));
     }
+    let loaded = paths.iter().map(|path| files::study(path, &files::overrides(&arguments.set)?));
+    let loaded = loaded.collect::<Result<Vec<_>, CliError>>()?;
+    let studies = paths
+        .iter()
+        .zip(&loaded)
+        .map(|(path, loaded)| with_cases(path, &**loaded))
+        .collect::<Result<Vec<&Study>, CliError>>()?;
+    let others = arguments.others.as_deref().map(|file| others(file, &studies)).transpose()?;
     let (mut found, mut title) = (Bench::default(), "bench".to_string());
-    for path in paths {
-        let loaded = files::study(path, &files::overrides(&arguments.set)?)?;
-        let Some(study) = loaded.with_cases().filter(|study| !study.cases.is_empty()) else {
-            let why =
-                format_args!("{}: only studies with a scene and at most {HELD} cases can be benched", path.display());
-            return Err(CliError::wrong_input(why));
-        };
+    for study in studies {
         let reference = arguments.reference.as_deref().map(|word| reference(study, word)).transpose()?;
         let told = |own: &Measurement| {
             if !arguments.quiet {
@@ -65,11 +70,26 @@ pub fn measure(paths: &[PathBuf], arguments: &BenchArguments) -> Outcome {
             _ => found.join(&study.name, bench(study, &options)),
         }
     }
+    found.beside(others.unwrap_or_default());
     let default = || match paths {
         [_] => Path::new("results").join(&title).join("bench"),
         _ => Path::new("results").join("bench"),
     };
     written(&found, &title, &arguments.out.clone().unwrap_or_else(default), arguments)
+}
+
+fn with_cases<'a>(path: &Path, loaded: &'a dyn LoadedStudy) -> Result<&'a Study, CliError> {
+    loaded.with_cases().filter(|study| !study.cases.is_empty()).ok_or_else(|| {
+        let path = path.display();
+        CliError::wrong_input(format_args!("{path}: only studies with a scene and at most {HELD} cases can be benched"))
+    })
+}
+
+/// Reads the measurements of other programs.
+fn others(file: &Path, studies: &[&Study]) -> Result<Vec<(String, Other)>, CliError> {
+    let names: Vec<String> = studies.iter().flat_map(|study| problems(study, studies.len() > 1)).collect();
+    read_others(&files::read(file)?, &names)
+        .map_err(|why| CliError::wrong_input(format_args!("--others {}: {why}", file.display())))
 }
 
 /// Writes the measurements and their figures.

@@ -19,12 +19,16 @@ use voussoir_core::plugin::{
     Capability, Card, PluginKind, Requirement, candidate, candidates, card, cards_of, describe,
 };
 
-/// Returns the tags of the solvers of plane scenes that fit. A solver that needs cones of friction solves scenes in space only.
+/// Returns true if a solver supports plane scenes. A solver that needs cones of friction solves scenes in space only.
+fn in_plane(card: &Card) -> bool {
+    !card.requires.iter().any(|need| need.contains(&Capability::CONE))
+}
+
+/// Returns the tags of the solvers of plane scenes that fit.
 fn solvers_that(fit: impl Fn(&Card) -> bool) -> Vec<&'static str> {
-    let plane = |card: &&Card| !card.requires.iter().any(|need| need.contains(&Capability::CONE));
     candidates(PluginKind::LimitSolver)
         .into_iter()
-        .filter(plane)
+        .filter(|card| in_plane(card))
         .filter(|card| fit(card))
         .map(|card| card.tag)
         .collect()
@@ -206,6 +210,11 @@ fn needs_capabilities(
     resolved: &Resolved,
     assembly: &Assembly,
 ) {
+    if chosen.is_some_and(|card| !in_plane(card)) {
+        let help = format!("solvers of plane scenes: {}", or_none(&solvers_that(|_| true)));
+        diagnostics.wrong("solver.solver", format!("solver \"{tag}\" knows scenes in space only"), help);
+        return;
+    }
     // `auto` has at least the requirements that all solvers share.
     static EVERYONE: LazyLock<Vec<Requirement>> = LazyLock::new(|| {
         let all = cards_of(PluginKind::LimitSolver).into_iter().flat_map(|card| card.requires);
