@@ -10,12 +10,16 @@
 //! |(s, t)| ≤ c + μ n whose tip c/μ is the tensile strength, the vertices are exact. For other strengths inner points bound the
 //! load factor from below, and outer points from above (see [`PointSet`]).
 
-pub use crate::certificate::{SpaceClaim, SpaceVerdict, certify_space};
+pub use crate::certificate::{
+    SpaceClaim, SpaceVerdict, certify_space, space_openings, space_settlement_ray, space_settlement_residuals,
+    space_support_motions,
+};
 pub use crate::limit::{
-    PointSet, SpaceAnswer, SpaceContact, SpaceField, SpaceNonAssociated, SpaceProblem, SpaceVelocity, power,
+    PointSet, SpaceAnswer, SpaceContact, SpaceField, SpaceNonAssociated, SpaceProblem, SpaceSettled, SpaceVelocity,
+    power,
 };
 pub use crate::model::space::{
     Contact, ContactBody, ContactTolerances, FoundContacts, FoundOverlaps, NearMiss, Polyhedron, SpaceAssembly,
-    SpaceBody, SpaceFill, SpaceForce, SpaceLoads, SpaceOverlap, SpaceStage, Vec3, Wrench, add_space_force,
-    find_contacts, find_overlaps, hull, near_misses, space_loads, tangents, velocity_at,
+    SpaceBody, SpaceFill, SpaceForce, SpaceLoads, SpaceOverlap, SpaceSettlement, SpaceStage, Vec3, Wrench,
+    add_space_force, find_contacts, find_overlaps, hull, near_misses, space_loads, tangents, velocity_at,
 };

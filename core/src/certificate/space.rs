@@ -439,8 +439,15 @@ impl<'a> Check<'a> {
     }
 }
 
+/// Returns the greatest unbalanced force of a field \[N\] with the fixed loads, and the greatest force outside the cones of
+/// recession.
+pub(super) fn defects(problem: &SpaceProblem, field: &SpaceField) -> [f64; 2] {
+    let check = Check::new(problem);
+    [check.imbalance(field, [1.0, 0.0]), check.violation(field, false)]
+}
+
 /// Returns the rate of the gap (n, s, t) at a point of a contact.
-fn jump(contact: &SpaceContact, point: &Vec3, motion: &[SpaceVelocity]) -> [f64; 3] {
+pub(super) fn jump(contact: &SpaceContact, point: &Vec3, motion: &[SpaceVelocity]) -> [f64; 3] {
     let at = |body: Option<usize>| body.map_or(Vec3::zeros(), |body| velocity_at(&motion[body], point));
     let rate = at(contact.plus) - at(contact.minus);
     contact.frame.map(|axis| axis.dot(&rate))

@@ -29,7 +29,7 @@ pub use self::programs::{LinearProgram, LinearSolution, answer_by_programs};
 pub use self::question::answer_by;
 pub use self::scale::{combined, force_scale, force_unit, with_unit_power};
 pub use self::solver::{LimitAnswer, LimitQuestion, LimitSolver, NonAssociated, SettlementAnswer};
-pub use self::space_answer::{SpaceAnswer, SpaceField, SpaceNonAssociated, SpaceVelocity, power};
+pub use self::space_answer::{SpaceAnswer, SpaceField, SpaceNonAssociated, SpaceSettled, SpaceVelocity, power};
 pub use self::space_points::PointSet;
 pub use self::space_problem::{SpaceContact, SpaceProblem};
 pub use self::status::{Counters, Greatest, Status};

@@ -2,7 +2,7 @@
 
 use super::lower_proof::{BracketPoint, LowerProof};
 use super::problem::{JointForce, LimitProblem, Velocity};
-use super::space_answer::SpaceAnswer;
+use super::space_answer::{SpaceAnswer, SpaceField, SpaceSettled};
 use super::space_problem::SpaceProblem;
 use super::status::{Counters, Status};
 use crate::law::FlowRule;
@@ -150,6 +150,14 @@ pub trait LimitSolver: Debug + Send + Sync {
     /// Answers the question for a scene in space, without panic. `None` if the solver knows plane scenes only.
     fn solve_space(&self, _: &SpaceProblem, _: LimitQuestion) -> Option<SpaceAnswer> {
         None
+    }
+
+    /// Finds the motion of rigid blocks in space whose supports move, with small displacements, under the fixed loads of the
+    /// problem. `openings` are the gaps (n, s, t) \[m\] that the supports alone would cause at the inner points of each
+    /// contact. The solver returns a motion q of least potential energy −w·q + D among all compatible motions with associated
+    /// flow, and its dual field.
+    fn settle_space(&self, _: &SpaceProblem, _: &SpaceField) -> SpaceSettled {
+        SpaceSettled::Refused("this solver knows no supports in space that move".into())
     }
 
     /// Finds the motion of rigid blocks whose supports move, with small displacements. `openings` are the opening of

@@ -48,6 +48,23 @@ pub struct SpaceNonAssociated {
     pub associated_motion: Option<Vec<SpaceVelocity>>,
 }
 
+/// The answer of a limit solver about rigid blocks in space whose supports move, with associated flow.
+#[derive(Debug, Clone)]
+pub enum SpaceSettled {
+    /// The blocks follow their supports.
+    Follows {
+        /// Forces of a field that does no work on the jumps beyond their dissipation.
+        field: SpaceField,
+        /// Displacement of each free body as a rigid motion about the problem's pole.
+        motion: Vec<SpaceVelocity>,
+    },
+    /// No motion of the blocks is compatible with the motion of the supports. The proof is a set of forces in balance without
+    /// loads, inside all cones, that do negative work on the openings of the supports.
+    Blocked(SpaceField),
+    /// The question is not decided, with the reason.
+    Refused(String),
+}
+
 impl SpaceAnswer {
     /// Creates an answer that decides nothing, with the reason.
     pub fn stalled(why: impl Into<String>) -> Self {

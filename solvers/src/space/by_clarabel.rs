@@ -51,9 +51,15 @@ struct Solution {
 
 /// Solves min c·x, A x + s = b.
 fn clarabel(c: &[f64], a: &CscMatrix<f64>, b: &[f64], cones: &[SupportedConeT<f64>]) -> Option<Solution> {
+    solved(c, a, b, cones, false)
+}
+
+/// Solves min c·x, A x + s = b. `exactly`: makes all attempts until one reaches its tolerance, and returns the one with the
+/// least residual.
+fn solved(c: &[f64], a: &CscMatrix<f64>, b: &[f64], cones: &[SupportedConeT<f64>], exactly: bool) -> Option<Solution> {
     let p = CscMatrix::<f64>::zeros((c.len(), c.len()));
     let mut iterations = 0;
-    let mut last = None;
+    let mut best: Option<(f64, Solution)> = None;
     for (tolerance, regularisation) in ATTEMPTS {
         let settings = DefaultSettings::<f64> {
             verbose: false,
@@ -70,13 +76,18 @@ fn clarabel(c: &[f64], a: &CscMatrix<f64>, b: &[f64], cones: &[SupportedConeT<f6
         solver.solve();
         let own = &solver.solution;
         iterations += u64::from(own.iterations);
+        let found = Solution { x: own.x.clone(), z: own.z.clone(), iterations, status: own.status };
         let failed = matches!(own.status, SolverStatus::NumericalError | SolverStatus::InsufficientProgress);
-        last = Some(Solution { x: own.x.clone(), z: own.z.clone(), iterations, status: own.status });
-        if !failed {
+        let residual = if failed { f64::INFINITY } else { own.r_prim.max(own.r_dual) };
+        let almost = exactly && own.status == SolverStatus::AlmostSolved;
+        if best.as_ref().is_none_or(|(least, _)| residual < *least || least.is_infinite()) {
+            best = Some((residual, found));
+        }
+        if !failed && !almost {
             break;
         }
     }
-    last
+    best.map(|(_, solution)| Solution { iterations, ..solution })
 }
 
 /// Returns the columns of A: the wrenches of unit forces of all points.
@@ -105,6 +116,24 @@ impl Route<'_> {
             least.into_iter().chain(most.is_finite().then_some((point, 1.0, *most)))
         };
         self.program.limits.iter().enumerate().flat_map(of).collect()
+    }
+
+    /// Solves for the forces inside cones without other limits that do the least work on given rates.
+    fn least_work(&mut self, rates: &[Cone]) -> Option<Solution> {
+        let (rows, points) = (self.program.base.len(), self.program.points.len());
+        let mut columns = Columns::default();
+        for (point, wrenches) in self.wrenches.iter().enumerate() {
+            for (k, wrench) in wrenches.iter().enumerate() {
+                columns.push(wrench.iter().copied().chain([(rows + 3 * point + k, -1.0)]));
+            }
+        }
+        let mut b: Vec<f64> = self.program.base.iter().map(|w| -w).collect();
+        b.resize(rows + 3 * points, 0.0);
+        let mut cones = vec![SupportedConeT::ZeroConeT(rows)];
+        cones.extend((0..points).map(|_| SupportedConeT::SecondOrderConeT(3)));
+        let solution = solved(rates.as_flattened(), &columns.matrix(rows + 3 * points), &b, &cones, true)?;
+        self.iterations += solution.iterations;
+        Some(solution)
     }
 
     /// Solves for the greatest value of a last unknown that adds `load` to equilibrium and takes `shift` times the unit from
@@ -174,6 +203,37 @@ impl Route<'_> {
 /// Returns forces by points.
 fn by_points(x: &[f64], points: usize) -> Vec<Cone> {
     x.chunks_exact(3).take(points).map(|y| [y[0], y[1], y[2]]).collect()
+}
+
+/// The forces of least work on given rates.
+pub enum LeastWork {
+    /// Forces in equilibrium, and the motion that belongs to them.
+    Field(Vec<Cone>, Vec<f64>),
+    /// The work has no bound: forces in balance without loads do negative work.
+    Ray(Vec<Cone>),
+    /// No forces carry the loads.
+    Nothing,
+}
+
+/// Returns the forces of least work on given rates of all points, repaired to equilibrium and into the cones. `None` if that
+/// fails.
+pub fn least_work(program: &Program, rates: &[Cone]) -> Option<LeastWork> {
+    let mut route = Route { program, wrenches: wrenches(program), iterations: 0 };
+    let (mut evidence, points) = (Evidence::default(), program.points.len());
+    let solution = route.least_work(rates)?;
+    if matches!(solution.status, SolverStatus::DualInfeasible | SolverStatus::AlmostDualInfeasible) {
+        evidence.self_stress_near(program, &by_points(&solution.x, points));
+        return evidence.ray.map(LeastWork::Ray);
+    }
+    if matches!(solution.status, SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible) {
+        return Some(LeastWork::Nothing);
+    }
+    let still = vec![0.0; program.base.len()];
+    let margin = route.greatest(&still, 1.0, Some(GREATEST_MARGIN))?;
+    evidence.interior(program, by_points(&margin.x, points));
+    evidence.repair(program, by_points(&solution.x, points), 0.0)?;
+    let motion = solution.z[..program.base.len()].to_vec();
+    evidence.lower.map(|field| LeastWork::Field(field.y, motion))
 }
 
 /// Solves a program by Clarabel. `None` if it refuses the data.

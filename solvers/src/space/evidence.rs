@@ -138,6 +138,14 @@ impl Evidence {
         self.ray = evened(program, y, [1.0, 0.0], &idle).filter(|y| y.iter().all(|y| margin(y) >= 0.0));
     }
 
+    /// Adds forces that are in balance without loads, near forces whose greatest component becomes one, after a correction of
+    /// least norm.
+    pub fn self_stress_near(&mut self, program: &Program, y: &[Cone]) {
+        let most = greatest(y.as_flattened());
+        let idle = vec![false; y.len()];
+        self.ray = evened(program, y.iter().map(|y| y.map(|y| y / most)).collect(), [0.0, 0.0], &idle);
+    }
+
     /// Returns a field at a factor that lies between two known ones.
     pub fn between(&self, lambda: f64) -> Option<Field> {
         let (start, lower) = (self.start.as_ref()?, self.lower.as_ref()?);

@@ -1,9 +1,10 @@
 //! The solver `limit_cones`.
 
+use super::settlement::settle;
 use super::solve::solve;
 use voussoir_core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver};
 use voussoir_core::plugin::{Capability, Card, Keys, PluginKind};
-use voussoir_core::space::{SpaceAnswer, SpaceProblem};
+use voussoir_core::space::{SpaceAnswer, SpaceField, SpaceProblem, SpaceSettled};
 
 /// Limit analysis of scenes in space.
 #[derive(Debug, Clone, Default, Keys)]
@@ -24,6 +25,10 @@ impl LimitSolver for LimitCones {
 
     fn solve_space(&self, problem: &SpaceProblem, question: LimitQuestion) -> Option<SpaceAnswer> {
         Some(solve(problem, question))
+    }
+
+    fn settle_space(&self, problem: &SpaceProblem, openings: &SpaceField) -> SpaceSettled {
+        settle(problem, openings)
     }
 }
 

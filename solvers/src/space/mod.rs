@@ -14,6 +14,7 @@ mod joints;
 mod limit_cones;
 mod program;
 mod settings;
+mod settlement;
 mod solve;
 mod stiffness;
 #[cfg(test)]
@@ -21,4 +22,5 @@ mod tests;
 mod uniqueness;
 
 pub use self::joints::answer as solve_with_own_flow;
+pub use self::settlement::settle as settle_in_space;
 pub use self::solve::{solve, solve_by_clarabel};

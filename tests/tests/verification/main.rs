@@ -36,6 +36,7 @@ mod semicircle;
 mod sensitivities;
 mod settled;
 mod settlements;
+mod settlements_in_space;
 mod snap_through;
 mod softening;
 mod space;

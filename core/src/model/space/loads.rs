@@ -25,6 +25,21 @@ pub struct SpaceStage {
     pub forces: Vec<SpaceForce>,
     /// Accelerations (× mass) on every free body, multiplied by the stage's factor \[m/s²\].
     pub accelerations: Vec<Vec3>,
+    /// Movements of supports; a factor given for the stage multiplies them.
+    pub settlements: Vec<SpaceSettlement>,
+}
+
+/// The movement of a support in a stage.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SpaceSettlement {
+    /// The support, a held body.
+    pub body: usize,
+    /// Displacement of the point `about` \[m\].
+    pub displacement: Vec3,
+    /// Rotation vector \[rad\].
+    pub rotation: Vec3,
+    /// Centre of rotation \[m\].
+    pub about: Vec3,
 }
 
 /// The loads of a stage in space: `fixed + factor × varying`.

@@ -3,14 +3,14 @@
 use super::engine::ConicEngine;
 use super::envelope::EnvelopeEngine;
 use crate::limit::settlement::settle;
-use crate::space::solve_by_clarabel;
+use crate::space::{settle_in_space, solve_by_clarabel};
 use voussoir_core::law::FlowRule;
 use voussoir_core::limit::{
     Engine, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, SettlementAnswer, answer_by,
 };
 use voussoir_core::model::Wrenches;
 use voussoir_core::plugin::{Capability, Card, Keys, PluginKind};
-use voussoir_core::space::{SpaceAnswer, SpaceProblem};
+use voussoir_core::space::{SpaceAnswer, SpaceField, SpaceProblem, SpaceSettled};
 
 /// Limit analysis of any scene.
 #[derive(Debug, Clone, Default, Keys)]
@@ -28,6 +28,10 @@ impl LimitSolver for LimitConic {
 
     fn solve_space(&self, problem: &SpaceProblem, question: LimitQuestion) -> Option<SpaceAnswer> {
         Some(solve_by_clarabel(problem, question))
+    }
+
+    fn settle_space(&self, problem: &SpaceProblem, openings: &SpaceField) -> SpaceSettled {
+        settle_in_space(problem, openings)
     }
 
     fn refuses(&self, _: &LimitProblem) -> Option<String> {

@@ -3,7 +3,7 @@
 use super::sequence::{Sequence, sequence};
 use crate::limit::associated::{NO_ENVELOPES, associated, associated_bound, settled_by_association};
 use crate::limit::settlement::settle;
-use crate::space::{solve, solve_with_own_flow};
+use crate::space::{settle_in_space, solve, solve_with_own_flow};
 use voussoir_core::law::FlowRule;
 use voussoir_core::limit::{
     LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, LowerProof, LowerProofKind, SettlementAnswer, Status,
@@ -11,7 +11,7 @@ use voussoir_core::limit::{
 };
 use voussoir_core::model::Wrenches;
 use voussoir_core::plugin::{Capability, Card, Keys, PluginKind};
-use voussoir_core::space::{SpaceAnswer, SpaceProblem};
+use voussoir_core::space::{SpaceAnswer, SpaceField, SpaceProblem, SpaceSettled};
 
 /// Sequential linear programming.
 #[derive(Debug, Clone, Default, Keys)]
@@ -78,6 +78,10 @@ impl LimitSolver for LimitSequential {
 
     fn solve_space(&self, problem: &SpaceProblem, question: LimitQuestion) -> Option<SpaceAnswer> {
         Some(solve_with_own_flow(problem, question, solve))
+    }
+
+    fn settle_space(&self, problem: &SpaceProblem, openings: &SpaceField) -> SpaceSettled {
+        settle_in_space(problem, openings)
     }
 
     fn refuses(&self, problem: &LimitProblem) -> Option<String> {

@@ -2,6 +2,7 @@
 
 use super::scene_canvas::{SceneCanvas, hatching};
 use super::symbols::{FILL, LOAD, MOTION, OUTLINE, STONE, Symbol, THRUST};
+use voussoir_core::limit::Status;
 use voussoir_core::model::Stage;
 use voussoir_core::model::geometry::Vec2;
 use voussoir_core::space::{Contact, SpaceAssembly, Vec3, velocity_at};
@@ -211,7 +212,10 @@ pub fn space_mechanism_svg(title: &str, space: &SpaceCase, result: &CaseResult) 
     let corners = bodies.map(|(body, own)| own.shape.vertices.iter().map(|point| moves.place(body, point)).collect());
     let moved = Blocks { assembly, corners: corners.collect() };
     let (views, [low, high]) = moved.layout(size);
-    let mut canvas = SceneCanvas::new(low, high, [30.0; 4], &[title.to_string(), "mechanism".to_string()]);
+    // A stage that stands has a motion only after supports have moved.
+    let settled = result.status == Status::Stands;
+    let what = if settled { "displacements after supports have moved" } else { "mechanism" };
+    let mut canvas = SceneCanvas::new(low, high, [30.0; 4], &[title.to_string(), what.to_string()]);
     let parted: Vec<_> = assembly.contacts.iter().filter_map(|contact| moves.parted(contact, APART * size)).collect();
     for view in &views {
         moved.draw(&mut canvas, view);
@@ -224,11 +228,15 @@ pub fn space_mechanism_svg(title: &str, space: &SpaceCase, result: &CaseResult) 
     if !parted.is_empty() {
         legend.push((Symbol::Sliding, "outline of a contact that opens or slides".into()));
     }
-    let caption = [format!(
-        "Displacements are exaggerated: the velocities of the mechanism, at unit power of the load, times {}. Only \
-         directions and ratios mean something, not the size.",
-        format_short(moves.scale, 3)
-    )];
+    let scale = format_short(moves.scale, 3);
+    let caption = [if settled {
+        format!("The blocks that have followed their supports; displacements times {scale}.")
+    } else {
+        format!(
+            "Displacements are exaggerated: the velocities of the mechanism, at unit power of the load, times {scale}. Only \
+             directions and ratios mean something, not the size."
+        )
+    }];
     Some(canvas.finish(&legend, &caption))
 }
 

@@ -5,11 +5,16 @@ use crate::checks::limit::{compare_verdict, verify_reached};
 use crate::results::CaseResult;
 use crate::results::stage_start::search_start;
 use crate::solve::space::{StoredInSpace, gap_in_space, space_problem};
+use crate::solve::space_settlement::Moved;
 use crate::study::{Case, SpaceCase};
-use voussoir_core::certificate::Verdict;
-use voussoir_core::limit::Status;
+use std::collections::BTreeMap;
+use voussoir_core::certificate::{Certificate, Verdict};
+use voussoir_core::limit::{Greatest, Status};
 use voussoir_core::model::Target;
-use voussoir_core::space::{SpaceClaim, SpaceNonAssociated, SpaceVerdict, certify_space};
+use voussoir_core::space::{SpaceClaim, SpaceField, SpaceNonAssociated, SpaceVerdict, certify_space};
+
+/// Greatest difference of stored and given motions of supports, relative to the greatest motion: rounding.
+const SAME_MOTION: f64 = 1e-12;
 
 /// Checks the result of a case in space that ended in stage `last`.
 pub(crate) fn verify(
@@ -46,8 +51,21 @@ pub(crate) fn verify(
         ray: stored.ray.as_ref(),
         non_associated: own.as_ref(),
     };
-    let SpaceVerdict { certificate, status, bounds, greatest } =
-        certify_space(&problem, &claim, gap_in_space(case.solver.settings.tolerance));
+    let gap = gap_in_space(case.solver.settings.tolerance);
+    let moved = space.settles(last).then(|| Moved::new(space, &case.stages, last, &problem, field_factor));
+    let moved = moved.filter(|moved| !moved.is_idle());
+    // If no motion refutes the loads, the motion of the supports is refuted.
+    let blocked = moved.as_ref().filter(|_| result.status == Status::NoEquilibrium && stored.motion.is_none());
+    let SpaceVerdict { mut certificate, status, bounds, greatest } = match blocked {
+        Some(moved) => refuted(moved, stored.ray.as_ref()),
+        None => certify_space(&problem, &claim, gap),
+    };
+    if let Some(moved) = moved.filter(|_| status == Status::Stands) {
+        match followed(&moved, &stored, gap) {
+            Ok(residuals) => certificate.residuals.extend(residuals),
+            Err(why) => findings.expect(false, &why),
+        }
+    }
     let verdict = Verdict { certificate, status, bounds, greatest, start_is_carried: false };
     compare_verdict(result, &verdict, findings);
     let idle = problem.varying.iter().flatten().all(|component| *component == 0.0);
@@ -68,4 +86,29 @@ pub(crate) fn verify(
         findings.0.extend(verdict.certificate.failures);
     }
     Ok(())
+}
+
+/// Returns the residuals of stored displacements of blocks that follow their supports; fails with the reason.
+fn followed(moved: &Moved, stored: &StoredInSpace, gap: f64) -> Result<BTreeMap<String, f64>, String> {
+    let (Some(field), Some(motion), Some(of_all)) = (&stored.field, &stored.motion, &stored.of_all) else {
+        return Err("field and motion must be given for a stage in which supports have moved".into());
+    };
+    let given = moved.all(motion);
+    let greatest = given.iter().flatten().fold(0.0f64, |most, v| most.max(v.abs()));
+    let off = given.iter().flatten().zip(of_all.iter().flatten()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    if off > SAME_MOTION * greatest {
+        return Err(format!("motion: supports differ from the study by {off:.1e}"));
+    }
+    moved.check(field, motion, gap)
+}
+
+/// Returns the verdict on forces that prove that no motion is compatible with the supports.
+fn refuted(moved: &Moved, ray: Option<&SpaceField>) -> SpaceVerdict {
+    let found = ray.ok_or_else(|| "ray is missing".to_string()).and_then(|ray| moved.check_ray(ray));
+    let (status, residuals, failures) = match found {
+        Ok(value) => (Status::NoEquilibrium, BTreeMap::from([("settlement_ray".to_string(), value)]), Vec::new()),
+        Err(why) => (Status::Stalled, BTreeMap::new(), vec![why]),
+    };
+    let certificate = Certificate { passed: failures.is_empty(), residuals, failures };
+    SpaceVerdict { certificate, status, bounds: [None; 2], greatest: Greatest::Open }
 }

@@ -33,7 +33,7 @@ pub struct ProofFields {
 pub struct SpaceProof {
     /// Contact forces.
     pub field: Option<Vec<SpaceFieldEntry>>,
-    /// Velocities of the mechanism.
+    /// Velocities of the mechanism; in a stage that stands after a settlement, displacements \[m, rad\].
     pub motion: Option<Vec<SpaceMotionEntry>>,
     /// Velocities of the mechanism that proves `associated_load_factor`.
     pub associated_motion: Option<Vec<SpaceMotionEntry>>,

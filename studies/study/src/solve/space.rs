@@ -4,6 +4,7 @@ use super::auto::space_solvers;
 use super::case_input::CaseInput;
 use super::limit::{READ_AS_ASSOCIATED, ask, record_stages, start_is_open};
 use super::ours::is_ours;
+use super::space_settlement::follow_supports;
 use crate::results::{CaseResult, NonAssociatedAnswer, ProofFields, SpaceFieldEntry, SpaceMotionEntry, SpaceProof};
 use crate::study::SpaceCase;
 use voussoir_core::limit::{Counters, LimitQuestion, Status};
@@ -41,9 +42,15 @@ pub(crate) fn solve_in_space(input: &CaseInput, space: &SpaceCase) -> CaseResult
         for (name, count) in std::mem::take(&mut result.counters) {
             *counters.entry(name).or_default() += count;
         }
+        if result.status == Status::Stands && space.settles(index) {
+            follow_supports(input, space, (index, &problem), &mut result);
+        }
         record_stages(&mut done, input.stages, index, (&result, Vec::new()));
         if result.status != Status::Stands || index + 1 == input.stages.len() {
-            let read = result.flow_read_as.iter().map(|_| READ_AS_ASSOCIATED.to_string());
+            // A stage that moves supports has its own note.
+            let read =
+                result.flow_read_as.iter().filter(|_| !(result.status == Status::Stands && space.settles(index)));
+            let read = read.map(|_| READ_AS_ASSOCIATED.to_string());
             result.notes.extend(read);
             return CaseResult { stages: done, counters, ..result };
         }
@@ -190,7 +197,7 @@ const SELF_STRESS: &str = "self-stress: forces strictly inside all friction cone
      interlock. Every load is then in equilibrium with some forces, so equilibrium alone proves nothing about this scene";
 
 /// Converts forces to entries, one for each point of each contact of the problem.
-fn field_entries(problem: &SpaceProblem, field: &SpaceField) -> Vec<SpaceFieldEntry> {
+pub(super) fn field_entries(problem: &SpaceProblem, field: &SpaceField) -> Vec<SpaceFieldEntry> {
     let of_contact = |(contact, forces): (&SpaceContact, &Vec<[f64; 3]>)| {
         let entry = |(point, force): (&Vec3, &[f64; 3])| SpaceFieldEntry {
             joint: contact.contact,
@@ -204,8 +211,18 @@ fn field_entries(problem: &SpaceProblem, field: &SpaceField) -> Vec<SpaceFieldEn
 
 /// Converts velocities about the pole to entries at the centroids of all bodies.
 fn motion_entries(space: &SpaceCase, problem: &SpaceProblem, motion: &[SpaceVelocity]) -> Vec<SpaceMotionEntry> {
+    let all: Vec<_> = problem.free.iter().map(|free| free.map_or([0.0; 6], |free| motion[free])).collect();
+    entries_of_all(space, problem, &all)
+}
+
+/// Converts motions of all bodies, also those that the ground holds.
+pub(super) fn entries_of_all(
+    space: &SpaceCase,
+    problem: &SpaceProblem,
+    motion: &[SpaceVelocity],
+) -> Vec<SpaceMotionEntry> {
     let entry = |(index, body): (usize, &SpaceBody)| {
-        let velocity = problem.free[index].map_or([0.0; 6], |free| motion[free]);
+        let velocity = motion[index];
         let velocity = moved_pole(&velocity, &(space.assembly.centroid(index) - problem.pole));
         SpaceMotionEntry { body: body.name.clone(), velocity }
     };
@@ -221,7 +238,10 @@ fn moved_pole(velocity: &SpaceVelocity, arm: &Vec3) -> SpaceVelocity {
 /// Stored forces and velocities in the form of the problem.
 pub(crate) struct StoredInSpace {
     pub field: Option<SpaceField>,
+    /// Motions of the free bodies.
     pub motion: Option<Vec<SpaceVelocity>>,
+    /// Motions of all bodies.
+    pub of_all: Option<Vec<SpaceVelocity>>,
     pub associated_motion: Option<Vec<SpaceVelocity>>,
     pub ray: Option<SpaceField>,
 }
@@ -232,13 +252,19 @@ impl StoredInSpace {
         let forces = |what: &str, entries: &Option<Vec<SpaceFieldEntry>>| {
             entries.as_ref().map(|entries| read_field(problem, what, entries)).transpose()
         };
-        let motion = |entries: &Option<Vec<SpaceMotionEntry>>| {
+        let all = |entries: &Option<Vec<SpaceMotionEntry>>| {
             entries.as_ref().map(|entries| read_motion(space, problem, entries))
         };
-        let (motion, associated_motion) = (motion(&proof.motion), motion(&proof.associated_motion));
+        let free = |all: &Vec<SpaceVelocity>| {
+            let kept = all.iter().zip(&problem.free).filter(|(_, free)| free.is_some());
+            kept.map(|(own, _)| *own).collect()
+        };
+        let (of_all, associated) = (all(&proof.motion), all(&proof.associated_motion));
+        let (motion, associated_motion) = (of_all.as_ref().map(free), associated.as_ref().map(free));
         Ok(StoredInSpace {
             field: forces("field", &proof.field)?,
             motion,
+            of_all,
             associated_motion,
             ray: forces("ray", &proof.ray)?,
         })
@@ -271,6 +297,8 @@ fn read_field(problem: &SpaceProblem, what: &str, entries: &[SpaceFieldEntry]) -
 }
 
 fn read_motion(space: &SpaceCase, problem: &SpaceProblem, entries: &[SpaceMotionEntry]) -> Vec<SpaceVelocity> {
-    let free = entries.iter().enumerate().filter(|(index, _)| problem.free[*index].is_some());
-    free.map(|(index, entry)| moved_pole(&entry.velocity, &(problem.pole - space.assembly.centroid(index)))).collect()
+    let about_pole = |(index, entry): (usize, &SpaceMotionEntry)| {
+        moved_pole(&entry.velocity, &(problem.pole - space.assembly.centroid(index)))
+    };
+    entries.iter().enumerate().map(about_pole).collect()
 }

@@ -1,7 +1,8 @@
 //! A scene in space of a case: its blocks with their contacts, and the loads of its stages.
 
 use super::diagnostics::DiagnosticList;
-use super::tables::{Gravity, StageTable};
+use super::stages::support;
+use super::tables::{Displacement, Gravity, Rotation, SettlementTable, StageTable};
 use crate::config::common_keys::{Kinematics, SolverKeys, own_keys, tag_of};
 use crate::loads::{LoadKind, SpacePlaced, SpaceSite};
 use serde::Deserialize;
@@ -10,7 +11,7 @@ use std::sync::Arc;
 use voussoir_core::law::{FrictionCone, InterfaceLaw};
 use voussoir_core::model::{Stage, Target};
 use voussoir_core::plugin::{Capability, Card, PluginKind, candidate, cards_of};
-use voussoir_core::space::{SpaceAssembly, SpaceLoads, SpaceStage, Vec3, space_loads};
+use voussoir_core::space::{SpaceAssembly, SpaceLoads, SpaceSettlement, SpaceStage, Vec3, space_loads};
 
 /// Blocks in space with the loads of each stage. The stages of the case have the names and targets.
 #[derive(Debug, Clone, Default)]
@@ -26,8 +27,18 @@ pub struct SpaceCase {
 impl SpaceCase {
     /// Returns the wrenches of each stage of the case.
     pub fn loads(&self, stages: &[Stage]) -> Vec<SpaceLoads> {
-        let stages: Vec<_> = stages.iter().zip(&self.stages).collect();
-        space_loads(&self.assembly, &stages)
+        space_loads(&self.assembly, &self.stages(stages))
+    }
+
+    /// Returns the stages of the case with those in space.
+    pub fn stages<'a>(&'a self, stages: &'a [Stage]) -> Vec<(&'a Stage, &'a SpaceStage)> {
+        stages.iter().zip(&self.stages).collect()
+    }
+
+    /// Returns true if a support has moved by the end of a stage.
+    pub fn settles(&self, index: usize) -> bool {
+        let all = self.stages[..=index].iter().flat_map(|stage| &stage.settlements);
+        all.into_iter().any(|own| own.displacement.norm() + own.rotation.norm() > 0.0)
     }
 
     /// Returns the friction cone of each law of the catalogue. An error names the first law of a contact without one that
@@ -85,10 +96,7 @@ pub(super) fn space_stages(
         let gravity = table.gravity.and_then(|gravity| gravity_in_space(diagnostics, gravity, &at));
         let before = diagnostics.found.len();
         let SpacePlaced { forces, accelerations } = placed(diagnostics, &table.loads, assembly, &at);
-        if !table.settlement.is_empty() {
-            let message = "limit analysis in space does not move supports";
-            diagnostics.wrong(&format!("{at}.settlement"), message, "remove this list, or use a plane scene");
-        }
+        let settlements = settlements(diagnostics, &table.settlement, assembly, &at);
         let idle = forces.iter().all(|force| force.force == Vec3::zeros())
             && accelerations.iter().all(|acceleration| *acceleration == Vec3::zeros());
         if idle && stage.target == Target::Collapse && diagnostics.found.len() == before {
@@ -96,7 +104,38 @@ pub(super) fn space_stages(
             let help = "give this stage a load that is not zero; gravity is not multiplied by the factor";
             diagnostics.wrong(&format!("{at}.until"), message, help);
         }
-        out.push(SpaceStage { gravity, forces, accelerations });
+        out.push(SpaceStage { gravity, forces, accelerations, settlements });
+    }
+    out
+}
+
+/// Returns the movements of supports in a stage. A support turns about the mean of the points of its contacts.
+fn settlements(
+    diagnostics: &mut DiagnosticList<'_>,
+    list: &[SettlementTable],
+    assembly: &SpaceAssembly,
+    at: &str,
+) -> Vec<SpaceSettlement> {
+    let mut out = Vec::new();
+    let bodies: Vec<(&str, bool)> = assembly.bodies.iter().map(|b| (b.name.as_str(), b.fixed)).collect();
+    for (number, entry) in list.iter().enumerate() {
+        let at = format!("{at}.settlement.{number}");
+        let Some(body) = support(diagnostics, &entry.support, &bodies, &at) else { continue };
+        let (displacement, rotation) = match (entry.displacement, entry.rotation) {
+            (Displacement::Space(displacement), Rotation::Space(rotation)) => (displacement, rotation),
+            (Displacement::Space(displacement), Rotation::Plane(0.0)) => (displacement, [0.0; 3]),
+            (Displacement::Plane([0.0, 0.0]), Rotation::Space(rotation)) => ([0.0; 3], rotation),
+            (Displacement::Plane([0.0, 0.0]), Rotation::Plane(0.0)) => ([0.0; 3], [0.0; 3]),
+            _ => {
+                let help = "write displacement = [x, y, z] with z upwards, and rotation = [x, y, z]";
+                diagnostics.wrong(&at, "has components in the plane, but the scene is in space", help);
+                continue;
+            }
+        };
+        let touches = assembly.contacts.iter().filter(|contact| contact.minus == body || contact.plus == body);
+        let points: Vec<Vec3> = touches.flat_map(|contact| contact.points.iter().copied()).collect();
+        let about = points.iter().sum::<Vec3>() / points.len().max(1) as f64;
+        out.push(SpaceSettlement { body, displacement: displacement.into(), rotation: rotation.into(), about });
     }
     out
 }

@@ -2,7 +2,7 @@
 
 use super::diagnostics::DiagnosticList;
 use super::resolved::Resolved;
-use super::tables::{FieldTable, Gravity, SettlementTable, StageTable, Until};
+use super::tables::{Displacement, FieldTable, Gravity, Rotation, SettlementTable, StageTable, Until};
 use crate::config::diagnostic::suggest;
 use crate::config::dotted_key::join;
 use crate::loads::{LoadKind, LoadSite, LoadTables, Placed};
@@ -221,6 +221,27 @@ fn build_loads(
     (all, whole)
 }
 
+/// Returns the index of the support with a name among bodies with their names, which are held or free; reports a mistake if
+/// no support has this name.
+pub(super) fn support(
+    diagnostics: &mut DiagnosticList<'_>,
+    name: &str,
+    bodies: &[(&str, bool)],
+    at: &str,
+) -> Option<usize> {
+    let place = bodies.iter().position(|(own, _)| *own == name);
+    if let Some(body) = place.filter(|body| bodies[*body].1) {
+        return Some(body);
+    }
+    let message = match place {
+        Some(_) => format!("\"{name}\" is no support: the block is free and moves by itself"),
+        None => format!("there is no support \"{name}\""),
+    };
+    let held: Vec<&str> = bodies.iter().filter(|(_, held)| *held).map(|(own, _)| *own).collect();
+    diagnostics.wrong(&format!("{at}.support"), message, suggest(name, &held, "supports here"));
+    None
+}
+
 /// Returns the movements of supports in a stage.
 fn build_settlements(
     diagnostics: &mut DiagnosticList<'_>,
@@ -230,25 +251,20 @@ fn build_settlements(
 ) -> Vec<Settlement> {
     let mut out = Vec::new();
     for (number, entry) in list.iter().enumerate() {
-        let support = entry.support.as_str();
-        let fixed: Vec<&str> = assembly.bodies.iter().filter(|b| b.fixed).map(|b| b.name.as_str()).collect();
-        let block = assembly.body(support);
-        let Some(body) = block.filter(|body| assembly.bodies[*body].fixed) else {
-            let message = match block {
-                Some(_) => format!("\"{support}\" is no support: the block is free and moves by itself"),
-                None => format!("there is no support \"{support}\""),
-            };
-            let help = suggest(support, &fixed, "supports here");
-            diagnostics.wrong(&format!("{at}.settlement.{number}.support"), message, help);
+        let bodies: Vec<(&str, bool)> = assembly.bodies.iter().map(|b| (b.name.as_str(), b.fixed)).collect();
+        let Some(body) = support(diagnostics, &entry.support, &bodies, &format!("{at}.settlement.{number}")) else {
+            continue;
+        };
+        let (Displacement::Plane(displacement), Rotation::Plane(rotation)) = (entry.displacement, entry.rotation)
+        else {
+            let message = "has components in space, but the scene is plane";
+            let help = "write displacement = [x, y] with y upwards, and rotation as one number";
+            diagnostics.wrong(&format!("{at}.settlement.{number}"), message, help);
             continue;
         };
         let joint = assembly.joints.iter().find(|joint| joint.minus == body || joint.plus == body);
-        out.push(Settlement {
-            body,
-            displacement: Vec2::from(entry.displacement),
-            rotation: entry.rotation,
-            about: joint.map_or(Vec2::zeros(), Joint::middle),
-        });
+        let about = joint.map_or(Vec2::zeros(), Joint::middle);
+        out.push(Settlement { body, displacement: Vec2::from(displacement), rotation, about });
     }
     out
 }

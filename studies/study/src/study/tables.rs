@@ -11,12 +11,37 @@ use voussoir_core::plugin::{Keys, PluginKind, Shape};
 pub struct SettlementTable {
     /// left, right, or the name of a fixed block
     pub support: String,
-    /// displacement of the support, x to the right and y upwards
-    #[key(names = ["x", "y"], unit = "m", default = [0.0, 0.0])]
-    pub displacement: [f64; 2],
-    /// rotation about the middle of the springing joint, anticlockwise
-    #[key(unit = "rad", default = 0.0)]
-    pub rotation: f64,
+    /// displacement of the support, x to the right and y upwards; in space x, y, z with z upwards
+    #[key(default = [0.0, 0.0])]
+    pub displacement: Displacement,
+    /// rotation about the middle of the springing joint, anticlockwise; in space the rotation vector about the centre of the
+    /// support's contacts
+    #[key(default = 0.0)]
+    pub rotation: Rotation,
+}
+
+/// Displacement of a support.
+#[derive(Debug, Clone, Copy, Keys)]
+#[keys(untagged)]
+pub enum Displacement {
+    /// Components in the plane.
+    #[key(names = ["x", "y"], unit = "m")]
+    Plane([f64; 2]),
+    /// Components in space.
+    #[key(names = ["x", "y", "z"], unit = "m")]
+    Space([f64; 3]),
+}
+
+/// Rotation of a support.
+#[derive(Debug, Clone, Copy, Keys)]
+#[keys(untagged)]
+pub enum Rotation {
+    /// Angle in the plane.
+    #[key(unit = "rad")]
+    Plane(f64),
+    /// Rotation vector in space.
+    #[key(names = ["x", "y", "z"], unit = "rad")]
+    Space([f64; 3]),
 }
 
 /// Gravity from a stage on.

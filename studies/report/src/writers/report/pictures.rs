@@ -41,7 +41,7 @@ pub(super) fn of_case(study: &StudyOutput, place: usize) -> Markup {
             @if let Some(svg) = mechanism {
                 figure class="still" {
                     (PreEscaped(svg))
-                    figcaption { "The mechanism; displacements are exaggerated." }
+                    figcaption { "The blocks as they move; displacements are exaggerated." }
                 }
             }
             @if let Some(svg) = curve_svg(&own, assembly, stages, case) { (figure(&svg, CURVE)) }
