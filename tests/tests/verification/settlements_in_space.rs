@@ -75,7 +75,7 @@ fn cuboid(name: &str, low: [f64; 3], high: [f64; 3], fixed: bool) -> String {
     format!("[[scene.blocks]]\nname = \"{name}\"\nvertices = {corners:?}\nfaces = {faces}\nfixed = {fixed}\n")
 }
 
-/// Returns a study of a cube on the ground between two walls, of which one moves.
+/// Returns a study of a cube on the ground between two walls. One of them moves.
 fn between(moved: [f64; 3]) -> String {
     let mut scene = String::new();
     for (name, low, high, fixed) in [

@@ -30,6 +30,7 @@ pub mod sensitivity;
 mod settlement;
 mod solver_outputs;
 pub(crate) mod space;
+pub(crate) mod space_entries;
 pub(crate) mod space_settlement;
 pub(crate) mod statics;
 mod stored_path;

@@ -5,7 +5,7 @@
 
 use super::auto::space_solvers;
 use super::case_input::CaseInput;
-use super::space::{entries_of_all, field_entries, gap_in_space};
+use super::space_entries::{entries_of_all, field_entries, gap_in_space};
 use crate::results::{CaseResult, ProofFields, SpaceProof};
 use crate::study::SpaceCase;
 use std::collections::BTreeMap;
