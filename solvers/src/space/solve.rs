@@ -3,10 +3,11 @@
 use super::by_clarabel;
 use super::evidence::{Evidence, Field};
 use super::interior_point::{InteriorPoint, greatest};
-use super::program::{Program, Side};
+use super::program::{Bodies, Program, Side};
 use super::settings::SETTINGS;
 use super::uniqueness;
 use voussoir_core::limit::{Counters, LimitQuestion, Status};
+use voussoir_core::model::root;
 use voussoir_core::space::{SpaceAnswer, SpaceContact, SpaceProblem, SpaceVelocity, power};
 
 const IDLE: &str = "every load of this stage acts on bodies that the ground holds";
@@ -82,6 +83,9 @@ fn answer(problem: &SpaceProblem, question: LimitQuestion, method: Method) -> Sp
     let outer = (!problem.is_exact()).then(|| Program::new(problem, start, Side::Outer));
     let search = matches!(question, LimitQuestion::Collapse { .. });
     let mut case = Case { problem, program: &program, outer: outer.as_ref(), counters: Counters::new() };
+    if let Some(motion) = fall(problem, &program) {
+        return case.refuted(&motion);
+    }
     let mut answer = if search && greatest(&program.varying) > 0.0 {
         case.collapse(method, max)
     } else {
@@ -89,6 +93,27 @@ fn answer(problem: &SpaceProblem, question: LimitQuestion, method: Method) -> Sp
     };
     answer.counters = case.counters;
     answer
+}
+
+/// Returns the translation of a group of bodies that no chain of contacts joins to the ground, along the resultant of its loads at
+/// the start. `None` if no such group has a resultant.
+fn fall(problem: &SpaceProblem, program: &Program) -> Option<Bodies> {
+    let ground = problem.bodies;
+    let mut parent: Vec<usize> = (0..=ground).collect();
+    for contact in &problem.contacts {
+        let ends = [contact.minus, contact.plus].map(|body| root(&mut parent, body.unwrap_or(ground)));
+        parent[ends[0]] = ends[1];
+    }
+    let roots: Vec<usize> = (0..=ground).map(|body| root(&mut parent, body)).collect();
+    let mut sums = vec![([0.0; 3], 0.0); ground + 1];
+    for (body, load) in program.base.chunks_exact(6).enumerate().filter(|(body, _)| roots[*body] != roots[ground]) {
+        let (sum, size) = &mut sums[roots[body]];
+        (0..3).for_each(|i| sum[i] += load[i]);
+        *size += greatest(&load[..3]);
+    }
+    let of = sums.iter().position(|(sum, size)| greatest(sum) > SETTINGS.balanced * size)?;
+    let moved = |body: usize| if roots[body] == of { sums[of].0 } else { [0.0; 3] };
+    Some((0..ground).flat_map(|body| moved(body).into_iter().chain([0.0; 3])).collect())
 }
 
 /// A question in work.

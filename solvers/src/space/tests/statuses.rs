@@ -39,6 +39,27 @@ fn a_cube_stands_below_its_collapse_factor_only() {
     assert!((answer.factor.unwrap() - 0.4).abs() < 1e-9);
 }
 
+/// Blocks that nothing holds fall, alone or in contact with each other, also beside a cube that is jammed between walls.
+#[test]
+fn blocks_without_ground_fall() {
+    let mut scene = cube();
+    scene.contacts.push((Some(0), None, vertical(1.0), Vec3::x(), 0.4));
+    scene.contacts.push((Some(0), None, vertical(0.0), -Vec3::x(), 0.4));
+    let low = scene.add_box([0.0, 1.0], [0.0, 1.0], [3.0, 4.0]);
+    for stacked in [false, true] {
+        if stacked {
+            let high = scene.add_box([0.0, 1.0], [0.0, 1.0], [4.0, 5.0]);
+            scene.contacts.push((Some(low), Some(high), rectangle([0.0, 1.0], [0.0, 1.0], 4.0), Vec3::z(), 0.4));
+        }
+        let problem = scene.problem(&Vec3::x());
+        for question in [LimitQuestion::Admissible(0.0), COLLAPSE] {
+            assert_eq!(status(&problem, question), Status::NoEquilibrium);
+            let second = solve_by_clarabel(&problem, question);
+            assert_eq!(certified(&problem, &second, question).status, Status::NoEquilibrium);
+        }
+    }
+}
+
 /// Loads into the ground and loads on nothing but the ground are carried at every factor, without a self-stress.
 #[test]
 fn a_load_into_the_ground_is_unbounded() {
