@@ -101,6 +101,11 @@ fn a_cube_cannot_follow_a_closing_wall() {
     let text = between([-0.02, 0.0, 0.0]);
     let result = answered(&text);
     assert_eq!(result.status, Status::NoEquilibrium, "{:?} {:?}", result.notes, result.certificate);
+    assert!(result.supports_cannot_move());
+    // Without its fields the result keeps the forces that prove it.
+    let mut brief = result.clone();
+    brief.leave_out_fields();
+    assert!(brief.supports_cannot_move());
     let (study, results) = written::results(&text);
     assert_eq!(written::findings(&study, &results), Vec::<String>::new());
     let mut forged: Value = results.clone();

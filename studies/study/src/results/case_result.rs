@@ -5,7 +5,7 @@ use super::entries::{DisplacementEntry, EventEntry, LoadEntry, StateEntry, Yield
 use super::limit_points::{BranchEntry, FollowedTo, LimitPointEntry, StabilityEntry};
 use super::load_factor_error::LoadFactorError;
 use super::output_entry::OutputEntry;
-use super::proof_fields::ProofFields;
+use super::proof_fields::{ProofFields, SpaceProof};
 use super::sensitivity::SensitivityEntry;
 use super::stored_path::StoredPath;
 use serde::{Deserialize, Serialize};
@@ -240,14 +240,18 @@ impl CaseResult {
     /// Returns true if rigid blocks cannot follow their supports. The ray then refutes the motion of the supports, not
     /// the loads.
     pub fn supports_cannot_move(&self) -> bool {
-        self.status == Status::NoEquilibrium && self.proof.ray.is_some()
+        let in_space = || self.proof.space.as_ref().is_some_and(|space| space.ray.is_some());
+        self.status == Status::NoEquilibrium && (self.proof.ray.is_some() || in_space())
     }
 
     /// Removes all forces and motions of blocks and joints, after the certificates have been computed. A ray that
     /// refutes the motion of supports stays, because it is the result.
     pub fn leave_out_fields(&mut self) {
         let ray = self.proof.ray.take().filter(|_| self.status == Status::NoEquilibrium);
-        self.proof = ProofFields { field_factor: self.proof.field_factor, ray, ..ProofFields::default() };
+        let in_space = self.proof.space.take().and_then(|space| space.ray);
+        let in_space = in_space.filter(|_| self.status == Status::NoEquilibrium);
+        let space = in_space.map(|ray| Box::new(SpaceProof { ray: Some(ray), ..SpaceProof::default() }));
+        self.proof = ProofFields { field_factor: self.proof.field_factor, ray, space, ..ProofFields::default() };
         self.carried.joints.clear();
         self.non_associated.lower_proof.iter_mut().for_each(|proof| proof.steps.clear());
         (self.path.displacements, self.path.joint_states) = (None, None);
