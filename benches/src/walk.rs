@@ -55,7 +55,7 @@ impl Walk<'_> {
 
     /// Divides an increment into parts. Each part is computed as one return and as two; their difference controls the
     /// size of the next part. The result is twice the state of two returns minus that of one (implicit Euler
-    /// extrapolated to second order); the stress is that of a return of zero length from there.
+    /// extrapolated to second order); the stress comes from a return of zero length from there.
     fn adaptive(&mut self, from: &Strain, to: &Strain, tolerance: f64, scale: f64) {
         let (mut done, mut part) = (0.0, 1.0_f64);
         let size = self.state.len();

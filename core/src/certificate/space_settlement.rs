@@ -91,8 +91,12 @@ pub fn space_settlement_residuals(
 
 /// Returns the residual `settlement_ray` of forces that prove that no motion is compatible with the supports: their imbalance
 /// and the greatest force outside the cones, times the greatest opening, divided by their negative work on the openings; infinite
-/// without such work.
+/// without such work, or without one force for each point of each contact.
 pub fn space_settlement_ray(problem: &SpaceProblem, openings: &SpaceField, ray: &SpaceField) -> f64 {
+    let fits = |(contact, forces): (&SpaceContact, &Vec<[f64; 3]>)| contact.inner.points.len() == forces.len();
+    if ray.len() != problem.contacts.len() || !problem.contacts.iter().zip(ray).all(fits) {
+        return f64::INFINITY;
+    }
     let still = SpaceProblem {
         fixed: vec![[0.0; 6]; problem.bodies],
         varying: vec![[0.0; 6]; problem.bodies],
@@ -150,7 +154,7 @@ mod tests {
         let of = |force: [f64; 3], open: f64| {
             space_settlement_ray(&problem, &vec![vec![[open, 0.0, 0.0]; 4]], &vec![vec![force; 4]])
         };
-        // Nothing balances these forces.
+        // These forces are not in balance.
         assert!(of([1.0, 0.0, 0.0], -0.1) > 0.1);
         assert_eq!(of([1.0, 0.0, 0.0], 0.1), f64::INFINITY);
         assert!(of([-1.0, 0.0, 0.0], 0.1) > 0.1);

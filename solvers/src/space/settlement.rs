@@ -6,7 +6,7 @@
 //! ```
 //!
 //! g are the jumps that the supports alone cause, with the factors of the cones. Clarabel solves the program of the fields; the
-//! dual solution is the motion. The forces are repaired as those of a collapse. If Σ y·g has no bound, the ray proves that no
+//! dual solution is the motion. The forces are repaired like the forces of a collapse. If Σ y·g has no bound, the ray proves that no
 //! motion is compatible with the supports. Source: as for plane scenes (`limit/settlement.rs`).
 
 use super::by_clarabel::{LeastWork, least_work};

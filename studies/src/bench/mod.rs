@@ -14,7 +14,7 @@ mod sweep;
 
 pub use measure::{BenchOptions, Reference};
 pub use measured::{Bench, Measurement, Other, Problem, Refinement, Source};
-pub use others::read_others;
+pub use others::{Row, read_others};
 pub use output::{csv, profile_chart, table};
 pub use panels::{error_chart, error_panels, ladder};
 pub use sweep::{PARAMETERS, Rung, Sweep, sweep, sweep_csv, sweep_table};

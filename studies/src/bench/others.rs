@@ -6,11 +6,21 @@ use voussoir_study::config::diagnostic::suggest;
 /// Columns of the file.
 const COLUMNS: [&str; 4] = ["problem", "program", "load_factor [-]", "seconds [s]"];
 
-/// A row of the file: the name of its problem, and the measurement with the index of this problem.
-pub type Row = (String, Other);
+/// A row of the file.
+#[derive(Debug)]
+pub struct Row {
+    /// Name of the problem.
+    problem: String,
+    /// Name of the program.
+    program: String,
+    /// Load factor.
+    factor: f64,
+    /// Time \[s\].
+    seconds: f64,
+}
 
-/// Reads the measurements of other programs. `problems` contains the names of the bench's problems in their order. A row whose
-/// load factor is no finite number is a run that failed; it is left out.
+/// Reads the measurements of other programs. `problems` contains the names of the bench's problems. A row whose load
+/// factor is no finite number is a run that failed; it is left out.
 ///
 /// # Errors
 ///
@@ -28,20 +38,17 @@ pub fn read_others(text: &str, problems: &[String]) -> Result<Vec<Row>, String> 
         let record = record.map_err(|error| error.to_string())?;
         let line = record.position().map_or(0, csv::Position::line);
         let cell = |column: usize| record.get(places[column]).unwrap_or("").trim();
-        let problem = problems.iter().position(|name| name == cell(0)).ok_or_else(|| {
+        if !problems.iter().any(|name| name == cell(0)) {
             let names: Vec<&str> = problems.iter().map(String::as_str).collect();
-            format!("line {line}: no problem \"{}\"; {}", cell(0), suggest(cell(0), &names, "problems of this bench"))
-        })?;
+            let help = suggest(cell(0), &names, "problems of this bench");
+            return Err(format!("line {line}: no problem \"{}\"; {help}", cell(0)));
+        }
         let seconds: f64 = cell(3).parse().unwrap_or(f64::NAN);
         if !(seconds > 0.0 && seconds.is_finite()) {
             return Err(format!("line {line}: seconds [s] \"{}\" is no positive number", cell(3)));
         }
-        let factor = cell(2).parse().ok().filter(|factor: &f64| factor.is_finite());
-        if let Some(factor) = factor {
-            rows.push((
-                problems[problem].clone(),
-                Other { problem, program: cell(1).into(), factor, seconds, error: None },
-            ));
+        if let Some(factor) = cell(2).parse().ok().filter(|factor: &f64| factor.is_finite()) {
+            rows.push(Row { problem: cell(0).into(), program: cell(1).into(), factor, seconds });
         }
     }
     Ok(rows)
@@ -51,13 +58,11 @@ impl Bench {
     /// Adds measurements of other programs. Their errors are measured from the references of their problems. A problem that
     /// was not measured is left out.
     pub fn beside(&mut self, rows: Vec<Row>) {
-        let placed = rows.into_iter().filter_map(|(name, own)| {
-            let problem = self.problems.iter().position(|problem| problem.name == name)?;
-            let error = self.problems[problem].reference.as_ref().map(|source| source.error_of(own.factor));
-            Some(Other { problem, error, ..own })
-        });
-        let placed: Vec<Other> = placed.collect();
-        self.others.extend(placed);
+        for Row { problem, program, factor, seconds } in rows {
+            let Some(problem) = self.problems.iter().position(|own| own.name == problem) else { continue };
+            let error = self.problems[problem].reference.as_ref().map(|source| source.error_of(factor));
+            self.others.push(Other { problem, program, factor, seconds, error });
+        }
     }
 }
 

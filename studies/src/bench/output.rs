@@ -74,36 +74,37 @@ pub fn csv(bench: &Bench) -> String {
         "counters",
     ];
     let number = |x: f64| format!("{x:?}");
+    let of_reference = |problem: usize| {
+        let reference = bench.problems[problem].reference.as_ref();
+        [
+            text(reference, |source| number(source.factor)),
+            text(reference, |source| source.from.clone()),
+            text(reference.and_then(|source| source.band), number),
+        ]
+    };
     let row = |own: &Measurement| {
-        let problem = &bench.problems[own.problem];
+        let [factor, from, band] = of_reference(own.problem);
         vec![
-            problem.name.clone(),
+            bench.problems[own.problem].name.clone(),
             own.contestant.clone(),
             own.result.solver.clone(),
             status_word(own.result.status).to_string(),
             own.result.certificate.passed.to_string(),
             text(own.result.load_factor, number),
-            text(problem.reference.as_ref(), |source| number(source.factor)),
-            text(problem.reference.as_ref(), |source| source.from.clone()),
-            text(problem.reference.as_ref().and_then(|source| source.band), number),
+            factor,
+            from,
+            band,
             text(own.error, number),
             number(own.seconds),
             counters(own),
         ]
     };
     let other = |own: &Other| {
-        let problem = &bench.problems[own.problem];
-        let reference = problem.reference.as_ref();
-        let mut cells = vec![String::new(); header.len()];
-        cells[0].clone_from(&problem.name);
-        cells[1].clone_from(&own.program);
-        cells[5] = number(own.factor);
-        cells[6] = text(reference, |source| number(source.factor));
-        cells[7] = text(reference, |source| source.from.clone());
-        cells[8] = text(reference.and_then(|source| source.band), number);
-        cells[9] = text(own.error, number);
-        cells[10] = number(own.seconds);
-        cells
+        let [factor, from, band] = of_reference(own.problem);
+        let name = bench.problems[own.problem].name.clone();
+        let before = [name, own.program.clone(), String::new(), String::new(), String::new(), number(own.factor)];
+        let after = [factor, from, band, text(own.error, number), number(own.seconds), String::new()];
+        before.into_iter().chain(after).collect()
     };
     let rows = bench.measurements.iter().map(row).chain(bench.others.iter().map(other));
     csv_table(header.map(String::from).to_vec(), rows)
@@ -129,8 +130,9 @@ fn solved(bench: &Bench, within: f64) -> Vec<Run<'_>> {
 }
 
 /// Draws performance profiles: the share of problems that a contestant solves within an error, over its time divided by
-/// the least time of all contestants (Dolan and Moré, Math. Program. 91, 2002). A solver has its fastest setting. Each study with several cases has its own
-/// profile. Studies with one case share one. Returns `None` if there is no profile with at least two problems.
+/// the least time of all contestants (Dolan and Moré, Math. Program. 91, 2002). A solver has its fastest setting. Each study
+/// with several cases has its own profile. Studies with one case share one. Returns `None` if no profile has at least two
+/// problems.
 pub fn profile_chart(title: &str, bench: &Bench, within: f64) -> Option<String> {
     let runs = solved(bench, within);
     let mut classes: Vec<(&str, Vec<usize>)> = Vec::new();

@@ -6,7 +6,7 @@ use super::files;
 use super::folder::ResultFolder;
 use super::print::{complain, say};
 use crate::bench::{
-    Bench, BenchOptions, Measurement, Other, PARAMETERS, Reference, bench, csv, error_chart, names, problems,
+    Bench, BenchOptions, Measurement, PARAMETERS, Reference, Row, bench, csv, error_chart, names, problems,
     profile_chart, read_others, sweep, sweep_csv, sweep_table, table,
 };
 use std::io::Write;
@@ -86,7 +86,7 @@ fn with_cases<'a>(path: &Path, loaded: &'a dyn LoadedStudy) -> Result<&'a Study,
 }
 
 /// Reads the measurements of other programs.
-fn others(file: &Path, studies: &[&Study]) -> Result<Vec<(String, Other)>, CliError> {
+fn others(file: &Path, studies: &[&Study]) -> Result<Vec<Row>, CliError> {
     let names: Vec<String> = studies.iter().flat_map(|study| problems(study, studies.len() > 1)).collect();
     read_others(&files::read(file)?, &names)
         .map_err(|why| CliError::wrong_input(format_args!("--others {}: {why}", file.display())))

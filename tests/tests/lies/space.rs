@@ -4,7 +4,7 @@ use super::plug_ins::LIAR;
 use serde::{Deserialize, Serialize};
 use voussoir::core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, Status};
 use voussoir::core::plugin::{Capability, Card, Need, Parameter, PluginKind, Shape};
-use voussoir::core::space::{SpaceAnswer, SpaceProblem};
+use voussoir::core::space::{SpaceAnswer, SpaceField, SpaceProblem, SpaceSettled};
 use voussoir::core::{inventory, typetag};
 use voussoir::solve_case;
 use voussoir_tests::first_case;
@@ -46,6 +46,7 @@ impl LimitSolver for LyingSpace {
         };
         match self.lie.as_str() {
             "honest" => {}
+            lie if lie.starts_with("settled") => {}
             "begins_elsewhere" => {
                 if let LimitQuestion::Admissible(factor) = question {
                     (answer.status, answer.field_factor) = (Status::Stands, factor);
@@ -74,6 +75,29 @@ impl LimitSolver for LyingSpace {
             lie => unreachable!("there is no lie {lie}"),
         }
         Some(answer)
+    }
+
+    fn settle_space(&self, problem: &SpaceProblem, openings: &SpaceField) -> SpaceSettled {
+        let honest: Box<dyn LimitSolver> =
+            serde_json::from_value(serde_json::json!({ "solver": "limit_cones" })).expect("a solver");
+        let SpaceSettled::Follows { mut field, mut motion } = honest.settle_space(problem, openings) else {
+            return SpaceSettled::Refused("it lies about blocks that follow".into());
+        };
+        match self.lie.as_str() {
+            "settled_too_far" => motion.iter_mut().flatten().for_each(|v| *v *= 1.001),
+            "settled_nowhere" => motion.iter_mut().flatten().for_each(|v| *v = 0.0),
+            "settled_by_other_forces" => field.iter_mut().flatten().flatten().for_each(|f| *f *= 1.001),
+            "settled_short" => motion.truncate(motion.len() - 1),
+            "settled_not_finite" => motion[0][3] = f64::NAN,
+            "settled_blocked" => return SpaceSettled::Blocked(field),
+            "settled_blocked_short" => return SpaceSettled::Blocked(field[1..].to_vec()),
+            "settled_blocked_by_nothing" => {
+                field.iter_mut().flatten().flatten().for_each(|f| *f = 0.0);
+                return SpaceSettled::Blocked(field);
+            }
+            _ => {}
+        }
+        SpaceSettled::Follows { field, motion }
     }
 }
 
@@ -134,5 +158,36 @@ fn the_start_of_a_stage_must_be_carried() {
         let told = format!("{lie}: {:?} {:?} {:?}", result.status, result.bounds, result.notes);
         assert_eq!(result.status == Status::NoEquilibrium, lie == "honest", "{told}");
         assert!(matches!(result.status, Status::NoEquilibrium | Status::Open | Status::Stalled), "{told}");
+    }
+}
+
+/// A vault of one strip follows its support. A changed answer about this leaves the stage without a result.
+#[test]
+fn no_lie_about_supports_that_move_is_believed() {
+    let vault = |lie: &str| {
+        format!(
+            "name = \"vault\"\n[scene]\nscene = \"barrel_vault\"\nprofile = {{ shape = \"segmental\", span = 9.42, rise = 2.99 }}\n\
+             thickness = 0.6\nvoussoirs = 9\nlength = 1.0\nmaterial = \"stone\"\njoint = \"dry\"\n[materials.stone]\n\
+             law = \"rigid\"\ndensity = 1.0\n[joints.dry]\nlaw = \"coulomb_associated\"\nfriction = 0.6\n[[stages]]\n\
+             name = \"weight\"\ngravity = 1.0\n[[stages]]\nname = \"settle\"\n\
+             settlement = [{{ support = \"left\", displacement = [-0.01, 0.0, 0.0] }}]\n[solver]\nsolver = \"lying_space\"\n\
+             lie = \"{lie}\"\n"
+        )
+    };
+    for lie in [
+        "honest",
+        "settled_too_far",
+        "settled_nowhere",
+        "settled_by_other_forces",
+        "settled_short",
+        "settled_not_finite",
+        "settled_blocked",
+        "settled_blocked_short",
+        "settled_blocked_by_nothing",
+    ] {
+        let result = solve_case(&first_case(&vault(lie)));
+        let expected = if lie == "honest" { Status::Stands } else { Status::Stalled };
+        assert_eq!(result.status, expected, "{lie}: {:?}", result.notes);
+        assert_eq!(result.certificate.passed, lie == "honest", "{lie}");
     }
 }

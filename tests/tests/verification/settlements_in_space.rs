@@ -75,20 +75,54 @@ fn cuboid(name: &str, low: [f64; 3], high: [f64; 3], fixed: bool) -> String {
     format!("[[scene.blocks]]\nname = \"{name}\"\nvertices = {corners:?}\nfaces = {faces}\nfixed = {fixed}\n")
 }
 
+/// Returns a study of blocks with their names, corners and whether they are held; one support moves.
+fn blocks_settled(blocks: &[(&str, [f64; 3], [f64; 3], bool)], support: &str, moved: [f64; 3]) -> String {
+    let mut scene = String::new();
+    for (name, low, high, fixed) in blocks {
+        let _ = write!(scene, "{}", cuboid(name, *low, *high, *fixed));
+    }
+    let settlement = format!("{{ support = \"{support}\", displacement = {moved:?} }}");
+    let text = settled("scene = \"blocks_3d\"", 0.6, &settlement);
+    let (head, tail) = text.split_once("[materials.stone]").expect("a study");
+    format!("{head}{scene}[materials.stone]{tail}")
+}
+
+/// A beam on two pillars turns, if the right pillar sinks by δ, about the inner edge of the left pillar until it rests on the outer
+/// edge of the right one, by δ over the distance of these edges. A plate on four columns stays on three of them.
+#[test]
+fn beams_and_plates_rest_on_the_edges_of_their_supports() {
+    let beam = [
+        ("beam", [0.0, 0.0, 0.0], [5.0, 1.0, 1.0], false),
+        ("left", [0.0, 0.0, -1.0], [1.0, 1.0, 0.0], true),
+        ("right", [4.0, 0.0, -1.0], [5.0, 1.0, 0.0], true),
+    ];
+    let found = displacements(&answered(&blocks_settled(&beam, "right", [0.0, 0.0, -0.01])));
+    let (_, own) = found.iter().find(|(name, _)| name == "beam").expect("the beam");
+    let turn = 0.01 / 4.0;
+    let exact = [0.5 * turn, 0.0, -1.5 * turn, 0.0, turn, 0.0];
+    assert!(own.iter().zip(exact).all(|(found, exact)| (found - exact).abs() < 1e-9), "{own:?}");
+    let at = |name, x: f64, y: f64| (name, [x, y, -1.0], [x + 1.0, y + 1.0, 0.0], true);
+    let plate = [
+        ("plate", [0.0, 0.0, 0.0], [6.0, 6.0, 0.5], false),
+        at("a", 0.0, 0.0),
+        at("b", 5.0, 0.0),
+        at("c", 0.0, 5.0),
+        at("d", 5.0, 5.0),
+    ];
+    let found = displacements(&answered(&blocks_settled(&plate, "d", [0.0, 0.0, -0.01])));
+    let (_, own) = found.iter().find(|(name, _)| name == "plate").expect("the plate");
+    assert!(own.iter().all(|x| x.abs() < 1e-9), "{own:?}");
+}
+
 /// Returns a study of a cube on the ground between two walls. One of them moves.
 fn between(moved: [f64; 3]) -> String {
-    let mut scene = String::new();
-    for (name, low, high, fixed) in [
+    let blocks = [
         ("ground", [-3.0, -3.0, -1.0], [3.0, 3.0, 0.0], true),
         ("cube", [0.0, 0.0, 0.0], [1.0, 1.0, 1.0], false),
         ("near", [-0.5, 0.0, 0.0], [0.0, 1.0, 1.0], true),
         ("far", [1.0, 0.0, 0.0], [1.5, 1.0, 1.0], true),
-    ] {
-        let _ = write!(scene, "{}", cuboid(name, low, high, fixed));
-    }
-    let text = settled("scene = \"blocks_3d\"", 0.6, &format!("{{ support = \"far\", displacement = {moved:?} }}"));
-    let (head, tail) = text.split_once("[materials.stone]").expect("a study");
-    format!("{head}{scene}[materials.stone]{tail}")
+    ];
+    blocks_settled(&blocks, "far", moved)
 }
 
 /// No motion of a cube is compatible with a wall that closes on it: the forces that prove it pass, and forged ones do not. A wall

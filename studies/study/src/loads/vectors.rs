@@ -44,7 +44,7 @@ pub enum Force {
     Space([f64; 3]),
 }
 
-/// Point \[m\].
+/// Point or displacement \[m\].
 #[derive(Debug, Clone, Copy, PartialEq, Keys)]
 #[keys(untagged)]
 pub enum Place {

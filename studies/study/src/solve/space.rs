@@ -31,15 +31,14 @@ pub(crate) fn solve_in_space(input: &CaseInput, space: &SpaceCase) -> CaseResult
         for (name, count) in std::mem::take(&mut result.counters) {
             *counters.entry(name).or_default() += count;
         }
-        if result.status == Status::Stands && space.settles(index) {
-            follow_supports(input, space, (index, &problem), &mut result);
-        }
+        let settled = result.status == Status::Stands
+            && space.settles(index)
+            && follow_supports(input, space, (index, &problem), &mut result);
         record_stages(&mut done, input.stages, index, (&result, Vec::new()));
         if result.status != Status::Stands || index + 1 == input.stages.len() {
             // A stage that moves supports has its own note.
-            let read =
-                result.flow_read_as.iter().filter(|_| !(result.status == Status::Stands && space.settles(index)));
-            let read = read.map(|_| READ_AS_ASSOCIATED.to_string());
+            let read = result.flow_read_as.iter().filter(|_| !settled).map(|_| READ_AS_ASSOCIATED.to_string());
+            let read: Vec<String> = read.collect();
             result.notes.extend(read);
             return CaseResult { stages: done, counters, ..result };
         }

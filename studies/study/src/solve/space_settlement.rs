@@ -84,7 +84,7 @@ impl Moved {
         if value <= RAY { Ok(value) } else { Err(format!("settlement_ray: {value:.3e} exceeds {RAY:.1e}")) }
     }
 
-    /// Returns the motions of all bodies from those of the free ones.
+    /// Returns the motions of all bodies from the motions of the free bodies.
     pub(crate) fn all(&self, motion: &[SpaceVelocity]) -> Vec<SpaceVelocity> {
         let of = |(free, own): (&Option<usize>, &Option<SpaceVelocity>)| match free {
             Some(free) => motion[*free],
@@ -100,93 +100,64 @@ impl Moved {
 }
 
 /// Adds field, displacements and residuals of the blocks due to their settlements to the result of a stage that stands. If
-/// nothing is proved, the stage is stalled.
+/// nothing is proved, the stage is stalled. Returns true if some support has moved against another body.
 pub(super) fn follow_supports(
     input: &CaseInput,
     space: &SpaceCase,
     (index, problem): (usize, &SpaceProblem),
     result: &mut CaseResult,
-) {
+) -> bool {
     let factor = result.proof.field_factor.unwrap_or(0.0);
     let moved = Moved::new(space, input.stages, index, problem, factor);
     if moved.is_idle() {
-        return;
+        return false;
     }
-    if let Err(why) = followed(input, space, (index, problem), (&moved, factor), result) {
-        result.status = Status::Stalled;
-        result.certificate.passed = false;
-        result.certificate.failures.push(why.clone());
-        result.notes.push(why);
-    }
-}
-
-fn followed(
-    input: &CaseInput,
-    space: &SpaceCase,
-    (index, problem): (usize, &SpaceProblem),
-    (moved, factor): (&Moved, f64),
-    result: &mut CaseResult,
-) -> Result<(), String> {
     let selected = input.of_stages.get(index).and_then(Option::as_ref).unwrap_or(input.solver);
     let mut refusal = "no solver supports scenes in space".to_string();
     for (_, solver) in space_solvers(selected) {
-        match solver.settle_space(&moved.problem, &moved.openings) {
+        let found = match solver.settle_space(&moved.problem, &moved.openings) {
             SpaceSettled::Follows { field, motion } => {
-                fits(&moved.problem, &field)?;
-                if motion.len() != moved.problem.bodies {
-                    return Err("the motion does not have one displacement for each free body".into());
-                }
-                let residuals = moved.check(&field, &motion, gap_in_space(input.settings.tolerance))?;
-                result.certificate.residuals.extend(residuals);
-                result.proof = ProofFields {
-                    field_factor: Some(factor),
-                    space: Some(Box::new(SpaceProof {
+                let gap = gap_in_space(input.settings.tolerance);
+                moved.check(&field, &motion, gap).map(|residuals| {
+                    result.certificate.residuals.extend(residuals);
+                    result.proof = proof(SpaceProof {
                         field: Some(field_entries(problem, &field)),
                         motion: Some(entries_of_all(space, problem, &moved.all(&motion))),
                         ..SpaceProof::default()
-                    })),
-                    ..ProofFields::default()
-                };
-                if problem.non_associated() {
-                    result.flow_read_as = Some("associated".into());
-                    result.notes.push(ASSOCIATED.into());
-                }
-                return Ok(());
+                    });
+                    result.proof.field_factor = Some(factor);
+                    if problem.non_associated() {
+                        result.flow_read_as = Some("associated".into());
+                        result.notes.push(ASSOCIATED.into());
+                    }
+                })
             }
-            SpaceSettled::Blocked(ray) => {
-                fits(&moved.problem, &ray)?;
-                let residual = moved.check_ray(&ray)?;
+            SpaceSettled::Blocked(ray) => moved.check_ray(&ray).map(|residual| {
                 result.status = Status::NoEquilibrium;
                 result.certificate = Certificate {
                     passed: true,
                     residuals: BTreeMap::from([("settlement_ray".to_string(), residual)]),
                     failures: Vec::new(),
                 };
-                result.proof = ProofFields {
-                    space: Some(Box::new(SpaceProof {
-                        ray: Some(field_entries(problem, &ray)),
-                        ..SpaceProof::default()
-                    })),
-                    ..ProofFields::default()
-                };
+                result.proof = proof(SpaceProof { ray: Some(field_entries(problem, &ray)), ..SpaceProof::default() });
                 result.notes.push(BLOCKED.into());
-                return Ok(());
-            }
-            SpaceSettled::Refused(why) => refusal = why,
+            }),
+            SpaceSettled::Refused(why) => Err(why),
+        };
+        match found {
+            Ok(()) => return true,
+            Err(why) => refusal = why,
         }
     }
-    Err(refusal)
+    result.status = Status::Stalled;
+    result.certificate.passed = false;
+    result.certificate.failures.push(refusal.clone());
+    result.notes.push(refusal);
+    true
 }
 
-/// Fails if forces do not have one entry for each point of each contact, or are not finite.
-fn fits(problem: &SpaceProblem, field: &SpaceField) -> Result<(), String> {
-    let same = problem.contacts.iter().zip(field).all(|(contact, own)| contact.inner.points.len() == own.len());
-    let finite = field.iter().flatten().flatten().all(|f| f.is_finite());
-    if field.len() == problem.contacts.len() && same && finite {
-        Ok(())
-    } else {
-        Err("the field does not have one finite force for each point of each contact".into())
-    }
+fn proof(space: SpaceProof) -> ProofFields {
+    ProofFields { space: Some(Box::new(space)), ..ProofFields::default() }
 }
 
 const ASSOCIATED: &str =

@@ -2,9 +2,9 @@
 
 use super::diagnostics::DiagnosticList;
 use super::stages::support;
-use super::tables::{Displacement, Gravity, Rotation, SettlementTable, StageTable};
+use super::tables::{Gravity, Rotation, SettlementTable, StageTable};
 use crate::config::common_keys::{Kinematics, SolverKeys, own_keys, tag_of};
-use crate::loads::{LoadKind, SpacePlaced, SpaceSite};
+use crate::loads::{Components, LoadKind, SpacePlaced, SpaceSite};
 use serde::Deserialize;
 use serde_json::Value as Json;
 use std::sync::Arc;
@@ -121,21 +121,22 @@ fn settlements(
     for (number, entry) in list.iter().enumerate() {
         let at = format!("{at}.settlement.{number}");
         let Some(body) = support(diagnostics, &entry.support, &bodies, &at) else { continue };
-        let (displacement, rotation) = match (entry.displacement, entry.rotation) {
-            (Displacement::Space(displacement), Rotation::Space(rotation)) => (displacement, rotation),
-            (Displacement::Space(displacement), Rotation::Plane(0.0)) => (displacement, [0.0; 3]),
-            (Displacement::Plane([0.0, 0.0]), Rotation::Space(rotation)) => ([0.0; 3], rotation),
-            (Displacement::Plane([0.0, 0.0]), Rotation::Plane(0.0)) => ([0.0; 3], [0.0; 3]),
-            _ => {
-                let help = "write displacement = [x, y, z] with z upwards, and rotation = [x, y, z]";
-                diagnostics.wrong(&at, "has components in the plane, but the scene is in space", help);
-                continue;
-            }
+        // The defaults of both keys are zero, in the form of a plane scene.
+        let still = entry.displacement.plane().is_some_and(|own| own.norm() == 0.0);
+        let displacement = entry.displacement.space().or_else(|| still.then(Vec3::zeros));
+        let rotation = match entry.rotation {
+            Rotation::Space(rotation) => Some(rotation.into()),
+            Rotation::Plane(angle) => (angle == 0.0).then(Vec3::zeros),
+        };
+        let (Some(displacement), Some(rotation)) = (displacement, rotation) else {
+            let help = "write displacement = [x, y, z] with z upwards, and rotation = [x, y, z]";
+            diagnostics.wrong(&at, "has components in the plane, but the scene is in space", help);
+            continue;
         };
         let touches = assembly.contacts.iter().filter(|contact| contact.minus == body || contact.plus == body);
         let points: Vec<Vec3> = touches.flat_map(|contact| contact.points.iter().copied()).collect();
         let about = points.iter().sum::<Vec3>() / points.len().max(1) as f64;
-        out.push(SpaceSettlement { body, displacement: displacement.into(), rotation: rotation.into(), about });
+        out.push(SpaceSettlement { body, displacement, rotation, about });
     }
     out
 }

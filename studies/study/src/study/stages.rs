@@ -2,10 +2,10 @@
 
 use super::diagnostics::DiagnosticList;
 use super::resolved::Resolved;
-use super::tables::{Displacement, FieldTable, Gravity, Rotation, SettlementTable, StageTable, Until};
+use super::tables::{FieldTable, Gravity, Rotation, SettlementTable, StageTable, Until};
 use crate::config::diagnostic::suggest;
 use crate::config::dotted_key::join;
-use crate::loads::{LoadKind, LoadSite, LoadTables, Placed};
+use crate::loads::{Components, LoadKind, LoadSite, LoadTables, Placed};
 use serde::Deserialize;
 use serde_json::Value as Json;
 use voussoir_core::model::geometry::Vec2;
@@ -252,19 +252,16 @@ fn build_settlements(
     let mut out = Vec::new();
     for (number, entry) in list.iter().enumerate() {
         let bodies: Vec<(&str, bool)> = assembly.bodies.iter().map(|b| (b.name.as_str(), b.fixed)).collect();
-        let Some(body) = support(diagnostics, &entry.support, &bodies, &format!("{at}.settlement.{number}")) else {
-            continue;
-        };
-        let (Displacement::Plane(displacement), Rotation::Plane(rotation)) = (entry.displacement, entry.rotation)
-        else {
-            let message = "has components in space, but the scene is plane";
+        let at = format!("{at}.settlement.{number}");
+        let Some(body) = support(diagnostics, &entry.support, &bodies, &at) else { continue };
+        let (Some(displacement), Rotation::Plane(rotation)) = (entry.displacement.plane(), entry.rotation) else {
             let help = "write displacement = [x, y] with y upwards, and rotation as one number";
-            diagnostics.wrong(&format!("{at}.settlement.{number}"), message, help);
+            diagnostics.wrong(&at, "has components in space, but the scene is plane", help);
             continue;
         };
         let joint = assembly.joints.iter().find(|joint| joint.minus == body || joint.plus == body);
         let about = joint.map_or(Vec2::zeros(), Joint::middle);
-        out.push(Settlement { body, displacement: Vec2::from(displacement), rotation, about });
+        out.push(Settlement { body, displacement, rotation, about });
     }
     out
 }

@@ -2,6 +2,7 @@
 
 use super::resolved::Resolved;
 use crate::config::common_keys::Stop;
+use crate::loads::Place;
 use serde_json::{Map, Value as Json};
 use std::collections::BTreeMap;
 use voussoir_core::plugin::{Keys, PluginKind, Shape};
@@ -13,23 +14,11 @@ pub struct SettlementTable {
     pub support: String,
     /// displacement of the support, x to the right and y upwards; in space x, y, z with z upwards
     #[key(default = [0.0, 0.0])]
-    pub displacement: Displacement,
+    pub displacement: Place,
     /// rotation about the middle of the springing joint, anticlockwise; in space the rotation vector about the centre of the
     /// support's contacts
     #[key(default = 0.0)]
     pub rotation: Rotation,
-}
-
-/// Displacement of a support.
-#[derive(Debug, Clone, Copy, Keys)]
-#[keys(untagged)]
-pub enum Displacement {
-    /// Components in the plane.
-    #[key(names = ["x", "y"], unit = "m")]
-    Plane([f64; 2]),
-    /// Components in space.
-    #[key(names = ["x", "y", "z"], unit = "m")]
-    Space([f64; 3]),
 }
 
 /// Rotation of a support.
