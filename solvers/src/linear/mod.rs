@@ -7,6 +7,7 @@ pub(crate) mod condensed;
 pub(crate) mod csr;
 pub(crate) mod dense;
 pub(crate) mod factorised;
+pub(crate) mod null_space;
 #[cfg(test)]
 mod tests;
 pub(crate) mod updated;

@@ -93,6 +93,22 @@ pub struct JointSettings {
     pub differ: f64,
     /// Greatest number of courses that start at a lower state.
     pub rounds: usize,
+    /// Greatest number of mechanisms tried in the descent from a state.
+    pub descents: usize,
+    /// Greatest number of bodies of a scene with descents: each step decomposes a dense matrix.
+    pub descent_bodies: usize,
+    /// Number of slow points and contacts that are tried at rest.
+    pub slowest: usize,
+    /// Greatest change of a direction of slip in a descent \[rad\].
+    pub turn: f64,
+    /// Change of a direction of slip below which no descent is tried \[rad\].
+    pub least_turn: f64,
+    /// Distance from the friction limit, relative to it, at which a point may slip.
+    pub full: f64,
+    /// Normal force, relative to the greatest, below which a point carries nothing.
+    pub idle: f64,
+    /// Singular value, relative to the greatest, that counts as zero.
+    pub null: f64,
     /// Jump, relative to the greatest, of a point that neither slips nor opens.
     pub at_rest: f64,
     /// Unbalanced force of a step with the law's own friction.
@@ -148,6 +164,14 @@ pub const JOINTS: JointSettings = JointSettings {
     softest: 1e-2,
     differ: 1e-9,
     rounds: 8,
+    descents: 100,
+    descent_bodies: 60,
+    slowest: 8,
+    turn: 0.3,
+    least_turn: 1e-6,
+    full: 1e-7,
+    idle: 1e-8,
+    null: 1e-10,
     at_rest: 1e-10,
     balanced: 1e-14,
     nearly: 1e-12,

@@ -14,6 +14,7 @@
 use super::piece::point::Point;
 use crate::contact::facet::{dilatancy, dot, multipliers};
 use crate::contact::mode::ContactMode;
+use crate::linear::null_space::null_space;
 use crate::optimise::dense_simplex::Feasibility;
 use crate::path::system::{Load, System};
 use crate::rate::mechanism::mechanisms;
@@ -34,16 +35,9 @@ pub fn unique(system: &System, points: &[Point], load: &Load, x: &[f64], gaps: &
         return None;
     }
     let size = gaps.iter().flatten().fold(0.0, |a: f64, g| a.max(g.abs()));
-    // Rows of zeros make the decomposition return all right singular vectors.
     let space = |flows: &dyn Fn(usize) -> Option<Vec<[f64; 2]>>| {
         let rows: Vec<Vec<f64>> = (0..points.len()).flat_map(|c| constraints(system, c, flows(c))).collect();
-        let height = rows.len().max(freedoms);
-        let matrix = DMatrix::from_fn(height, freedoms, |i, j| rows.get(i).map_or(0.0, |row| row[j]));
-        // R of A = Q R has the same singular values and right vectors.
-        let svd = matrix.qr().unpack_r().try_svd(false, true, f64::EPSILON, 10_000)?;
-        let (values, vectors) = (svd.singular_values, svd.v_t?);
-        let null: Vec<usize> = (0..freedoms).filter(|k| values[*k] <= SETTINGS.admissible * values.max()).collect();
-        Some(DMatrix::from_fn(freedoms, null.len(), |i, k| vectors[(null[k], i)]))
+        null_space(&DMatrix::from_fn(rows.len(), freedoms, |i, j| rows[i][j]), SETTINGS.admissible)
     };
     let possible = |c: usize| {
         let Some(facets) = &system.facets[c] else { return Some(Vec::new()) };

@@ -1,15 +1,14 @@
 //! The answer with the laws' own flow: the associated bound, and the least state that the courses find.
 
 use super::course::{End, State, course, live_load};
-use super::least::{Associated, least};
+use super::descent::{Descent, Found};
+use super::least::Associated;
 use super::point::Spring;
 use super::step::Joints;
 use crate::space::program::{Program, Side};
 use crate::space::settings::JOINTS;
 use voussoir_core::limit::{Counters, LimitQuestion, Status};
-use voussoir_core::space::{
-    SpaceAnswer, SpaceContact, SpaceField, SpaceNonAssociated, SpaceProblem, SpaceVelocity, power,
-};
+use voussoir_core::space::{SpaceAnswer, SpaceContact, SpaceNonAssociated, SpaceProblem, power};
 
 const STRENGTHS: &str = "joints with cohesion, tension or crushing are read with associated flow";
 
@@ -30,6 +29,7 @@ pub fn answer(problem: &SpaceProblem, question: LimitQuestion, solve: Associated
     let program = Program::new(problem, start, Side::Inner);
     let (mut states, mut failures): (Vec<Found>, Vec<String>) = (Vec::new(), Vec::new());
     let mut counters = std::mem::take(&mut associated.counters);
+    let descent = Descent { problem, solve, start };
     let zero_stress = JOINTS.ratios.map(|ratio| (ratio, None));
     let known = associated.field.as_ref().filter(|_| associated.status == Status::Collapse);
     let from_field = known.map(|field| JOINTS.ratios_from_field.map(|ratio| (ratio, Some(field))));
@@ -47,7 +47,7 @@ pub fn answer(problem: &SpaceProblem, question: LimitQuestion, solve: Associated
         let mut fails =
             |why: String| failures.push(format!("elastic joints with k_t/k_n = {ratio}, from {from}: {why}"));
         match end {
-            End::Settled(state) => states.push(lowest((problem, solve), &mut joints, state, &mut counters)),
+            End::Settled(state) => states.push(lowest(&descent, &mut joints, state, &mut counters)),
             End::Wanders([least, greatest], excess) => {
                 let [least, greatest] = [least, greatest].map(|lambda| start + lambda * program.unit);
                 fails(format!(
@@ -71,17 +71,18 @@ pub fn answer(problem: &SpaceProblem, question: LimitQuestion, solve: Associated
     if let (Some(least), Some(greatest)) = (states.first(), states.last())
         && greatest.factor - least.factor > JOINTS.differ * greatest.factor.abs()
     {
-        let (least, greatest) = (least.factor, greatest.factor);
+        let near =
+            states.iter().filter(|state| state.factor - least.factor <= JOINTS.differ * least.factor.abs()).count();
+        let local = if least.local { "; no mechanism tried near it has a lower factor" } else { "" };
+        let (count, all, least, greatest) = (states.len(), courses.len(), least.factor, greatest.factor);
         notes.push(format!(
-            "{} of {} courses of elastic joints end at a collapse state; the factors are from {least:.9} to {greatest:.9}, and the \
-             least is given",
-            states.len(),
-            courses.len()
+            "{count} of {all} courses of elastic joints end at a collapse state, {near} of them at the least one, which is given; the \
+             factors are from {least:.9} to {greatest:.9}{local}"
         ));
     }
     let answer = SpaceAnswer { non_associated: Some(own), counters, ..SpaceAnswer::default() };
     match states.into_iter().next().filter(|state| state.factor <= max) {
-        Some(Found { factor, field, motion }) => SpaceAnswer {
+        Some(Found { factor, field, motion, .. }) => SpaceAnswer {
             status: Status::Collapse,
             factor: Some(factor),
             field_factor: factor,
@@ -97,23 +98,16 @@ pub fn answer(problem: &SpaceProblem, question: LimitQuestion, solve: Associated
     }
 }
 
-/// A state in the units of the problem.
-struct Found {
-    factor: f64,
-    field: SpaceField,
-    motion: Vec<SpaceVelocity>,
-}
-
-/// Returns the lowest state that is reached from a state: the least one of its mechanism, then of the mechanism of joints that are
-/// loaded from there, and so on.
-fn lowest(asked: (&SpaceProblem, Associated), joints: &mut Joints, state: State, counters: &mut Counters) -> Found {
-    let mut lowest = found(asked, joints, &state, counters);
+/// Returns the lowest state that is reached from a state: the least one of its mechanism, then those of mechanisms nearby, then of the
+/// mechanism of joints that are loaded from there, and so on.
+fn lowest(descent: &Descent, joints: &mut Joints, state: State, counters: &mut Counters) -> Found {
+    let mut lowest = found(descent, joints, &state, counters);
     for _ in 0..JOINTS.rounds {
         joints.press(&lowest.field);
         let lambda = (lowest.factor - joints.program.start) / joints.program.unit;
         let End::Settled(state) = live_load(joints, lambda) else { break };
         let before = lowest.factor;
-        let next = found(asked, joints, &state, counters);
+        let next = found(descent, joints, &state, counters);
         if next.factor <= before {
             lowest = next;
         }
@@ -124,21 +118,13 @@ fn lowest(asked: (&SpaceProblem, Associated), joints: &mut Joints, state: State,
     lowest
 }
 
-/// Returns the state of the least factor with the mechanism of a state.
-fn found(
-    (problem, solve): (&SpaceProblem, Associated),
-    joints: &Joints,
-    state: &State,
-    counters: &mut Counters,
-) -> Found {
+/// Returns the lowest state with the mechanism of a state or one nearby.
+fn found(descent: &Descent, joints: &Joints, state: &State, counters: &mut Counters) -> Found {
     let program = joints.program;
-    let mut motion = program.motion(&state.motion);
-    let unit = power(&problem.varying, &motion);
-    motion.iter_mut().flatten().for_each(|v| *v /= unit);
     let factor = program.start + state.lambda * program.unit;
-    let least = least(problem, solve, (program.start, factor), &joints.jumps(&state.motion), counters);
-    let (factor, field) = least.unwrap_or_else(|| (factor, program.by_contacts(&state.forces)));
-    Found { factor, field, motion }
+    let known = (factor, program.by_contacts(&state.forces));
+    let (found, dual) = descent.of_mechanism(program.motion(&state.motion), known, counters);
+    descent.descend(found, dual, counters)
 }
 
 /// Returns springs in proportion to the areas of the points, with the mean normal stiffness of one.

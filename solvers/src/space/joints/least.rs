@@ -8,7 +8,7 @@
 use crate::space::settings::JOINTS;
 use voussoir_core::law::FrictionCone;
 use voussoir_core::limit::{Counters, LimitQuestion};
-use voussoir_core::space::{PointSet, SpaceAnswer, SpaceContact, SpaceField, SpaceProblem};
+use voussoir_core::space::{PointSet, SpaceAnswer, SpaceContact, SpaceField, SpaceProblem, SpaceVelocity};
 
 /// Solves a problem with associated flow.
 pub type Associated = fn(&SpaceProblem, LimitQuestion) -> SpaceAnswer;
@@ -73,15 +73,22 @@ fn replaced(problem: &SpaceProblem, roles: &[Vec<Role>]) -> Vec<(SpaceContact, V
     contacts
 }
 
-/// Returns the least factor at or above `start` of a mechanism with these jumps, and its forces, from a state at a factor. `None` if
-/// no lower one is proved.
+/// The least state of a mechanism.
+pub struct Least {
+    /// Factor and forces, if they are below those of the known state.
+    pub state: Option<(f64, SpaceField)>,
+    /// The dual motion: it shows how the factor depends on the directions of slip.
+    pub dual: Option<Vec<SpaceVelocity>>,
+}
+
+/// Returns the least state at or above `start` of a mechanism with these jumps, from a state at a factor.
 pub fn least(
     problem: &SpaceProblem,
     solve: Associated,
     (start, factor): (f64, f64),
     jumps: &[[f64; 3]],
     counters: &mut Counters,
-) -> Option<(f64, SpaceField)> {
+) -> Least {
     let roles = roles(problem, jumps);
     let (contacts, places): (Vec<_>, Vec<_>) = replaced(problem, &roles).into_iter().unzip();
     let wrenches = problem.fixed.iter().zip(&problem.varying);
@@ -92,9 +99,20 @@ pub fn least(
     for (name, count) in answer.counters {
         *counters.entry(name).or_default() += count;
     }
-    let forces = answer.field.filter(|_| answer.field_factor > 0.0)?;
+    let known = answer.field.filter(|_| answer.field_factor > 0.0);
+    let state = known.map(|forces| (factor - answer.field_factor, own_forces(problem, &roles, &places, &forces)));
+    Least { state, dual: answer.motion }
+}
+
+/// Returns the forces of all points from those of the contacts that replace them.
+fn own_forces(
+    problem: &SpaceProblem,
+    roles: &[Vec<Role>],
+    places: &[Vec<(usize, usize)>],
+    forces: &SpaceField,
+) -> SpaceField {
     let mut field: SpaceField = roles.iter().map(|roles| vec![[0.0; 3]; roles.len()]).collect();
-    for (places, forces) in places.iter().zip(&forces) {
+    for (places, forces) in places.iter().zip(forces) {
         for ((contact, point), force) in places.iter().zip(forces) {
             let friction = problem.contacts[*contact].law.friction;
             field[*contact][*point] = match roles[*contact][*point] {
@@ -106,5 +124,5 @@ pub fn least(
             };
         }
     }
-    Some((factor - answer.field_factor, field))
+    field
 }

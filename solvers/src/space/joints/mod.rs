@@ -7,6 +7,7 @@
 
 mod answer;
 mod course;
+mod descent;
 mod least;
 mod point;
 mod step;

@@ -2,7 +2,7 @@
 
 mod closed_forms;
 mod invariance;
-mod own_flow;
+pub mod own_flow;
 mod random;
 mod scenes;
 mod statuses;

@@ -102,15 +102,18 @@ fn a_slab_is_drawn_out_from_under_a_block_at_a_wall() {
     }
 }
 
-/// In a corner of two walls the slab may turn while it slides: the factor is at most the factor of a pure
-/// translation.
+/// The slab in a corner of two walls, pulled along the diagonal.
+pub fn in_a_corner() -> SpaceProblem {
+    under_a_block(0.6, &[Vec3::x(), Vec3::y()], &Vec3::new(1.0, 1.0, 0.0).normalize())
+}
+
+/// In a corner the slab turns about one of its own corners while it slides: a state at 0.857514, below the 0.966659 of the translation.
+/// Eighty random starts of an independent program found 0.8574, with states that hold to 1e-6.
 #[test]
 fn a_slab_is_drawn_out_from_a_corner() {
-    let diagonal = Vec3::new(1.0, 1.0, 0.0).normalize();
-    let (least, associated) = found(&under_a_block(0.6, &[Vec3::x(), Vec3::y()], &diagonal));
+    let (least, associated) = found(&in_a_corner());
     meets(associated.unwrap(), 2.250_147_330_8, "associated");
-    let ratio = f64::sqrt(2.0) * 0.36 / 0.8;
-    assert!(least <= 0.6 * (1.0 + 1.0 / (1.0 + ratio)) * (1.0 + EXACT), "{least}");
+    meets(least, 0.857_514_057_75, "least");
 }
 
 /// A mirrored and turned scene has the same load.
@@ -118,7 +121,7 @@ fn a_slab_is_drawn_out_from_a_corner() {
 fn loads_do_not_depend_on_the_frame() {
     let turn = Rotation3::from_euler_angles(0.4, -1.1, 2.3);
     let mirror = |x: &Vec3| Vec3::new(x.x, -x.y, x.z);
-    for problem in [groove(45.0, 0.5, 6.0), under_a_block(0.6, &[Vec3::x()], &Vec3::x())] {
+    for problem in [groove(45.0, 0.5, 6.0), under_a_block(0.6, &[Vec3::x()], &Vec3::x()), in_a_corner()] {
         let own = found(&problem).0;
         meets(found(&mapped(&problem, |x| turn * x, |x| turn * x, false)).0, own, "turned");
         meets(found(&mapped(&problem, mirror, mirror, true)).0, own, "mirrored");

@@ -1,0 +1,348 @@
+//! Descent over mechanisms: from a collapse state to a state with a lower factor and a mechanism nearby.
+//!
+//! `least` gives the least factor of a mechanism q, and the dual motion y of this program. If a mechanism changes by δq, the direction d
+//! of a slipping point changes by δd = P δv / |v|, with v its slip and P the part across it. Virtual power with y gives the change of the
+//! factor,
+//!
+//! ```text
+//! δλ = −Σ μ n δd·y_t = −Σ (μ n / |v|) (P y_t)·(P δv)
+//! ```
+//!
+//! with the slip y_t of the point in y. The steepest descent in the metric of the weights μ n / |v| is the projection of y on the motions
+//! that keep every state possible: points that carry neither open nor close, points that stick do not slip, others do not overlap.
+
+use super::least::{Associated, Least, least};
+use crate::linear::null_space::null_space;
+use crate::space::settings::JOINTS;
+use nalgebra::{DMatrix, DVector};
+use voussoir_core::limit::Counters;
+use voussoir_core::model::space::velocity_at;
+use voussoir_core::space::{SpaceContact, SpaceField, SpaceProblem, SpaceVelocity, Vec3, power};
+
+/// A state in the units of the problem.
+pub struct Found {
+    /// Its factor.
+    pub factor: f64,
+    /// Its forces \[N\].
+    pub field: SpaceField,
+    /// Its mechanism with p·q = 1.
+    pub motion: Vec<SpaceVelocity>,
+    /// True if no mechanism tried near it has a lower factor.
+    pub local: bool,
+}
+
+/// The dual motion of a least state.
+pub type Dual = Option<Vec<SpaceVelocity>>;
+
+/// The search of lower states.
+pub struct Descent<'a> {
+    /// The problem.
+    pub problem: &'a SpaceProblem,
+    /// The solver of associated flow.
+    pub solve: Associated,
+    /// The factor at which the loads start.
+    pub start: f64,
+}
+
+impl Descent<'_> {
+    /// Returns the least state of a mechanism, from a state at a factor, with the dual motion.
+    pub fn of_mechanism(
+        &self,
+        mut motion: Vec<SpaceVelocity>,
+        (factor, field): (f64, SpaceField),
+        counters: &mut Counters,
+    ) -> (Found, Dual) {
+        let unit = power(&self.problem.varying, &motion);
+        motion.iter_mut().flatten().for_each(|v| *v /= unit);
+        let jumps = jumps(self.problem, &motion);
+        let Least { state, dual } = least(self.problem, self.solve, (self.start, factor), &jumps, counters);
+        let (factor, field) = state.unwrap_or((factor, field));
+        (Found { factor, field, motion, local: false }, dual)
+    }
+
+    /// Follows the descent from a state with its dual motion.
+    pub fn descend(&self, mut found: Found, mut dual: Dual, counters: &mut Counters) -> Found {
+        let small = self.problem.bodies <= JOINTS.descent_bodies;
+        let dilates = self.problem.contacts.iter().any(|contact| contact.law.dilatancy > 0.0);
+        let mut left = if small && !dilates { JOINTS.descents } else { 0 };
+        let mut turn = JOINTS.turn;
+        while left > 0 {
+            let Some(around) = Surroundings::new(self.problem, &found) else { break };
+            let mut lower = None;
+            for motion in around.at_rest() {
+                lower = lower.or_else(|| self.lower(&found, motion, &mut left, counters));
+            }
+            let step = dual.as_ref().filter(|_| lower.is_none()).and_then(|dual| around.steepest(dual));
+            while let Some(step) = step.as_ref().filter(|_| lower.is_none() && left > 0 && turn >= JOINTS.least_turn) {
+                lower = self.lower(&found, around.moved(step, turn), &mut left, counters);
+                turn *= if lower.is_none() { JOINTS.shorter } else { 1.0 };
+            }
+            let Some(next) = lower else {
+                found.local = left > 0 && dual.is_some();
+                break;
+            };
+            (found, dual) = next;
+            turn = (turn / JOINTS.shorter).min(JOINTS.turn);
+        }
+        found
+    }
+
+    /// Returns the least state of a mechanism if its factor is below a state, and counts the trial.
+    fn lower(
+        &self,
+        found: &Found,
+        motion: Option<Vec<SpaceVelocity>>,
+        left: &mut usize,
+        counters: &mut Counters,
+    ) -> Option<(Found, Dual)> {
+        let motion = motion.filter(|_| *left > 0)?;
+        *left -= 1;
+        *counters.entry("mechanisms_tried".into()).or_default() += 1;
+        let next = self.of_mechanism(motion, (found.factor, found.field.clone()), counters);
+        (next.0.factor < found.factor - JOINTS.differ * found.factor.abs()).then_some(next)
+    }
+}
+
+/// A point that carries and slips.
+struct Slipping {
+    contact: usize,
+    slip: f64,
+    /// Derivatives of its slip along both tangents and across the slip.
+    along: [DVector<f64>; 2],
+    across: DVector<f64>,
+    /// Across the slip, in the tangents of the contact.
+    axis: [f64; 2],
+    /// √(μ n / |v|).
+    weight: f64,
+    point: usize,
+}
+
+/// The mechanisms around a state that keep the part of each point.
+struct Surroundings<'a> {
+    problem: &'a SpaceProblem,
+    motion: DVector<f64>,
+    /// Rows that vanish.
+    fixed: Vec<DVector<f64>>,
+    /// Rows with a present value that do not become negative.
+    one_sided: Vec<(f64, DVector<f64>)>,
+    slipping: Vec<Slipping>,
+    /// Greatest jump.
+    largest: f64,
+}
+
+/// A direction of descent.
+struct Direction {
+    direction: DVector<f64>,
+    /// Greatest change of a direction of slip for unit length \[rad\].
+    turn: f64,
+    /// Length at which a gap closes.
+    longest: f64,
+}
+
+impl<'a> Surroundings<'a> {
+    fn new(problem: &'a SpaceProblem, found: &Found) -> Option<Self> {
+        let own = jumps(problem, &found.motion);
+        let largest = own.iter().map(|v| v[0].hypot(v[1]).hypot(v[2])).fold(0.0, f64::max);
+        let pressed = found.field.iter().flatten().map(|f| f[0]).fold(0.0, f64::max);
+        if largest <= 0.0 || pressed <= 0.0 {
+            return None;
+        }
+        let scaled = found
+            .motion
+            .iter()
+            .flat_map(|v| [v[0], v[1], v[2]].into_iter().chain(v[3..].iter().map(|turn| turn * problem.length)));
+        let motion = DVector::from_iterator(6 * problem.bodies, scaled);
+        let mut around =
+            Surroundings { problem, motion, fixed: Vec::new(), one_sided: Vec::new(), slipping: Vec::new(), largest };
+        let points = problem.contacts.iter().zip(&found.field).enumerate();
+        let points = points.flat_map(|(index, (contact, forces))| {
+            contact.inner.points.iter().zip(forces).map(move |(x, f)| (index, contact, x, f))
+        });
+        for (point, ((index, contact, x, force), v)) in points.zip(&own).enumerate() {
+            let row = |axis: &Vec3| row(problem, contact, x, axis);
+            let [normal, first, second] = contact.frame;
+            let [n, s, t] = *force;
+            let (slip, shear) = (v[1].hypot(v[2]), s.hypot(t));
+            if n <= JOINTS.idle * pressed {
+                around.one_sided.push((v[0].max(0.0), row(&normal)));
+                continue;
+            }
+            around.fixed.push(row(&normal));
+            if slip > JOINTS.at_rest * largest {
+                let axis = [-v[2] / slip, v[1] / slip];
+                let along = [row(&first), row(&second)];
+                let across = &along[0] * axis[0] + &along[1] * axis[1];
+                let weight = (contact.law.friction * n / slip).sqrt();
+                around.slipping.push(Slipping { contact: index, slip, along, across, axis, weight, point });
+            } else if shear < (1.0 - JOINTS.full) * contact.law.friction * n {
+                around.fixed.extend([row(&first), row(&second)]);
+            } else {
+                // It may slip against its shear force.
+                let against = (first * s + second * t) / -shear;
+                around.fixed.push(row(&normal.cross(&against)));
+                around.one_sided.push((0.0, row(&against)));
+            }
+        }
+        Some(around)
+    }
+
+    /// Returns the nearest mechanisms in which one of the slowest slipping points, or all points of a contact, stick. `None` for one that
+    /// does not exist.
+    fn at_rest<'s>(&'s self) -> Vec<Option<Vec<SpaceVelocity>>> {
+        let mut groups: Vec<(f64, Vec<&'s DVector<f64>>)> = Vec::new();
+        for own in self.slipping.chunk_by(|a, b| a.contact == b.contact) {
+            groups.extend(own.iter().map(|point| (point.slip, point.along.iter().collect())));
+            let mean = own.iter().map(|point| point.slip).sum::<f64>() / own.len() as f64;
+            if own.len() > 1 {
+                groups.push((mean, own.iter().flat_map(|point| &point.along).collect()));
+            }
+        }
+        groups.sort_by(|a, b| a.0.total_cmp(&b.0));
+        groups.truncate(JOINTS.slowest);
+        let nearest = |(_, rows): (f64, Vec<&'s DVector<f64>>)| self.nearest(rows);
+        groups.into_iter().map(nearest).collect()
+    }
+
+    /// Returns the nearest mechanism in which further rows vanish.
+    fn nearest<'s>(&'s self, mut rows: Vec<&'s DVector<f64>>) -> Option<Vec<SpaceVelocity>> {
+        for _ in 0..JOINTS.rounds {
+            let fixed = self.fixed.iter().chain(rows.iter().copied());
+            let kept = null_space(&matrix(fixed, self.motion.len()), JOINTS.null)?;
+            let motion = &kept * (kept.transpose() * &self.motion);
+            let overlaps = |(_, row): &&(f64, DVector<f64>)| row.dot(&motion) < -JOINTS.null * self.largest;
+            let closing = rows.len();
+            rows.extend(self.one_sided.iter().filter(overlaps).map(|(_, row)| row));
+            if rows.len() == closing {
+                return self.possible(motion);
+            }
+        }
+        None
+    }
+
+    /// Returns velocities if no points overlap, and the live load does work.
+    fn possible(&self, motion: DVector<f64>) -> Option<Vec<SpaceVelocity>> {
+        let overlap = self.one_sided.iter().map(|(_, row)| -row.dot(&motion)).fold(0.0, f64::max);
+        let velocities = self.velocities(&motion);
+        let works = power(&self.problem.varying, &velocities) > JOINTS.idle;
+        (works && overlap <= JOINTS.null * self.largest).then_some(velocities)
+    }
+
+    /// Returns the mechanism after a step in which the directions of slip change by `turn` at most.
+    fn moved(&self, step: &Direction, turn: f64) -> Option<Vec<SpaceVelocity>> {
+        let length = (turn / step.turn).min(step.longest);
+        self.possible(&self.motion + &step.direction * length)
+    }
+
+    fn velocities(&self, motion: &DVector<f64>) -> Vec<SpaceVelocity> {
+        let length = self.problem.length;
+        let of = |v: &[f64]| [v[0], v[1], v[2], v[3] / length, v[4] / length, v[5] / length];
+        motion.as_slice().chunks_exact(6).map(of).collect()
+    }
+
+    /// Returns the steepest descent for a dual motion; `None` if no mechanism changes the directions of slip.
+    fn steepest(&self, dual: &[SpaceVelocity]) -> Option<Direction> {
+        let wanted = jumps(self.problem, dual);
+        let goal = |own: &Slipping| {
+            let [_, s, t] = wanted[own.point];
+            own.weight * (own.axis[0] * s + own.axis[1] * t)
+        };
+        let goals = DVector::from_iterator(self.slipping.len(), self.slipping.iter().map(goal));
+        let metric: Vec<DVector<f64>> = self.slipping.iter().map(|own| &own.across * own.weight).collect();
+        let metric = matrix(&metric, self.motion.len());
+        let (mut fixed, mut one_sided) =
+            (self.fixed.iter().collect::<Vec<_>>(), self.one_sided.iter().collect::<Vec<_>>());
+        for _ in 0..JOINTS.rounds {
+            let kept = null_space(&matrix(fixed.iter().copied(), self.motion.len()), JOINTS.null)?;
+            if kept.ncols() == 0 || goals.is_empty() {
+                return None;
+            }
+            let svd = (&metric * &kept).svd(true, true);
+            let few = JOINTS.null * svd.singular_values.max();
+            let direction = kept * svd.solve(&goals, few).ok()?;
+            let turn = self.slipping.iter().map(|own| own.across.dot(&direction).abs() / own.slip).fold(0.0, f64::max);
+            if turn <= 0.0 {
+                return None;
+            }
+            let tiny = JOINTS.at_rest * self.largest * turn;
+            let closes = |(gap, row): &&(f64, DVector<f64>)| {
+                *gap <= JOINTS.at_rest * self.largest && row.dot(&direction) < -tiny
+            };
+            let (closing, others): (Vec<_>, Vec<_>) = one_sided.into_iter().partition(closes);
+            one_sided = others;
+            if closing.is_empty() {
+                // A row without a rate has no reach.
+                let reach = |(gap, row): &&(f64, DVector<f64>)| {
+                    Some(-row.dot(&direction)).filter(|rate| *rate > tiny).map(|rate| gap / rate)
+                };
+                let longest = one_sided.iter().filter_map(reach).fold(f64::INFINITY, f64::min);
+                return Some(Direction { direction, turn, longest });
+            }
+            fixed.extend(closing.into_iter().map(|(_, row)| row));
+        }
+        None
+    }
+}
+
+fn matrix<'a>(rows: impl IntoIterator<Item = &'a DVector<f64>>, columns: usize) -> DMatrix<f64> {
+    let rows: Vec<_> = rows.into_iter().map(DVector::transpose).collect();
+    if rows.is_empty() { DMatrix::zeros(0, columns) } else { DMatrix::from_rows(&rows) }
+}
+
+/// Returns the derivatives of the jump along an axis with respect to velocities and rotations times length of all bodies.
+fn row(problem: &SpaceProblem, contact: &SpaceContact, point: &Vec3, axis: &Vec3) -> DVector<f64> {
+    let mut row = DVector::zeros(6 * problem.bodies);
+    let moment = point.cross(axis) / problem.length;
+    for (body, sign) in [(contact.plus, 1.0), (contact.minus, -1.0)] {
+        let Some(body) = body else { continue };
+        for k in 0..3 {
+            row[6 * body + k] += sign * axis[k];
+            row[6 * body + 3 + k] += sign * moment[k];
+        }
+    }
+    row
+}
+
+/// Returns the jumps (n, s, t) of all points, contact by contact.
+fn jumps(problem: &SpaceProblem, motion: &[SpaceVelocity]) -> Vec<[f64; 3]> {
+    let of = |contact: &SpaceContact, point: &Vec3| {
+        let at = |body: Option<usize>| body.map_or(Vec3::zeros(), |body| velocity_at(&motion[body], point));
+        let apart = at(contact.plus) - at(contact.minus);
+        contact.frame.map(|axis| axis.dot(&apart))
+    };
+    problem.contacts.iter().flat_map(|contact| contact.inner.points.iter().map(move |x| of(contact, x))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::space::solve;
+    use crate::space::tests::own_flow::in_a_corner;
+
+    /// The predicted change of the least factor is the change of the factors of two mechanisms.
+    #[test]
+    fn the_slope_is_the_change_of_the_factor() {
+        let problem = in_a_corner();
+        let descent = Descent { problem: &problem, solve, start: 0.0 };
+        let mut counters = Counters::new();
+        // The slab slides and turns about the vertical; the pole of the problem is on its axis.
+        let mut of = |turn: f64| {
+            let motion = vec![[1.0, 1.0, 0.0, 0.0, 0.0, turn], [0.0; 6]];
+            let field = problem.contacts.iter().map(|contact| vec![[0.0; 3]; contact.inner.points.len()]).collect();
+            descent.of_mechanism(motion, (2.0, field), &mut counters)
+        };
+        let (turn, small) = (0.3, 1e-4);
+        let (found, dual) = of(turn);
+        let changed = (of(turn + small).0.factor - of(turn - small).0.factor) / (2.0 * small);
+        let around = Surroundings::new(&problem, &found).unwrap();
+        let scale = found.motion[0][5] / turn;
+        let mut rate = DVector::zeros(12);
+        rate[5] = scale * problem.length;
+        let wanted = jumps(&problem, &dual.unwrap());
+        let part = |own: &Slipping| {
+            let [_, s, t] = wanted[own.point];
+            own.weight.powi(2) * (own.axis[0] * s + own.axis[1] * t) * own.across.dot(&rate)
+        };
+        let slope = -around.slipping.iter().map(part).sum::<f64>();
+        assert!((slope - changed).abs() < 1e-6 * changed.abs().max(0.1), "{slope} {changed}");
+    }
+}
