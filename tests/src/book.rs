@@ -22,6 +22,7 @@ const PARTS: [(&str, &[(&str, &str)]); 6] = [
             ("tutorials/first_bridge.md", "From nothing to an assessed bridge"),
             ("tutorials/first_law.md", "Your first law"),
             ("tutorials/two_flow_rules.md", "Compare two flow rules"),
+            ("tutorials/flow_rules_in_space.md", "Compare flow rules in space"),
             ("gallery.md", "Gallery"),
         ],
     ),

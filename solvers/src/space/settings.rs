@@ -97,10 +97,18 @@ pub struct JointSettings {
     pub descents: usize,
     /// Greatest number of bodies of a scene with descents: each step decomposes a dense matrix.
     pub descent_bodies: usize,
+    /// Slip, relative to the greatest jump, below which points and contacts are tried at rest first.
+    pub slow: f64,
     /// Number of slow points and contacts that are tried at rest.
     pub slowest: usize,
     /// Greatest change of a direction of slip in a descent \[rad\].
     pub turn: f64,
+    /// Share of this change that is tried after a failure.
+    pub turn_again: f64,
+    /// Greatest distance of the mechanisms whose dual motions count in a descent, relative to the change that is tried.
+    pub near: f64,
+    /// Iterations for the shortest vector of a convex hull.
+    pub hull: usize,
     /// Change of a direction of slip below which no descent is tried \[rad\].
     pub least_turn: f64,
     /// Distance from the friction limit, relative to it, at which a point may slip.
@@ -164,10 +172,14 @@ pub const JOINTS: JointSettings = JointSettings {
     softest: 1e-2,
     differ: 1e-9,
     rounds: 8,
-    descents: 100,
+    descents: 200,
     descent_bodies: 60,
+    slow: 0.3,
     slowest: 8,
     turn: 0.3,
+    turn_again: 0.5,
+    near: 8.0,
+    hull: 200,
     least_turn: 1e-6,
     full: 1e-7,
     idle: 1e-8,

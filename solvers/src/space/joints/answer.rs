@@ -1,7 +1,7 @@
 //! The answer with the laws' own flow: the associated bound, and the least state that the courses find.
 
 use super::course::{End, State, course, live_load};
-use super::descent::{Descent, Found};
+use super::descent::{Descent, Dual, Found};
 use super::least::Associated;
 use super::point::Spring;
 use super::step::Joints;
@@ -98,33 +98,32 @@ pub fn answer(problem: &SpaceProblem, question: LimitQuestion, solve: Associated
     }
 }
 
-/// Returns the lowest state that is reached from a state: the least one of its mechanism, then those of mechanisms nearby, then of the
-/// mechanism of joints that are loaded from there, and so on.
+/// Returns the lowest state that is reached from a state: the least one of its mechanism, then of the mechanism of joints that are
+/// loaded from there, and so on; at last those of mechanisms nearby.
 fn lowest(descent: &Descent, joints: &mut Joints, state: State, counters: &mut Counters) -> Found {
-    let mut lowest = found(descent, joints, &state, counters);
+    let (mut lowest, mut dual) = found(descent, joints, &state, counters);
     for _ in 0..JOINTS.rounds {
         joints.press(&lowest.field);
         let lambda = (lowest.factor - joints.program.start) / joints.program.unit;
         let End::Settled(state) = live_load(joints, lambda) else { break };
         let before = lowest.factor;
         let next = found(descent, joints, &state, counters);
-        if next.factor <= before {
-            lowest = next;
+        if next.0.factor <= before {
+            (lowest, dual) = next;
         }
         if lowest.factor >= before - JOINTS.differ * before.abs() {
             break;
         }
     }
-    lowest
+    descent.descend(lowest, dual, counters)
 }
 
-/// Returns the lowest state with the mechanism of a state or one nearby.
-fn found(descent: &Descent, joints: &Joints, state: &State, counters: &mut Counters) -> Found {
+/// Returns the least state of the mechanism of a state, with its dual motion.
+fn found(descent: &Descent, joints: &Joints, state: &State, counters: &mut Counters) -> (Found, Dual) {
     let program = joints.program;
     let factor = program.start + state.lambda * program.unit;
     let known = (factor, program.by_contacts(&state.forces));
-    let (found, dual) = descent.of_mechanism(program.motion(&state.motion), known, counters);
-    descent.descend(found, dual, counters)
+    descent.of_mechanism(program.motion(&state.motion), known, counters)
 }
 
 /// Returns springs in proportion to the areas of the points, with the mean normal stiffness of one.

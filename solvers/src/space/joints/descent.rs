@@ -68,27 +68,34 @@ impl Descent<'_> {
         let mut turn = JOINTS.turn;
         while left > 0 {
             let Some(around) = Surroundings::new(self.problem, &found) else { break };
-            let mut lower = None;
-            for motion in around.at_rest() {
-                lower = lower.or_else(|| self.lower(&found, motion, &mut left, counters));
+            let rest = |limit: f64, left: &mut usize, counters: &mut Counters| {
+                let tried = |motion| self.tried(&found, motion, left, counters).filter(|(next, _)| below(next, &found));
+                around.at_rest(limit).into_iter().find_map(tried)
+            };
+            let mut lower = rest(JOINTS.slow, &mut left, counters);
+            // Dual motions of this mechanism and of those tried near it, with their distances.
+            let mut bundle: Vec<(f64, Vec<SpaceVelocity>)> = dual.into_iter().map(|dual| (0.0, dual)).collect();
+            while lower.is_none() && left > 0 && turn >= JOINTS.least_turn {
+                let Some(step) = around.steepest(bundle.iter().map(|(_, dual)| &dual[..])) else { break };
+                match self.tried(&found, around.moved(&step, turn), &mut left, counters) {
+                    Some(next) if below(&next.0, &found) => lower = Some(next),
+                    other => bundle.extend(other.and_then(|(_, dual)| dual).map(|dual| (turn, dual))),
+                }
+                turn *= if lower.is_none() { JOINTS.turn_again } else { 1.0 };
+                bundle.retain(|(distance, _)| *distance <= JOINTS.near * turn);
             }
-            let step = dual.as_ref().filter(|_| lower.is_none()).and_then(|dual| around.steepest(dual));
-            while let Some(step) = step.as_ref().filter(|_| lower.is_none() && left > 0 && turn >= JOINTS.least_turn) {
-                lower = self.lower(&found, around.moved(step, turn), &mut left, counters);
-                turn *= if lower.is_none() { JOINTS.shorter } else { 1.0 };
-            }
-            let Some(next) = lower else {
-                found.local = left > 0 && dual.is_some();
+            let Some(next) = lower.or_else(|| rest(f64::INFINITY, &mut left, counters)) else {
+                found.local = left > 0 && !bundle.is_empty();
                 break;
             };
             (found, dual) = next;
-            turn = (turn / JOINTS.shorter).min(JOINTS.turn);
+            turn = (turn / JOINTS.turn_again.powi(2)).min(JOINTS.turn);
         }
         found
     }
 
-    /// Returns the least state of a mechanism if its factor is below a state, and counts the trial.
-    fn lower(
+    /// Returns the least state of a mechanism, from a state, and counts the trial.
+    fn tried(
         &self,
         found: &Found,
         motion: Option<Vec<SpaceVelocity>>,
@@ -98,9 +105,13 @@ impl Descent<'_> {
         let motion = motion.filter(|_| *left > 0)?;
         *left -= 1;
         *counters.entry("mechanisms_tried".into()).or_default() += 1;
-        let next = self.of_mechanism(motion, (found.factor, found.field.clone()), counters);
-        (next.0.factor < found.factor - JOINTS.differ * found.factor.abs()).then_some(next)
+        Some(self.of_mechanism(motion, (found.factor, found.field.clone()), counters))
     }
+}
+
+/// Returns true if the factor of a state is below another one.
+fn below(next: &Found, found: &Found) -> bool {
+    next.factor < found.factor - JOINTS.differ * found.factor.abs()
 }
 
 /// A point that carries and slips.
@@ -152,8 +163,8 @@ impl<'a> Surroundings<'a> {
             .iter()
             .flat_map(|v| [v[0], v[1], v[2]].into_iter().chain(v[3..].iter().map(|turn| turn * problem.length)));
         let motion = DVector::from_iterator(6 * problem.bodies, scaled);
-        let mut around =
-            Surroundings { problem, motion, fixed: Vec::new(), one_sided: Vec::new(), slipping: Vec::new(), largest };
+        let (fixed, one_sided, slipping) = (Vec::new(), Vec::new(), Vec::new());
+        let mut around = Surroundings { problem, motion, fixed, one_sided, slipping, largest };
         let points = problem.contacts.iter().zip(&found.field).enumerate();
         let points = points.flat_map(|(index, (contact, forces))| {
             contact.inner.points.iter().zip(forces).map(move |(x, f)| (index, contact, x, f))
@@ -186,9 +197,9 @@ impl<'a> Surroundings<'a> {
         Some(around)
     }
 
-    /// Returns the nearest mechanisms in which one of the slowest slipping points, or all points of a contact, stick. `None` for one that
-    /// does not exist.
-    fn at_rest<'s>(&'s self) -> Vec<Option<Vec<SpaceVelocity>>> {
+    /// Returns the nearest mechanisms in which one of the slowest slipping points, or all points of a contact, stick. Their slip is
+    /// below a limit, relative to the greatest jump. `None` for one that does not exist.
+    fn at_rest<'s>(&'s self, limit: f64) -> Vec<Option<Vec<SpaceVelocity>>> {
         let mut groups: Vec<(f64, Vec<&'s DVector<f64>>)> = Vec::new();
         for own in self.slipping.chunk_by(|a, b| a.contact == b.contact) {
             groups.extend(own.iter().map(|point| (point.slip, point.along.iter().collect())));
@@ -197,6 +208,7 @@ impl<'a> Surroundings<'a> {
                 groups.push((mean, own.iter().flat_map(|point| &point.along).collect()));
             }
         }
+        groups.retain(|(slip, _)| *slip <= limit * self.largest);
         groups.sort_by(|a, b| a.0.total_cmp(&b.0));
         groups.truncate(JOINTS.slowest);
         let nearest = |(_, rows): (f64, Vec<&'s DVector<f64>>)| self.nearest(rows);
@@ -239,26 +251,32 @@ impl<'a> Surroundings<'a> {
         motion.as_slice().chunks_exact(6).map(of).collect()
     }
 
-    /// Returns the steepest descent for a dual motion; `None` if no mechanism changes the directions of slip.
-    fn steepest(&self, dual: &[SpaceVelocity]) -> Option<Direction> {
-        let wanted = jumps(self.problem, dual);
-        let goal = |own: &Slipping| {
-            let [_, s, t] = wanted[own.point];
-            own.weight * (own.axis[0] * s + own.axis[1] * t)
+    /// Returns the steepest common descent for some dual motions; `None` if no mechanism changes the directions of slip.
+    fn steepest<'d>(&self, duals: impl Iterator<Item = &'d [SpaceVelocity]>) -> Option<Direction> {
+        let goals = |dual: &[SpaceVelocity]| {
+            let wanted = jumps(self.problem, dual);
+            let goal = |own: &Slipping| {
+                let [_, s, t] = wanted[own.point];
+                own.weight * (own.axis[0] * s + own.axis[1] * t)
+            };
+            DVector::from_iterator(self.slipping.len(), self.slipping.iter().map(goal))
         };
-        let goals = DVector::from_iterator(self.slipping.len(), self.slipping.iter().map(goal));
+        let goals: Vec<DVector<f64>> = duals.map(goals).collect();
         let metric: Vec<DVector<f64>> = self.slipping.iter().map(|own| &own.across * own.weight).collect();
         let metric = matrix(&metric, self.motion.len());
         let (mut fixed, mut one_sided) =
             (self.fixed.iter().collect::<Vec<_>>(), self.one_sided.iter().collect::<Vec<_>>());
         for _ in 0..JOINTS.rounds {
             let kept = null_space(&matrix(fixed.iter().copied(), self.motion.len()), JOINTS.null)?;
-            if kept.ncols() == 0 || goals.is_empty() {
+            if kept.ncols() == 0 || goals.is_empty() || self.slipping.is_empty() {
                 return None;
             }
             let svd = (&metric * &kept).svd(true, true);
             let few = JOINTS.null * svd.singular_values.max();
-            let direction = kept * svd.solve(&goals, few).ok()?;
+            let parts: Vec<DVector<f64>> = goals.iter().map(|goal| svd.solve(goal, few).ok()).collect::<Option<_>>()?;
+            let images: Vec<DVector<f64>> = parts.iter().map(|part| &metric * &kept * part).collect();
+            let shares = least_of_hull(&images);
+            let direction = kept * parts.iter().zip(shares).map(|(part, share)| part * share).sum::<DVector<f64>>();
             let turn = self.slipping.iter().map(|own| own.across.dot(&direction).abs() / own.slip).fold(0.0, f64::max);
             if turn <= 0.0 {
                 return None;
@@ -281,6 +299,26 @@ impl<'a> Surroundings<'a> {
         }
         None
     }
+}
+
+/// Returns the shares of the shortest vector in the convex hull of some vectors (Gilbert 1966, *SIAM J. Control* 4, 61–80).
+fn least_of_hull(vectors: &[DVector<f64>]) -> Vec<f64> {
+    let mut shares = vec![0.0; vectors.len()];
+    shares[0] = 1.0;
+    let mut least = vectors[0].clone();
+    for _ in 0..JOINTS.hull {
+        let along: Vec<f64> = vectors.iter().map(|vector| vector.dot(&least)).collect();
+        let next = (0..along.len()).min_by(|a, b| along[*a].total_cmp(&along[*b])).unwrap_or(0);
+        let towards = &vectors[next] - &least;
+        let share = (-least.dot(&towards) / towards.norm_squared()).clamp(0.0, 1.0);
+        if share.is_nan() || share <= 0.0 {
+            break;
+        }
+        least += towards * share;
+        shares.iter_mut().for_each(|own| *own *= 1.0 - share);
+        shares[next] += share;
+    }
+    shares
 }
 
 fn matrix<'a>(rows: impl IntoIterator<Item = &'a DVector<f64>>, columns: usize) -> DMatrix<f64> {

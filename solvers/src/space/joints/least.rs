@@ -75,7 +75,7 @@ fn replaced(problem: &SpaceProblem, roles: &[Vec<Role>]) -> Vec<(SpaceContact, V
 
 /// The least state of a mechanism.
 pub struct Least {
-    /// Factor and forces, if they are below those of the known state.
+    /// Factor and forces, if the factor is below the known one.
     pub state: Option<(f64, SpaceField)>,
     /// The dual motion: it shows how the factor depends on the directions of slip.
     pub dual: Option<Vec<SpaceVelocity>>,
@@ -104,7 +104,7 @@ pub fn least(
     Least { state, dual: answer.motion }
 }
 
-/// Returns the forces of all points from those of the contacts that replace them.
+/// Returns the forces of all points from the forces of the contacts that replace them.
 fn own_forces(
     problem: &SpaceProblem,
     roles: &[Vec<Role>],
