@@ -1,5 +1,6 @@
 //! Studies and results as files: read back unchanged, and every changed number found.
 
+mod assembly_json;
 mod figures;
 mod forged_carried;
 mod forged_claims;

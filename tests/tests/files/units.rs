@@ -163,7 +163,12 @@ pub struct Written(Vec<(String, Vec<u8>)>);
 
 impl Written {
     pub fn of(text: &str) -> Self {
-        let source = StudySource::parse(text, "study.toml", &[]).and_then(read_source);
+        Self::of_files(text, &|name| Err(format!("there is no file {name}")))
+    }
+
+    /// The same for a study that names files.
+    pub fn of_files(text: &str, read: &dyn Fn(&str) -> Result<String, String>) -> Self {
+        let source = StudySource::parse_with(text, "study.toml", &[], read).and_then(read_source);
         let study = source.unwrap_or_else(|wrong| panic!("{wrong}"));
         let request = RunRequest { wanted: (0..study.count()).collect(), jobs: 1, ..RunRequest::default() };
         Written(study.run(&request, &Unobserved).files)

@@ -123,7 +123,8 @@ fn found(descent: &Descent, joints: &Joints, state: &State, counters: &mut Count
     let program = joints.program;
     let factor = program.start + state.lambda * program.unit;
     let known = (factor, program.by_contacts(&state.forces));
-    descent.of_mechanism(program.motion(&state.motion), known, counters)
+    let jumps = joints.jumps(&state.motion);
+    descent.of_mechanism((program.motion(&state.motion), &jumps), known, counters)
 }
 
 /// Returns springs in proportion to the areas of the points, with the mean normal stiffness of one.

@@ -45,17 +45,16 @@ pub struct Descent<'a> {
 }
 
 impl Descent<'_> {
-    /// Returns the least state of a mechanism, from a state at a factor, with the dual motion.
+    /// Returns the least state of a mechanism with these jumps, from a state at a factor, with the dual motion.
     pub fn of_mechanism(
         &self,
-        mut motion: Vec<SpaceVelocity>,
+        (mut motion, jumps): (Vec<SpaceVelocity>, &[[f64; 3]]),
         (factor, field): (f64, SpaceField),
         counters: &mut Counters,
     ) -> (Found, Dual) {
         let unit = power(&self.problem.varying, &motion);
         motion.iter_mut().flatten().for_each(|v| *v /= unit);
-        let jumps = jumps(self.problem, &motion);
-        let Least { state, dual } = least(self.problem, self.solve, (self.start, factor), &jumps, counters);
+        let Least { state, dual } = least(self.problem, self.solve, (self.start, factor), jumps, counters);
         let (factor, field) = state.unwrap_or((factor, field));
         (Found { factor, field, motion, local: false }, dual)
     }
@@ -105,7 +104,8 @@ impl Descent<'_> {
         let motion = motion.filter(|_| *left > 0)?;
         *left -= 1;
         *counters.entry("mechanisms_tried".into()).or_default() += 1;
-        Some(self.of_mechanism(motion, (found.factor, found.field.clone()), counters))
+        let jumps = jumps(self.problem, &motion);
+        Some(self.of_mechanism((motion, &jumps), (found.factor, found.field.clone()), counters))
     }
 }
 
@@ -366,7 +366,8 @@ mod tests {
         let mut of = |turn: f64| {
             let motion = vec![[1.0, 1.0, 0.0, 0.0, 0.0, turn], [0.0; 6]];
             let field = problem.contacts.iter().map(|contact| vec![[0.0; 3]; contact.inner.points.len()]).collect();
-            descent.of_mechanism(motion, (2.0, field), &mut counters)
+            let jumps = jumps(&problem, &motion);
+            descent.of_mechanism((motion, &jumps), (2.0, field), &mut counters)
         };
         let (turn, small) = (0.3, 1e-4);
         let (found, dual) = of(turn);

@@ -344,6 +344,7 @@ fn every_writer_gives_its_files_and_they_need_nothing_else() {
         assert_eq!(
             tags,
             [
+                "assembly_json",
                 "comparison",
                 "curve_csv",
                 "figures",

@@ -3,6 +3,7 @@
 //! A writer is one file here: a type with [`Writer`], its card, and a [`WriterEntry`] that is submitted to the
 //! registry.
 
+mod assembly_json;
 mod assumptions;
 pub mod comparison;
 pub mod csv;
