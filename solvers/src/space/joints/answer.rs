@@ -68,18 +68,7 @@ pub fn answer(problem: &SpaceProblem, question: LimitQuestion, solve: Associated
     };
     states.sort_by(|a, b| a.factor.total_cmp(&b.factor));
     let mut notes = if states.is_empty() { failures } else { Vec::new() };
-    if let (Some(least), Some(greatest)) = (states.first(), states.last())
-        && greatest.factor - least.factor > JOINTS.differ * greatest.factor.abs()
-    {
-        let near =
-            states.iter().filter(|state| state.factor - least.factor <= JOINTS.differ * least.factor.abs()).count();
-        let local = if least.local { "; no mechanism tried near it has a lower factor" } else { "" };
-        let (count, all, least, greatest) = (states.len(), courses.len(), least.factor, greatest.factor);
-        notes.push(format!(
-            "{count} of {all} courses of elastic joints end at a collapse state, {near} of them at the least one, which is given; the \
-             factors are from {least:.9} to {greatest:.9}{local}"
-        ));
-    }
+    notes.extend(spread(&states, courses.len()));
     let answer = SpaceAnswer { non_associated: Some(own), counters, ..SpaceAnswer::default() };
     match states.into_iter().next().filter(|state| state.factor <= max) {
         Some(Found { factor, field, motion, .. }) => SpaceAnswer {
@@ -96,6 +85,21 @@ pub fn answer(problem: &SpaceProblem, question: LimitQuestion, solve: Associated
             SpaceAnswer { status: Status::Open, notes, ..answer }
         }
     }
+}
+
+/// Returns a note on the factors of the states of some courses, in increasing order, if they differ.
+fn spread(states: &[Found], courses: usize) -> Option<String> {
+    let (least, greatest) = (states.first()?, states.last()?);
+    let near = |state: &&Found| state.factor - least.factor <= JOINTS.differ * least.factor.abs();
+    let near = states.iter().filter(near).count();
+    let local = if least.local { "; no mechanism tried near it has a lower factor" } else { "" };
+    let (count, least, greatest) = (states.len(), least.factor, greatest.factor);
+    (near < count).then(|| {
+        format!(
+            "{count} of {courses} courses of elastic joints end at a collapse state, {near} of them at the least one, which is given; the \
+             factors are from {least:.9} to {greatest:.9}{local}"
+        )
+    })
 }
 
 /// Returns the lowest state that is reached from a state: the least one of its mechanism, then of the mechanism of joints that are
