@@ -113,7 +113,8 @@ pub struct JointSettings {
     pub least_turn: f64,
     /// Distance from the friction limit, relative to it, at which a point may slip.
     pub full: f64,
-    /// Normal force, relative to the greatest, below which a point carries nothing.
+    /// Normal force, relative to the greatest, below which a point carries nothing; power of the live load, relative to that of the
+    /// known state, below which a motion is no mechanism.
     pub idle: f64,
     /// Singular value, relative to the greatest, that counts as zero.
     pub null: f64,
@@ -127,6 +128,8 @@ pub struct JointSettings {
     pub lagged: f64,
     /// Error of the flow, relative to the greatest jump, and power left, also relative to the loads. The certificate allows 1e-12.
     pub settled: f64,
+    /// The same for a state that a descent accepts.
+    pub proved: f64,
     /// Increase of pivots under dead load: a body may have no contact yet.
     pub shift: f64,
     /// Increase of pivots with fictitious cohesion, where sliding joints leave no stiffness.
@@ -189,6 +192,7 @@ pub const JOINTS: JointSettings = JointSettings {
     nearly: 1e-12,
     lagged: 1e-10,
     settled: 1e-13,
+    proved: 5e-13,
     shift: 1e-12,
     regular: 1e-9,
     slope: 0.3,

@@ -17,7 +17,7 @@ use crate::space::settings::JOINTS;
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::limit::Counters;
 use voussoir_core::model::space::velocity_at;
-use voussoir_core::space::{SpaceContact, SpaceField, SpaceProblem, SpaceVelocity, Vec3, power};
+use voussoir_core::space::{SpaceContact, SpaceField, SpaceProblem, SpaceVelocity, Vec3, Wrench, power};
 
 /// A state in the units of the problem.
 pub struct Found {
@@ -68,7 +68,9 @@ impl Descent<'_> {
         while left > 0 {
             let Some(around) = Surroundings::new(self.problem, &found) else { break };
             let rest = |limit: f64, left: &mut usize, counters: &mut Counters| {
-                let tried = |motion| self.tried(&found, motion, left, counters).filter(|(next, _)| below(next, &found));
+                let tried = |motion| {
+                    self.tried(&found, motion, left, counters).filter(|(next, _)| below(self.problem, next, &found))
+                };
                 around.at_rest(limit).into_iter().find_map(tried)
             };
             let mut lower = rest(JOINTS.slow, &mut left, counters);
@@ -77,7 +79,7 @@ impl Descent<'_> {
             while lower.is_none() && left > 0 && turn >= JOINTS.least_turn {
                 let Some(step) = around.steepest(bundle.iter().map(|(_, dual)| &dual[..])) else { break };
                 match self.tried(&found, around.moved(&step, turn), &mut left, counters) {
-                    Some(next) if below(&next.0, &found) => lower = Some(next),
+                    Some(next) if below(self.problem, &next.0, &found) => lower = Some(next),
                     other => bundle.extend(other.and_then(|(_, dual)| dual).map(|dual| (turn, dual))),
                 }
                 turn *= if lower.is_none() { JOINTS.turn_again } else { 1.0 };
@@ -109,9 +111,26 @@ impl Descent<'_> {
     }
 }
 
-/// Returns true if the factor of a state is below another one.
-fn below(next: &Found, found: &Found) -> bool {
-    next.factor < found.factor - JOINTS.differ * found.factor.abs()
+/// Returns true if the factor of a state is below another one, and no power is left at its points.
+fn below(problem: &SpaceProblem, next: &Found, found: &Found) -> bool {
+    next.factor < found.factor - JOINTS.differ * found.factor.abs() && is_state(problem, next)
+}
+
+/// Returns true if the motion follows the flow of the forces; the certificate checks the same.
+fn is_state(problem: &SpaceProblem, found: &Found) -> bool {
+    let force = |wrenches: &[Wrench]| wrenches.iter().map(|w| Vec3::new(w[0], w[1], w[2]).norm()).sum::<f64>();
+    let loads = force(&problem.fixed) + found.factor.abs() * force(&problem.varying);
+    let own = jumps(problem, &found.motion);
+    let points = problem.contacts.iter().zip(&found.field);
+    let forces = points.flat_map(|(contact, forces)| forces.iter().map(|force| (contact.law.friction, force)));
+    let (mut largest, mut closing, mut idle) = (0.0f64, 0.0f64, 0.0);
+    for ([n, s, t], (friction, force)) in own.into_iter().zip(forces) {
+        let slip = s.hypot(t);
+        largest = largest.max(n.hypot(slip));
+        closing = closing.max(-n);
+        idle += (force[0] * n).abs() + (friction * force[0] * slip + force[1] * s + force[2] * t).abs();
+    }
+    closing <= JOINTS.proved * largest && idle <= JOINTS.proved * largest * loads
 }
 
 /// A point that carries and slips.
@@ -187,8 +206,8 @@ impl<'a> Surroundings<'a> {
                 around.slipping.push(Slipping { contact: index, slip, along, across, axis, weight, point });
             } else if shear < (1.0 - JOINTS.full) * contact.law.friction * n {
                 around.fixed.extend([row(&first), row(&second)]);
-            } else {
-                // It may slip against its shear force.
+            } else if shear > 0.0 {
+                // It may slip against its shear force; without friction it may slip along any direction.
                 let against = (first * s + second * t) / -shear;
                 around.fixed.push(row(&normal.cross(&against)));
                 around.one_sided.push((0.0, row(&against)));
@@ -221,7 +240,7 @@ impl<'a> Surroundings<'a> {
             let fixed = self.fixed.iter().chain(rows.iter().copied());
             let kept = null_space(&matrix(fixed, self.motion.len()), JOINTS.null)?;
             let motion = &kept * (kept.transpose() * &self.motion);
-            let overlaps = |(_, row): &&(f64, DVector<f64>)| row.dot(&motion) < -JOINTS.null * self.largest;
+            let overlaps = |(_, row): &&(f64, DVector<f64>)| row.dot(&motion) < -JOINTS.settled * self.largest;
             let closing = rows.len();
             rows.extend(self.one_sided.iter().filter(overlaps).map(|(_, row)| row));
             if rows.len() == closing {
@@ -236,7 +255,7 @@ impl<'a> Surroundings<'a> {
         let overlap = self.one_sided.iter().map(|(_, row)| -row.dot(&motion)).fold(0.0, f64::max);
         let velocities = self.velocities(&motion);
         let works = power(&self.problem.varying, &velocities) > JOINTS.idle;
-        (works && overlap <= JOINTS.null * self.largest).then_some(velocities)
+        (works && overlap <= JOINTS.proved * self.largest).then_some(velocities)
     }
 
     /// Returns the mechanism after a step in which the directions of slip change by `turn` at most.
@@ -271,7 +290,7 @@ impl<'a> Surroundings<'a> {
             if kept.ncols() == 0 || goals.is_empty() || self.slipping.is_empty() {
                 return None;
             }
-            let svd = (&metric * &kept).svd(true, true);
+            let svd = (&metric * &kept).try_svd(true, true, f64::EPSILON, 10_000)?;
             let few = JOINTS.null * svd.singular_values.max();
             let parts: Vec<DVector<f64>> = goals.iter().map(|goal| svd.solve(goal, few).ok()).collect::<Option<_>>()?;
             let images: Vec<DVector<f64>> = parts.iter().map(|part| &metric * &kept * part).collect();
@@ -281,7 +300,7 @@ impl<'a> Surroundings<'a> {
             if turn <= 0.0 {
                 return None;
             }
-            let tiny = JOINTS.at_rest * self.largest * turn;
+            let tiny = JOINTS.settled * self.largest * turn;
             let closes = |(gap, row): &&(f64, DVector<f64>)| {
                 *gap <= JOINTS.at_rest * self.largest && row.dot(&direction) < -tiny
             };
