@@ -59,6 +59,7 @@ const PARTS: [(&str, &[(&str, &str)]); 6] = [
             ("reference/solvers.md", "Solvers"),
             ("reference/outputs.md", "Study kinds and writers"),
             ("reference/statuses.md", "Statuses and results"),
+            ("reference/space_data.md", "Data of blocks in space"),
             ("reference/python.md", "Python"),
             ("reference/library.md", "Rust"),
             ("performance.md", "Performance"),

@@ -93,31 +93,6 @@ pub struct JointSettings {
     pub differ: f64,
     /// Greatest number of courses that start at a lower state.
     pub rounds: usize,
-    /// Greatest number of mechanisms tried in the descent from a state.
-    pub descents: usize,
-    /// Greatest number of bodies of a scene with descents: each step decomposes a dense matrix.
-    pub descent_bodies: usize,
-    /// Slip, relative to the greatest jump, below which points and contacts are tried at rest first.
-    pub slow: f64,
-    /// Number of slow points and contacts that are tried at rest.
-    pub slowest: usize,
-    /// Greatest change of a direction of slip in a descent \[rad\].
-    pub turn: f64,
-    /// Share of this change that is tried after a failure.
-    pub turn_again: f64,
-    /// Greatest distance of the mechanisms whose dual motions count in a descent, relative to the change that is tried.
-    pub near: f64,
-    /// Iterations for the shortest vector of a convex hull.
-    pub hull: usize,
-    /// Change of a direction of slip below which no descent is tried \[rad\].
-    pub least_turn: f64,
-    /// Distance from the friction limit, relative to it, at which a point may slip.
-    pub full: f64,
-    /// Normal force, relative to the greatest, below which a point carries nothing; power of the live load, relative to that of the
-    /// known state, below which a motion is no mechanism.
-    pub idle: f64,
-    /// Singular value, relative to the greatest, that counts as zero.
-    pub null: f64,
     /// Jump, relative to the greatest, of a point that neither slips nor opens.
     pub at_rest: f64,
     /// Unbalanced force of a step with the law's own friction.
@@ -128,8 +103,6 @@ pub struct JointSettings {
     pub lagged: f64,
     /// Error of the flow, relative to the greatest jump, and power left, also relative to the loads. The certificate allows 1e-12.
     pub settled: f64,
-    /// The same for a state that a descent accepts.
-    pub proved: f64,
     /// Increase of pivots under dead load: a body may have no contact yet.
     pub shift: f64,
     /// Increase of pivots with fictitious cohesion, where sliding joints leave no stiffness.
@@ -175,24 +148,11 @@ pub const JOINTS: JointSettings = JointSettings {
     softest: 1e-2,
     differ: 1e-9,
     rounds: 8,
-    descents: 200,
-    descent_bodies: 60,
-    slow: 0.3,
-    slowest: 8,
-    turn: 0.3,
-    turn_again: 0.5,
-    near: 8.0,
-    hull: 200,
-    least_turn: 1e-6,
-    full: 1e-7,
-    idle: 1e-8,
-    null: 1e-10,
     at_rest: 1e-10,
     balanced: 1e-14,
     nearly: 1e-12,
     lagged: 1e-10,
     settled: 1e-13,
-    proved: 5e-13,
     shift: 1e-12,
     regular: 1e-9,
     slope: 0.3,
@@ -211,4 +171,54 @@ pub const JOINTS: JointSettings = JointSettings {
     longest: 16,
     reported: 20,
     iterations: 1000,
+};
+
+/// Numbers of the descent over mechanisms.
+#[derive(Debug, Clone, Copy)]
+pub struct DescentSettings {
+    /// Greatest number of mechanisms tried in the descent from a state.
+    pub mechanisms: usize,
+    /// Greatest number of bodies of a scene with descents: each step decomposes a dense matrix.
+    pub bodies: usize,
+    /// Slip, relative to the greatest jump, below which points and contacts are tried at rest first.
+    pub slow: f64,
+    /// Number of slow points and contacts that are tried at rest.
+    pub slowest: usize,
+    /// Greatest change of a direction of slip in a descent \[rad\].
+    pub turn: f64,
+    /// Share of this change that is tried after a failure.
+    pub turn_again: f64,
+    /// Greatest distance of the mechanisms whose dual motions count in a descent, relative to the change that is tried.
+    pub near: f64,
+    /// Iterations for the shortest vector of a convex hull.
+    pub hull: usize,
+    /// Change of a direction of slip below which no descent is tried \[rad\].
+    pub least_turn: f64,
+    /// Distance from the friction limit, relative to it, at which a point may slip.
+    pub full: f64,
+    /// Normal force, relative to the greatest, below which a point carries nothing. Power of the live load below which a motion
+    /// is no mechanism; the known state has a power of one.
+    pub idle: f64,
+    /// Singular value, relative to the greatest, that counts as zero.
+    pub null: f64,
+    /// Error of the flow, relative to the greatest jump, and power left, also relative to the loads, of a state that is accepted. The
+    /// certificate allows 1e-12.
+    pub proved: f64,
+}
+
+/// The numbers in use.
+pub const DESCENT: DescentSettings = DescentSettings {
+    mechanisms: 200,
+    bodies: 60,
+    slow: 0.3,
+    slowest: 8,
+    turn: 0.3,
+    turn_again: 0.5,
+    near: 8.0,
+    hull: 200,
+    least_turn: 1e-6,
+    full: 1e-7,
+    idle: 1e-8,
+    null: 1e-10,
+    proved: 5e-13,
 };

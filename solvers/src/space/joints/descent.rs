@@ -13,7 +13,7 @@
 
 use super::least::{Associated, Least, least};
 use crate::linear::null_space::null_space;
-use crate::space::settings::JOINTS;
+use crate::space::settings::{DESCENT, JOINTS};
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::limit::Counters;
 use voussoir_core::model::space::velocity_at;
@@ -61,10 +61,10 @@ impl Descent<'_> {
 
     /// Follows the descent from a state with its dual motion.
     pub fn descend(&self, mut found: Found, mut dual: Dual, counters: &mut Counters) -> Found {
-        let small = self.problem.bodies <= JOINTS.descent_bodies;
+        let small = self.problem.bodies <= DESCENT.bodies;
         let dilates = self.problem.contacts.iter().any(|contact| contact.law.dilatancy > 0.0);
-        let mut left = if small && !dilates { JOINTS.descents } else { 0 };
-        let mut turn = JOINTS.turn;
+        let mut left = if small && !dilates { DESCENT.mechanisms } else { 0 };
+        let mut turn = DESCENT.turn;
         while left > 0 {
             let Some(around) = Surroundings::new(self.problem, &found) else { break };
             let rest = |limit: f64, left: &mut usize, counters: &mut Counters| {
@@ -73,24 +73,24 @@ impl Descent<'_> {
                 };
                 around.at_rest(limit).into_iter().find_map(tried)
             };
-            let mut lower = rest(JOINTS.slow, &mut left, counters);
+            let mut lower = rest(DESCENT.slow, &mut left, counters);
             // Dual motions of this mechanism and of those tried near it, with their distances.
             let mut bundle: Vec<(f64, Vec<SpaceVelocity>)> = dual.into_iter().map(|dual| (0.0, dual)).collect();
-            while lower.is_none() && left > 0 && turn >= JOINTS.least_turn {
+            while lower.is_none() && left > 0 && turn >= DESCENT.least_turn {
                 let Some(step) = around.steepest(bundle.iter().map(|(_, dual)| &dual[..])) else { break };
                 match self.tried(&found, around.moved(&step, turn), &mut left, counters) {
                     Some(next) if below(self.problem, &next.0, &found) => lower = Some(next),
                     other => bundle.extend(other.and_then(|(_, dual)| dual).map(|dual| (turn, dual))),
                 }
-                turn *= if lower.is_none() { JOINTS.turn_again } else { 1.0 };
-                bundle.retain(|(distance, _)| *distance <= JOINTS.near * turn);
+                turn *= if lower.is_none() { DESCENT.turn_again } else { 1.0 };
+                bundle.retain(|(distance, _)| *distance <= DESCENT.near * turn);
             }
             let Some(next) = lower.or_else(|| rest(f64::INFINITY, &mut left, counters)) else {
                 found.local = left > 0 && !bundle.is_empty();
                 break;
             };
             (found, dual) = next;
-            turn = (turn / JOINTS.turn_again.powi(2)).min(JOINTS.turn);
+            turn = (turn / DESCENT.turn_again.powi(2)).min(DESCENT.turn);
         }
         found
     }
@@ -130,7 +130,7 @@ fn is_state(problem: &SpaceProblem, found: &Found) -> bool {
         closing = closing.max(-n);
         idle += (force[0] * n).abs() + (friction * force[0] * slip + force[1] * s + force[2] * t).abs();
     }
-    closing <= JOINTS.proved * largest && idle <= JOINTS.proved * largest * loads
+    closing <= DESCENT.proved * largest && idle <= DESCENT.proved * largest * loads
 }
 
 /// A point that carries and slips.
@@ -193,7 +193,7 @@ impl<'a> Surroundings<'a> {
             let [normal, first, second] = contact.frame;
             let [n, s, t] = *force;
             let (slip, shear) = (v[1].hypot(v[2]), s.hypot(t));
-            if n <= JOINTS.idle * pressed {
+            if n <= DESCENT.idle * pressed {
                 around.one_sided.push((v[0].max(0.0), row(&normal)));
                 continue;
             }
@@ -204,7 +204,7 @@ impl<'a> Surroundings<'a> {
                 let across = &along[0] * axis[0] + &along[1] * axis[1];
                 let weight = (contact.law.friction * n / slip).sqrt();
                 around.slipping.push(Slipping { contact: index, slip, along, across, axis, weight, point });
-            } else if shear < (1.0 - JOINTS.full) * contact.law.friction * n {
+            } else if shear < (1.0 - DESCENT.full) * contact.law.friction * n {
                 around.fixed.extend([row(&first), row(&second)]);
             } else if shear > 0.0 {
                 // It may slip against its shear force; without friction it may slip along any direction.
@@ -229,7 +229,7 @@ impl<'a> Surroundings<'a> {
         }
         groups.retain(|(slip, _)| *slip <= limit * self.largest);
         groups.sort_by(|a, b| a.0.total_cmp(&b.0));
-        groups.truncate(JOINTS.slowest);
+        groups.truncate(DESCENT.slowest);
         let nearest = |(_, rows): (f64, Vec<&'s DVector<f64>>)| self.nearest(rows);
         groups.into_iter().map(nearest).collect()
     }
@@ -238,7 +238,7 @@ impl<'a> Surroundings<'a> {
     fn nearest<'s>(&'s self, mut rows: Vec<&'s DVector<f64>>) -> Option<Vec<SpaceVelocity>> {
         for _ in 0..JOINTS.rounds {
             let fixed = self.fixed.iter().chain(rows.iter().copied());
-            let kept = null_space(&matrix(fixed, self.motion.len()), JOINTS.null)?;
+            let kept = null_space(&matrix(fixed, self.motion.len()), DESCENT.null)?;
             let motion = &kept * (kept.transpose() * &self.motion);
             let overlaps = |(_, row): &&(f64, DVector<f64>)| row.dot(&motion) < -JOINTS.settled * self.largest;
             let closing = rows.len();
@@ -254,8 +254,8 @@ impl<'a> Surroundings<'a> {
     fn possible(&self, motion: DVector<f64>) -> Option<Vec<SpaceVelocity>> {
         let overlap = self.one_sided.iter().map(|(_, row)| -row.dot(&motion)).fold(0.0, f64::max);
         let velocities = self.velocities(&motion);
-        let works = power(&self.problem.varying, &velocities) > JOINTS.idle;
-        (works && overlap <= JOINTS.proved * self.largest).then_some(velocities)
+        let works = power(&self.problem.varying, &velocities) > DESCENT.idle;
+        (works && overlap <= DESCENT.proved * self.largest).then_some(velocities)
     }
 
     /// Returns the mechanism after a step in which the directions of slip change by `turn` at most.
@@ -286,12 +286,12 @@ impl<'a> Surroundings<'a> {
         let (mut fixed, mut one_sided) =
             (self.fixed.iter().collect::<Vec<_>>(), self.one_sided.iter().collect::<Vec<_>>());
         for _ in 0..JOINTS.rounds {
-            let kept = null_space(&matrix(fixed.iter().copied(), self.motion.len()), JOINTS.null)?;
+            let kept = null_space(&matrix(fixed.iter().copied(), self.motion.len()), DESCENT.null)?;
             if kept.ncols() == 0 || goals.is_empty() || self.slipping.is_empty() {
                 return None;
             }
             let svd = (&metric * &kept).try_svd(true, true, f64::EPSILON, 10_000)?;
-            let few = JOINTS.null * svd.singular_values.max();
+            let few = DESCENT.null * svd.singular_values.max();
             let parts: Vec<DVector<f64>> = goals.iter().map(|goal| svd.solve(goal, few).ok()).collect::<Option<_>>()?;
             let images: Vec<DVector<f64>> = parts.iter().map(|part| &metric * &kept * part).collect();
             let shares = least_of_hull(&images);
@@ -325,7 +325,7 @@ fn least_of_hull(vectors: &[DVector<f64>]) -> Vec<f64> {
     let mut shares = vec![0.0; vectors.len()];
     shares[0] = 1.0;
     let mut least = vectors[0].clone();
-    for _ in 0..JOINTS.hull {
+    for _ in 0..DESCENT.hull {
         let along: Vec<f64> = vectors.iter().map(|vector| vector.dot(&least)).collect();
         let next = (0..along.len()).min_by(|a, b| along[*a].total_cmp(&along[*b])).unwrap_or(0);
         let towards = &vectors[next] - &least;

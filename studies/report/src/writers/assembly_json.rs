@@ -78,6 +78,7 @@ fn nodes(space: &SpaceCase, scene: &SceneOutput, case: &CaseResult) -> Map<Strin
     let loads = loads.get(case.stages.len().saturating_sub(1));
     let proof = case.proof.space.as_ref();
     let motion = proof.and_then(|proof| proof.motion.as_deref()).unwrap_or_default();
+    let associated = proof.and_then(|proof| proof.associated_motion.as_deref()).unwrap_or_default();
     let node = |index: usize| {
         let body = &space.assembly.bodies[index];
         let (mass, centroid) = space.assembly.mass_and_centroid(index);
@@ -98,6 +99,7 @@ fn nodes(space: &SpaceCase, scene: &SceneOutput, case: &CaseResult) -> Map<Strin
             "fixed_load": loads.map(|loads| about(&loads.fixed[index])),
             "varying_load": loads.map(|loads| about(&loads.varying[index])),
             "velocity": motion.get(index).map(|entry| entry.velocity),
+            "associated_velocity": associated.get(index).map(|entry| entry.velocity),
         })
     };
     space.assembly.bodies.iter().enumerate().map(|(index, body)| (body.name.clone(), node(index))).collect()
@@ -141,7 +143,7 @@ register!(
      the proof. It writes only where it is named:\n\n```toml\n[output]\nwriters = [\"results_csv\", \"report\", \"assembly_json\"]\n```\n\n\
      | place | keys |\n|---|---|\n\
      | `attributes` | status, load factor, bounds, flow rule that replaced the one of the law, associated load factor, factor of the forces |\n\
-     | node | `mass` \\[kg\\], `centroid` \\[m\\], `fixed_load` and `varying_load` \\[N, N m\\] about the centroid, `velocity` of the mechanism at the centroid |\n\
+     | node | `mass` \\[kg\\], `centroid` \\[m\\], `fixed_load` and `varying_load` \\[N, N m\\] about the centroid, `velocity` of the mechanism at the centroid, `associated_velocity` of the mechanism that proves the associated load factor |\n\
      | interface | `forces` at the points \\[N\\]: c_np − c_nn along the normal xaxis × yaxis, c_u along xaxis, c_v along yaxis, on the second block; `friction`, `dilatancy` |\n\n\
      If forces do not act at the points of an interface, `forces` is null, and `forces_at` lists points and forces (n, u, v). Other programs ignore the additional keys. The scene \
      `assembly` reads the file.\n"
