@@ -9,7 +9,10 @@
 //! ```
 //!
 //! with the slip y_t of the point in y. The steepest descent in the metric of the weights μ n / |v| is the projection of y on the motions
-//! that keep every state possible: points that carry neither open nor close, points that stick do not slip, others do not overlap.
+//! that keep the state possible: points that carry neither open nor close, others do not overlap, and points that stick slip at most
+//! against a shear force at its limit. If a step does not lower the factor, the dual motion of the mechanism after it joins the first one.
+//! If that mechanism has no state, its dual motion is the proof of this. The shortest vector in the convex hull of all descents is the
+//! next direction, so that the factor falls for all of them.
 
 use super::least::{Associated, Least, least};
 use crate::linear::null_space::null_space;
@@ -45,7 +48,8 @@ pub struct Descent<'a> {
 }
 
 impl Descent<'_> {
-    /// Returns the least state of a mechanism with these jumps, from a state at a factor, with the dual motion.
+    /// Returns the least state of a mechanism with these jumps, from a state at a factor, with the dual motion. A course knows the jumps
+    /// more accurately than its motion in the units of the problem.
     pub fn of_mechanism(
         &self,
         (mut motion, jumps): (Vec<SpaceVelocity>, &[[f64; 3]]),
@@ -67,13 +71,16 @@ impl Descent<'_> {
         let mut turn = DESCENT.turn;
         while left > 0 {
             let Some(around) = Surroundings::new(self.problem, &found) else { break };
-            let rest = |limit: f64, left: &mut usize, counters: &mut Counters| {
-                let tried = |motion| {
-                    self.tried(&found, motion, left, counters).filter(|(next, _)| below(self.problem, next, &found))
-                };
-                around.at_rest(limit).into_iter().find_map(tried)
+            let slowest = around.slowest();
+            let (slow, others) =
+                slowest.split_at(slowest.partition_point(|(slip, _)| *slip <= DESCENT.slow * around.largest));
+            let rest = |groups: &[Group], left: &mut usize, counters: &mut Counters| {
+                groups.iter().find_map(|(_, rows)| {
+                    let next = self.tried(&found, around.nearest(rows.clone()), left, counters);
+                    next.filter(|(next, _)| below(self.problem, next, &found))
+                })
             };
-            let mut lower = rest(DESCENT.slow, &mut left, counters);
+            let mut lower = rest(slow, &mut left, counters);
             // Dual motions of this mechanism and of those tried near it, with their distances.
             let mut bundle: Vec<(f64, Vec<SpaceVelocity>)> = dual.into_iter().map(|dual| (0.0, dual)).collect();
             while lower.is_none() && left > 0 && turn >= DESCENT.least_turn {
@@ -85,7 +92,7 @@ impl Descent<'_> {
                 turn *= if lower.is_none() { DESCENT.turn_again } else { 1.0 };
                 bundle.retain(|(distance, _)| *distance <= DESCENT.near * turn);
             }
-            let Some(next) = lower.or_else(|| rest(f64::INFINITY, &mut left, counters)) else {
+            let Some(next) = lower.or_else(|| rest(others, &mut left, counters)) else {
                 found.local = left > 0 && !bundle.is_empty();
                 break;
             };
@@ -144,6 +151,7 @@ struct Slipping {
     axis: [f64; 2],
     /// √(μ n / |v|).
     weight: f64,
+    /// Its place in the list of all points.
     point: usize,
 }
 
@@ -159,6 +167,9 @@ struct Surroundings<'a> {
     /// Greatest jump.
     largest: f64,
 }
+
+/// Points that can stick together: their mean slip, and the derivatives of their slip along both tangents.
+type Group<'a> = (f64, Vec<&'a DVector<f64>>);
 
 /// A direction of descent.
 struct Direction {
@@ -216,10 +227,9 @@ impl<'a> Surroundings<'a> {
         Some(around)
     }
 
-    /// Returns the nearest mechanisms in which one of the slowest slipping points, or all points of a contact, stick. Their slip is
-    /// below a limit, relative to the greatest jump. `None` for one that does not exist.
-    fn at_rest<'s>(&'s self, limit: f64) -> Vec<Option<Vec<SpaceVelocity>>> {
-        let mut groups: Vec<(f64, Vec<&'s DVector<f64>>)> = Vec::new();
+    /// Returns the slowest slipping points, and contacts of several such points, in the order of their slip.
+    fn slowest(&self) -> Vec<Group<'_>> {
+        let mut groups: Vec<Group> = Vec::new();
         for own in self.slipping.chunk_by(|a, b| a.contact == b.contact) {
             groups.extend(own.iter().map(|point| (point.slip, point.along.iter().collect())));
             let mean = own.iter().map(|point| point.slip).sum::<f64>() / own.len() as f64;
@@ -227,14 +237,12 @@ impl<'a> Surroundings<'a> {
                 groups.push((mean, own.iter().flat_map(|point| &point.along).collect()));
             }
         }
-        groups.retain(|(slip, _)| *slip <= limit * self.largest);
         groups.sort_by(|a, b| a.0.total_cmp(&b.0));
         groups.truncate(DESCENT.slowest);
-        let nearest = |(_, rows): (f64, Vec<&'s DVector<f64>>)| self.nearest(rows);
-        groups.into_iter().map(nearest).collect()
+        groups
     }
 
-    /// Returns the nearest mechanism in which further rows vanish.
+    /// Returns the nearest mechanism in which further rows vanish. `None` if it does not exist.
     fn nearest<'s>(&'s self, mut rows: Vec<&'s DVector<f64>>) -> Option<Vec<SpaceVelocity>> {
         for _ in 0..JOINTS.rounds {
             let fixed = self.fixed.iter().chain(rows.iter().copied());
