@@ -19,8 +19,8 @@ fn act(sum: &mut [Vec3; 2], force: Vec3, arm: Vec3) {
     sum[1] += arm.cross(&force);
 }
 
-/// Forces of the file are inside their cones and balance the loads of each block at the load factor; the varying loads have unit
-/// power on the velocities; no contact closes or loses less than its friction. The scene read from the file has the same factor.
+/// Forces of the file are inside their cones and balance the loads of each block at the load factor. The varying loads have unit
+/// power on the velocities, and each contact opens by at least μ times its slip. The scene read from the file has the same factor.
 #[test]
 fn an_assembly_proves_its_load_factor() {
     let scene = "name = \"corner\"\n[scene]\nscene = \"masonry_wall\"\nblock = [2.0, 1.0, 0.5]\ncourses = 3\nblocks = 2\ncorner = { blocks = 2 }\n";

@@ -25,7 +25,7 @@ impl Writer for AssemblyJson {
         }
         let cases = study.results.cases.iter().zip(&study.scenes);
         let file = |(case, scene): (&CaseResult, &SceneOutput)| {
-            let text = assembly_text(study.name, &study.case_title(case), case, (scene.space?, scene));
+            let text = assembly_text(&study.case_title(case), case, (scene.space?, scene));
             Some((format!("assemblies/case-{:04}.json", case.label.id), text.into_bytes()))
         };
         cases.filter_map(file).collect()
@@ -41,24 +41,27 @@ fn three(vector: &Vec3) -> [f64; 3] {
 }
 
 /// Creates the file of a case.
-fn assembly_text(study: &str, title: &str, case: &CaseResult, (space, scene): (&SpaceCase, &SceneOutput)) -> String {
+fn assembly_text(title: &str, case: &CaseResult, (space, scene): (&SpaceCase, &SceneOutput)) -> String {
     let assembly = &space.assembly;
     let mut edges: Map<String, Json> =
         assembly.bodies.iter().map(|body| (body.name.clone(), Json::Object(Map::new()))).collect();
     let field = case.proof.space.as_ref().and_then(|proof| proof.field.as_deref()).unwrap_or_default();
-    for (index, contact) in assembly.contacts.iter().enumerate() {
+    let mut forces: Vec<Vec<&SpaceFieldEntry>> = vec![Vec::new(); assembly.contacts.len()];
+    field.iter().for_each(|entry| forces[entry.joint].push(entry));
+    let (low, high) = assembly.bounding_box();
+    let near = SAME_PLACE * (high - low).norm();
+    for (contact, own) in assembly.contacts.iter().zip(&forces) {
         let [minus, plus] = [contact.minus, contact.plus].map(|body| assembly.bodies[body].name.as_str());
         let edge = &mut edges[minus][plus]["interfaces"];
-        let own: Vec<&SpaceFieldEntry> = field.iter().filter(|entry| entry.joint == index).collect();
-        let interface = interface(assembly, contact, &own);
+        let interface = interface(assembly, contact, own, near);
         match edge.as_array_mut() {
             Some(all) => all.push(interface),
             None => *edge = json!([interface]),
         }
     }
     let attributes = json!({
-        "name": format!("{study}: {title}"),
-        "units": "m, kg, N; a force is the sum of fixed loads and load_factor × varying loads",
+        "name": title,
+        "units": "m, kg, N; forces balance fixed_load + field_factor × varying_load",
         "status": case.status,
         "load_factor": case.load_factor,
         "field_factor": case.proof.field_factor,
@@ -105,13 +108,11 @@ fn nodes(space: &SpaceCase, scene: &SceneOutput, case: &CaseResult) -> Map<Strin
     space.assembly.bodies.iter().enumerate().map(|(index, body)| (body.name.clone(), node(index))).collect()
 }
 
-/// Returns a contact with its law and its forces on the plus block. Forces that do not act at the vertices are listed with their points.
-fn interface(assembly: &SpaceAssembly, contact: &Contact, field: &[&SpaceFieldEntry]) -> Json {
-    let (low, high) = assembly.bounding_box();
-    let near = |(point, entry): (&Vec3, &&SpaceFieldEntry)| {
-        (Vec3::from(entry.point) - point).norm() <= SAME_PLACE * (high - low).norm()
-    };
-    let at_vertices = field.len() == contact.points.len() && contact.points.iter().zip(field).all(near);
+/// Returns a contact with its law and its forces on the plus block. Forces farther than `near` from the vertices are listed with their
+/// points.
+fn interface(assembly: &SpaceAssembly, contact: &Contact, field: &[&SpaceFieldEntry], near: f64) -> Json {
+    let same = |(point, entry): (&Vec3, &&SpaceFieldEntry)| (Vec3::from(entry.point) - point).norm() <= near;
+    let at_vertices = field.len() == contact.points.len() && contact.points.iter().zip(field).all(same);
     let force = |entry: &&SpaceFieldEntry| {
         let [n, s, t] = entry.force;
         json!({ "c_np": n.max(0.0), "c_nn": (-n).max(0.0), "c_u": s, "c_v": t })
