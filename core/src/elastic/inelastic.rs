@@ -83,6 +83,21 @@ impl Strains {
     }
 }
 
+/// Adds the columns of a matrix times their weights to a vector, four columns at a time, in the order of the columns.
+pub(super) fn add_columns(sum: &mut [f64], matrix: &DMatrix<f64>, weights: &[f64]) {
+    let column = |j: usize| &matrix.as_slice()[j * matrix.nrows()..(j + 1) * matrix.nrows()];
+    let (four, rest) = weights.as_chunks::<4>();
+    for (group, w) in four.iter().enumerate() {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|k| column(4 * group + k));
+        for ((((x, a), b), c), d) in sum.iter_mut().zip(a).zip(b).zip(c).zip(d) {
+            *x = *x + a * w[0] + b * w[1] + c * w[2] + d * w[3];
+        }
+    }
+    for (k, w) in rest.iter().enumerate() {
+        sum.iter_mut().zip(column(4 * four.len() + k)).for_each(|(x, a)| *x += a * w);
+    }
+}
+
 /// The state of a body whose material yields.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InelasticState {
@@ -257,9 +272,7 @@ impl InelasticBody {
     /// Returns the displacements of the nodes of the elastic body.
     pub fn elastic_displacement(&self, forces: &[f64]) -> Vec<f64> {
         let mut all = vec![0.0; 2 * self.nodes()];
-        for (f, column) in self.local_forces(forces).iter().zip(self.response.column_iter()) {
-            all.iter_mut().zip(column.iter()).for_each(|(x, c)| *x += c * f);
-        }
+        add_columns(&mut all, &self.response, &self.local_forces(forces));
         all
     }
 
@@ -286,14 +299,14 @@ impl InelasticBody {
 
     pub(super) fn strains_at(&self, displacement: &[f64]) -> Vec<[f64; 3]> {
         let mut strains = Vec::with_capacity(self.gauss_points());
+        let mut local = Vec::new();
         for (nodes, operators) in self.shape.mesh.elements.iter().zip(&self.strains.operators) {
+            local.clear();
+            local.extend(nodes.iter().flat_map(|node| [displacement[2 * node], displacement[2 * node + 1]]));
             for (b, _) in operators {
                 let mut strain = [0.0; 3];
-                for (a, node) in nodes.iter().enumerate() {
-                    for k in 0..2 {
-                        let u = displacement[2 * node + k];
-                        (0..3).for_each(|i| strain[i] += b[(i, 2 * a + k)] * u);
-                    }
+                for (column, u) in b.as_slice().as_chunks::<3>().0.iter().zip(&local) {
+                    (0..3).for_each(|i| strain[i] += column[i] * u);
                 }
                 strains.push(strain);
             }

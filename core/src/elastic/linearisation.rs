@@ -1,7 +1,7 @@
 //! A body of a yielding material, linearised at displacements of its nodes: stresses, energies, tangent, and the
 //! condensation of the tangent onto its points. The module `inelastic` has the equations.
 
-use super::inelastic::{InelasticBody, InelasticState};
+use super::inelastic::{InelasticBody, InelasticState, add_columns};
 use super::shape::{SPRINGS, at_places, placed};
 use crate::law::{Effect, PlanarPoint};
 use crate::linear::{Entries, SparseLu};
@@ -75,11 +75,7 @@ impl InelasticBody {
     /// Returns the displacements of the nodes from forces on the points, by the linearisation.
     pub fn displaced(&self, linear: &Linearisation, forces: &[f64]) -> Vec<f64> {
         let mut all = linear.rest.clone();
-        for (f, column) in self.local_forces(forces).iter().zip(linear.response.column_iter()) {
-            if *f != 0.0 {
-                all.iter_mut().zip(column.iter()).for_each(|(x, c)| *x += c * f);
-            }
-        }
+        add_columns(&mut all, &linear.response, &self.local_forces(forces));
         all
     }
 
