@@ -39,6 +39,8 @@ const MAX_STEPS: u64 = 6000;
 const MAX_ITERATIONS: u64 = 20_000;
 /// Lengths of steps across a corner, relative to the first step.
 const CORNER_STEPS: [f64; 4] = [1e-4, 1e-3, 1e-5, 1e-6];
+/// Growth of these steps while pieces between them have almost zero length.
+const CORNER_GROWTH: f64 = 4.0;
 /// Greatest number of successive pieces of almost zero length.
 const MAX_SHORT_PIECES: u32 = 50;
 
@@ -94,6 +96,8 @@ struct Cluster {
     arrival: Option<(Vec<ContactMode>, Piece, bool)>,
     /// Number of pieces of almost zero length.
     pieces: u32,
+    /// Length of the last step across a corner, relative to the first step, if the path has hardly moved since then.
+    across: Option<f64>,
 }
 
 /// Follows a load step with the strategy, up to a factor or the end of the path.
@@ -257,24 +261,29 @@ impl<'d> Run<'d> {
     }
 
     /// Makes a short step from a corner, approximately along a piece, by Newton's method on the laws themselves: modes
-    /// and branches may change in it. `None` if there is no such step.
+    /// and branches may change in it. The next corner may follow at once, where points that slip and blocks that yield
+    /// decide about each other; steps then grow, but a turn is passed by a short one. `None` if there is no such step.
     fn across(&mut self, tracer: &mut Tracer, facing: &State, piece: &Piece) -> Option<Ending> {
         let here = tracer.state.clone();
-        let (length, next, rate) = CORNER_STEPS.iter().map(|share| share * self.length.first).find_map(|length| {
-            let control = piece.control(length);
-            let guess = moved(facing, &piece.tangent, length);
+        let grown = self.cluster.across.map(|share| (CORNER_GROWTH * share).min(1.0));
+        let (share, next, rate) = grown.into_iter().chain(CORNER_STEPS).find_map(|share| {
+            let control = piece.control(share * self.length.first);
+            let guess = moved(facing, &piece.tangent, share * self.length.first);
             let (next, _) = solve_step(&mut tracer.system, &here, guess, &control).ok()?;
             // Blocks have another solution, in which all of them unload.
             if facing.yields() && !next.yields() {
                 return None;
             }
             let rate = tangent_at(&mut tracer.system, &next, &control)?;
-            step_energy(tracer, &next).holds.then_some((length, next, rate))
+            let turns = self.goes_up(tracer, &rate) != self.rises;
+            let short = share <= CORNER_STEPS[1] || !turns;
+            (short && step_energy(tracer, &next).holds).then_some((share, next, rate))
         })?;
         let was = self.rises;
         self.piece = Piece::new(&tracer.system, &next, &rate)?;
-        self.length.next = length;
+        self.length.next = share * self.length.first;
         self.rises = self.goes_up(tracer, &self.piece.tangent.clone());
+        self.cluster = Cluster { across: Some(share), ..Cluster::default() };
         if was != self.rises
             && let Some(ending) = self.at_turn(tracer, was)
         {
