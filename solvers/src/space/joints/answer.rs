@@ -62,8 +62,10 @@ pub fn answer(problem: &SpaceProblem, question: LimitQuestion, solve: Associated
     }
     let mut answer = courses.answer(associated);
     let open = matches!(verdict, Some(Verdict::Open(_))) || answer.factor.is_some_and(|factor| factor > max);
-    if let Some(Verdict::Falls(note) | Verdict::Open(note)) = verdict {
-        answer.notes.insert(0, note);
+    match verdict {
+        Some(Verdict::Open(note)) => answer.notes.insert(0, note),
+        Some(Verdict::Collapses(note)) if max.is_finite() => answer.notes.insert(0, note),
+        _ => {}
     }
     SpaceAnswer { status: if open { Status::Open } else { answer.status }, ..answer }
 }
@@ -90,8 +92,8 @@ fn stands(max: f64, field: SpaceField, note: String, mut associated: SpaceAnswer
 enum Verdict {
     /// All carry the end, with the forces of one of them.
     Stands(SpaceField, String),
-    /// The factor of all falls below the end.
-    Falls(String),
+    /// All collapse below the end.
+    Collapses(String),
     /// They differ, or some was not solved.
     Open(String),
 }
@@ -153,7 +155,7 @@ impl<'a> Courses<'a> {
 
     /// Loads joints with all ratios from zero stress up to a factor above the start, and again with halved steps.
     fn verdict(&mut self, end: f64) -> Verdict {
-        let (mut fields, mut falls, mut ends) = (Vec::new(), 0, Vec::new());
+        let (mut fields, mut collapses, mut ends) = (Vec::new(), 0, Vec::new());
         for (parts, ratio) in JOINTS.parts.iter().flat_map(|parts| JOINTS.ratios.map(|ratio| (*parts, ratio))) {
             let mut joints = self.joints(ratio);
             let told = match load(&mut joints, end, parts) {
@@ -161,9 +163,12 @@ impl<'a> Courses<'a> {
                     fields.push(self.program.by_contacts(&forces));
                     "carried".into()
                 }
-                Loaded::Falls(lambda) => {
-                    falls += 1;
-                    format!("the greatest factor is {:.6}", self.factor(lambda))
+                Loaded::Snaps(lambda) => {
+                    format!("carried, but the factor falls before from {:.6}", self.factor(lambda))
+                }
+                Loaded::Collapses(lambda) => {
+                    collapses += 1;
+                    format!("collapse; the greatest factor is {:.6}", self.factor(lambda))
                 }
                 Loaded::Stops(lambda) => format!("no step was solved beyond {:.6}", self.factor(lambda)),
                 Loaded::Fell => "no state under the dead load was found".into(),
@@ -187,8 +192,8 @@ impl<'a> Courses<'a> {
             );
         }
         let whole = "blocks on elastic joints, loaded step by step from zero stress,";
-        if falls == ends.len() {
-            return Verdict::Falls(format!("{whole} do not carry the factor {factor:.6}. {list}"));
+        if collapses == ends.len() {
+            return Verdict::Collapses(format!("{whole} do not carry the factor {factor:.6}. {list}"));
         }
         Verdict::Open(format!("{whole} do not decide if the factor {factor:.6} is carried. {list}"))
     }

@@ -36,6 +36,9 @@ pub enum End {
 /// Applies the dead load at zero stress. One step is enough: the response of joints without stress is homogeneous, so smaller steps give
 /// the same forces.
 pub fn dead_load(joints: &mut Joints) -> Option<()> {
+    if joints.loads(0.0) == 0.0 {
+        return Some(());
+    }
     let still = vec![0.0; joints.program.base.len()];
     let held = Control::Factor(0.0);
     let step = match joints.coulomb(still.clone(), 0.0, held) {
@@ -129,7 +132,7 @@ pub fn compliance(joints: &mut Joints) -> f64 {
 }
 
 /// Tries the law's own friction, from the last rate and from rest.
-fn own_step(joints: &mut Joints, guess: &[f64], lambda: f64, power: f64) -> Option<Step> {
+pub fn own_step(joints: &mut Joints, guess: &[f64], lambda: f64, power: f64) -> Option<Step> {
     let first = joints.coulomb(guess.to_vec(), lambda, Control::Power);
     first.or_else(|| joints.coulomb(along(joints.program, power), lambda, Control::Power))
 }

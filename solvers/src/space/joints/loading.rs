@@ -1,19 +1,21 @@
 //! Loading from zero stress: the course that decides if a structure stands.
 //!
 //! Every step obeys the law. It counts if two steps of half its size lead to nearly the same forces, so that no fall of the load factor is
-//! passed over. The course ends when the load factor reaches its end, falls, or becomes constant.
+//! passed over. The course ends when the load factor reaches its end or becomes constant.
 
-use super::course::{along, compliance, dead_load, settled};
+use super::course::{along, compliance, dead_load, own_step, settled};
 use super::step::{Control, Joints, Step};
 use crate::space::program::Bodies;
 use crate::space::settings::JOINTS;
 
 /// The end of a course. Factors are above the start.
 pub enum Loaded {
-    /// Forces (n, s, t) of all points in equilibrium at the end.
+    /// Forces (n, s, t) of all points in equilibrium at the end. The factor never fell.
     Carries(Vec<[f64; 3]>),
-    /// The factor falls or is constant after this one.
-    Falls(f64),
+    /// The factor falls from this one and reaches the end later: under a constant load the blocks move and may come to rest again.
+    Snaps(f64),
+    /// A mechanism moves at a constant factor. This is the greatest factor of the course.
+    Collapses(f64),
     /// No step was solved beyond this factor.
     Stops(f64),
     /// The dead load was not carried.
@@ -30,32 +32,36 @@ pub fn load(joints: &mut Joints, end: f64, parts: f64) -> Loaded {
     let accuracy = JOINTS.accuracy / (parts * parts);
     let (mut lambda, mut power) = (0.0, JOINTS.first / parts * compliance);
     let mut rate = along(joints.program, 1.0);
-    for _ in 0..JOINTS.iterations {
+    let mut peak = None;
+    'course: for _ in 0..JOINTS.iterations {
         if power < JOINTS.least * compliance {
             break;
         }
-        let guess = rate.iter().map(|q| q * power).collect();
-        let Some(halves) = halves(joints, guess, lambda, accuracy) else {
+        let Some(halves) = halves(joints, &rate, [lambda, power], accuracy) else {
             power *= JOINTS.shorter;
             continue;
         };
         for Step { motion, lambda: reached, contacts } in halves {
             if reached >= end {
+                if let Some(peak) = peak {
+                    return Loaded::Snaps(peak);
+                }
                 let share = (end - lambda) / (reached - lambda);
                 let guess = motion.iter().map(|u| u * share).collect();
-                let step = joints.coulomb(guess, end, Control::Factor(end));
-                return step.map_or(Loaded::Stops(lambda), |step| {
-                    Loaded::Carries(step.contacts.iter().map(|contact| contact.force).collect())
-                });
+                let Some(step) = joints.coulomb(guess, end, Control::Factor(end)) else {
+                    power *= JOINTS.shorter;
+                    continue 'course;
+                };
+                return Loaded::Carries(step.contacts.iter().map(|contact| contact.force).collect());
             }
             if reached < lambda - JOINTS.differ * lambda.abs() {
-                return Loaded::Falls(lambda);
+                peak = Some(peak.map_or(lambda, |peak: f64| peak.max(lambda)));
             }
             (joints.contacts, lambda) = (contacts, reached);
             rate = motion.iter().map(|u| u / (0.5 * power)).collect();
         }
         if settled(joints, &rate, lambda) {
-            return Loaded::Falls(lambda);
+            return Loaded::Collapses(peak.map_or(lambda, |peak| peak.max(lambda)));
         }
         power = (power * growth).min(JOINTS.greatest * compliance);
     }
@@ -63,8 +69,9 @@ pub fn load(joints: &mut Joints, end: f64, parts: f64) -> Loaded {
 }
 
 /// Returns two half steps in place of a step. `None` if a step is not solved, or if the forces differ.
-fn halves(joints: &mut Joints, guess: Bodies, lambda: f64, accuracy: f64) -> Option<[Step; 2]> {
-    let full = joints.coulomb(guess, lambda, Control::Power)?;
+fn halves(joints: &mut Joints, rate: &[f64], [lambda, power]: [f64; 2], accuracy: f64) -> Option<[Step; 2]> {
+    let guess: Bodies = rate.iter().map(|q| q * power).collect();
+    let full = own_step(joints, &guess, lambda, power)?;
     let half = full.motion.iter().map(|u| 0.5 * u).collect();
     let first = joints.coulomb(half, lambda, Control::Power)?;
     let before = std::mem::replace(&mut joints.contacts, first.contacts.clone());
