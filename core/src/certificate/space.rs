@@ -153,7 +153,7 @@ impl<'a> Check<'a> {
     /// Tries the hint, then every other statement, and returns the first that is proved.
     fn decide(&mut self, claim: &SpaceClaim, gap: f64) -> SpaceVerdict {
         let all = [Status::Stands, Status::Collapse, Status::Unbounded, Status::NoEquilibrium];
-        // Where blocks can wedge, a state with the laws' own flow bounds the least load, but the structure may stand beyond it.
+        // If blocks can wedge, a state with the laws' own flow bounds the least load, but the structure may stand beyond it.
         let left_open = claim.hint == Status::Open && claim.non_associated.is_some();
         let states = [Status::Stands, Status::Collapse];
         let others = all.into_iter().filter(|status| *status != claim.hint && !(left_open && states.contains(status)));

@@ -1,7 +1,7 @@
 //! Loading from zero stress: the course that decides if a structure stands.
 //!
-//! Every step obeys the law. It counts if two steps of half its size lead to nearly the same forces, so that no fall of the load factor is
-//! passed over. The course ends when the load factor reaches its end or becomes constant.
+//! Every step obeys the law. It counts if two steps of half its size lead to nearly the same forces, so that few falls of the load factor
+//! are passed over. The course ends when the load factor reaches its end or becomes constant.
 
 use super::course::{along, compliance, dead_load, own_step, settled};
 use super::step::{Control, Joints, Step};
@@ -12,7 +12,7 @@ use crate::space::settings::JOINTS;
 pub enum Loaded {
     /// Forces (n, s, t) of all points in equilibrium at the end. The factor never fell.
     Carries(Vec<[f64; 3]>),
-    /// The factor falls from this one and reaches the end later: under a constant load the blocks move and may come to rest again.
+    /// The factor falls from this one and reaches the end later: under a constant load the blocks move, and perhaps stop later.
     Snaps(f64),
     /// A mechanism moves at a constant factor. This is the greatest factor of the course.
     Collapses(f64),

@@ -71,7 +71,7 @@ fn a_dovetail_jams_in_one_direction() {
     }
 }
 
-/// With a friction of 1 a slab under a cube at a wall jams with associated flow. Where stiffnesses disagree about a factor, the answer is
+/// With a friction of 1 a slab under a cube at a wall jams with associated flow. If stiffnesses disagree about a factor, the answer is
 /// open, and a collapse state proves the upper end.
 #[test]
 fn courses_that_disagree_leave_the_factor_open() {
