@@ -153,7 +153,10 @@ impl<'a> Check<'a> {
     /// Tries the hint, then every other statement, and returns the first that is proved.
     fn decide(&mut self, claim: &SpaceClaim, gap: f64) -> SpaceVerdict {
         let all = [Status::Stands, Status::Collapse, Status::Unbounded, Status::NoEquilibrium];
-        let others = all.into_iter().filter(|status| *status != claim.hint);
+        // If blocks can wedge, a state with the laws' own flow bounds the least load, but the structure may stand beyond it.
+        let left_open = claim.hint == Status::Open && claim.non_associated.is_some();
+        let states = [Status::Stands, Status::Collapse];
+        let others = all.into_iter().filter(|status| *status != claim.hint && !(left_open && states.contains(status)));
         let mut first = None;
         for status in std::iter::once(claim.hint).filter(|hint| all.contains(hint)).chain(others) {
             self.certificate = Certificate::blank();
@@ -170,17 +173,23 @@ impl<'a> Check<'a> {
                 _ => {}
             }
         }
-        self.open(claim, first.unwrap_or_else(Certificate::blank))
+        self.open(claim, gap, first.unwrap_or_else(Certificate::blank))
     }
 
     /// Returns the verdict with the ends that field and motion prove by themselves.
-    fn open(&mut self, claim: &SpaceClaim, mut certificate: Certificate) -> SpaceVerdict {
+    fn open(&mut self, claim: &SpaceClaim, gap: f64, mut certificate: Certificate) -> SpaceVerdict {
         self.certificate = Certificate::blank();
         // A field does not bound factors of other than associated flow, but every motion of associated flow does.
         let own = claim.non_associated.is_some();
         let lower = if own { None } else { self.field(claim).filter(|lower| *lower > claim.start) };
         self.certificate = Certificate::blank();
-        let upper = self.upper_bound(if own { associated_motion(claim) } else { claim.motion });
+        let upper = match claim.non_associated {
+            None => self.upper_bound(claim.motion),
+            Some(own) => {
+                let ends = [self.upper_bound(own.associated_motion.as_deref()), self.state(claim, own, gap)];
+                ends.into_iter().flatten().min_by(f64::total_cmp)
+            }
+        };
         let consistent = lower.zip(upper).is_none_or(|(lower, upper)| lower <= upper);
         let bounds = if consistent { [lower, upper] } else { [None; 2] };
         let status = if bounds == [None; 2] { Status::Stalled } else { Status::Open };
@@ -256,6 +265,14 @@ impl<'a> Check<'a> {
             self.certificate.residual("associated_gap", distance, gap);
         }
         Some([claim.start, factor])
+    }
+
+    /// Returns the factor of a state with the laws' own flow: the least collapse factor is not above it.
+    fn state(&mut self, claim: &SpaceClaim, own: &SpaceNonAssociated, gap: f64) -> Option<f64> {
+        self.certificate = Certificate::blank();
+        let at = SpaceClaim { factor: Some(claim.field_factor), target: f64::INFINITY, ..*claim };
+        let found = self.own_flow(&at, own, gap).filter(|_| self.certificate.passed);
+        found.map(|[_, factor]| factor)
     }
 
     /// Returns the factor that a motion of associated flow proves. Its residuals have separate names.
@@ -604,6 +621,13 @@ mod tests {
         let verdict = certify_space(&problem, &state(&forces, &honest), 1e-8);
         assert_eq!((verdict.status, verdict.greatest), (Status::Collapse, Greatest::Open), "{:?}", verdict.certificate);
         assert_eq!(verdict.bounds, [Some(0.0), Some(0.4)]);
+        // If the hint leaves the answer open, the state is the upper end of the least load, also beyond the target.
+        for target in [0.3, 1.0] {
+            let none = own(None, None);
+            let open = SpaceClaim { hint: Status::Open, target, ..state(&forces, &none) };
+            let verdict = certify_space(&problem, &open, 1e-8);
+            assert_eq!((verdict.status, verdict.bounds), (Status::Open, [None, Some(0.4)]));
+        }
         for forged in [own(Some(0.39), Some(SLIP[0])), own(Some(0.4), Some(LEVEL[0])), own(Some(0.4), None)] {
             assert_ne!(certify_space(&problem, &state(&forces, &forged), 1e-8).status, Status::Collapse);
         }

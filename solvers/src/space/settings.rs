@@ -83,10 +83,16 @@ pub const SETTINGS: SpaceSettings = SpaceSettings {
 /// unit of the load factor before joints slip.
 #[derive(Debug, Clone, Copy)]
 pub struct JointSettings {
-    /// Tangential over normal stiffness of the courses from zero stress.
-    pub ratios: [f64; 4],
-    /// The same of the courses from the forces of the associated load.
-    pub ratios_from_field: [f64; 3],
+    /// Tangential over normal stiffness of the courses.
+    pub ratios: [f64; 3],
+    /// The same of a further course, which only searches a state.
+    pub soft: f64,
+    /// Numbers of steps, in place of each one, of the courses that decide if the structure stands.
+    pub parts: [f64; 2],
+    /// Greatest difference of a force after a step of these courses and after two half steps, relative to the greatest force.
+    pub accuracy: f64,
+    /// Factor that these courses reach if the stage has no end: the live load over the dead load.
+    pub end: f64,
     /// Least stiffness of a point, relative to the mean.
     pub softest: f64,
     /// Relative distance of the factors of two states that differ.
@@ -143,8 +149,11 @@ pub struct JointSettings {
 
 /// The numbers in use.
 pub const JOINTS: JointSettings = JointSettings {
-    ratios: [1e-4, 0.1, 0.3, 1.0],
-    ratios_from_field: [0.1, 0.3, 1.0],
+    ratios: [0.1, 0.3, 1.0],
+    soft: 1e-4,
+    parts: [1.0, 2.0],
+    accuracy: 1e-3,
+    end: 1e3,
     softest: 1e-2,
     differ: 1e-9,
     rounds: 8,

@@ -3,86 +3,234 @@
 use super::course::{End, State, course, live_load};
 use super::descent::{Descent, Dual, Found};
 use super::least::Associated;
+use super::loading::{Loaded, load};
 use super::point::Spring;
 use super::step::Joints;
 use crate::space::program::{Program, Side};
 use crate::space::settings::JOINTS;
 use voussoir_core::limit::{Counters, LimitQuestion, Status};
-use voussoir_core::space::{SpaceAnswer, SpaceContact, SpaceNonAssociated, SpaceProblem, power};
+use voussoir_core::space::{SpaceAnswer, SpaceContact, SpaceField, SpaceNonAssociated, SpaceProblem, power};
 
 const STRENGTHS: &str = "joints with cohesion, tension or crushing are read with associated flow";
 
 /// Answers a question with the laws' own flow, without panic. `solve` gives the associated answer, which is the bound. It is returned
 /// if no flow differs, no load varies, the dead load is not carried, or some joint is not dry. Otherwise courses of elastic joints
 /// search collapse states, and the least one is the answer. Their stiffnesses differ; some start at zero stress, the others at the
-/// forces of the associated load, which carry the greatest factor.
+/// forces of the associated load, which carry the greatest factor. If the associated load is beyond the end of the stage, the courses
+/// from zero stress decide if the structure stands there.
 pub fn answer(problem: &SpaceProblem, question: LimitQuestion, solve: Associated) -> SpaceAnswer {
-    let mut associated = solve(problem, question);
-    let LimitQuestion::Collapse { start, max } = question else { return associated };
-    if !problem.non_associated() || !matches!(associated.status, Status::Collapse | Status::Unbounded | Status::Open) {
+    let LimitQuestion::Collapse { start, max } = question else { return solve(problem, question) };
+    if !problem.non_associated() {
+        return solve(problem, question);
+    }
+    let searched = |answer: &SpaceAnswer| matches!(answer.status, Status::Collapse | Status::Unbounded | Status::Open);
+    if !problem.contacts.iter().all(|contact| contact.law.is_dry()) {
+        let mut associated = solve(problem, question);
+        associated.notes.extend(searched(&associated).then(|| STRENGTHS.into()));
         return associated;
     }
-    if !problem.contacts.iter().all(|contact| contact.law.is_dry()) {
-        associated.notes.push(STRENGTHS.into());
+    // Factors of associated flow beyond the end of the stage do not decide about it.
+    let mut associated = solve(problem, LimitQuestion::Collapse { start, max: f64::INFINITY });
+    if !searched(&associated) || problem.varying.iter().flatten().all(|load| *load == 0.0) {
         return associated;
     }
     let program = Program::new(problem, start, Side::Inner);
-    let (mut states, mut failures): (Vec<Found>, Vec<String>) = (Vec::new(), Vec::new());
-    let mut counters = std::mem::take(&mut associated.counters);
-    let descent = Descent { problem, solve, start };
-    let zero_stress = JOINTS.ratios.map(|ratio| (ratio, None));
+    let refuted = match associated.status {
+        Status::Collapse => associated.factor.is_some_and(|factor| factor <= max),
+        status => status == Status::Open,
+    };
+    let mut courses = Courses {
+        descent: Descent { problem, solve, start },
+        program: &program,
+        states: Vec::new(),
+        failures: Vec::new(),
+        counters: std::mem::take(&mut associated.counters),
+    };
+    let verdict = (!refuted).then(|| {
+        let end = if max.is_finite() { (max - start) / program.unit } else { JOINTS.end };
+        courses.verdict(end)
+    });
+    if let Some(Verdict::Stands(field, note)) = verdict {
+        return stands(max, field, note, SpaceAnswer { counters: courses.counters, ..associated });
+    }
     let known = associated.field.as_ref().filter(|_| associated.status == Status::Collapse);
-    let from_field = known.map(|field| JOINTS.ratios_from_field.map(|ratio| (ratio, Some(field))));
-    let courses: Vec<_> = zero_stress.into_iter().chain(from_field.into_iter().flatten()).collect();
-    for (ratio, field) in &courses {
-        let mut joints = Joints::new(&program, springs(problem, *ratio));
-        let end = match field {
+    courses.run(JOINTS.soft, None);
+    JOINTS.ratios.iter().for_each(|ratio| courses.run(*ratio, None));
+    if let Some(field) = known {
+        let lambda = (associated.field_factor - start) / program.unit;
+        JOINTS.ratios.iter().for_each(|ratio| courses.run(*ratio, Some((field, lambda))));
+    }
+    let mut answer = courses.answer(associated);
+    let open = matches!(verdict, Some(Verdict::Open(_))) || answer.factor.is_some_and(|factor| factor > max);
+    match verdict {
+        Some(Verdict::Open(note)) => answer.notes.insert(0, note),
+        Some(Verdict::Collapses(note)) if max.is_finite() => answer.notes.insert(0, note),
+        _ => {}
+    }
+    SpaceAnswer { status: if open { Status::Open } else { answer.status }, ..answer }
+}
+
+/// Returns the answer that the end of the stage is carried. If the stage has no end, this is the associated answer.
+fn stands(max: f64, field: SpaceField, note: String, mut associated: SpaceAnswer) -> SpaceAnswer {
+    if max.is_infinite() {
+        associated.notes.push(note);
+        return associated;
+    }
+    SpaceAnswer {
+        status: Status::Stands,
+        field_factor: max,
+        field: Some(field),
+        self_stress: associated.self_stress,
+        non_associated: Some(SpaceNonAssociated::default()),
+        counters: associated.counters,
+        notes: vec![note],
+        ..SpaceAnswer::default()
+    }
+}
+
+/// The common result of the courses that load from zero stress, with a note.
+enum Verdict {
+    /// All carry the end, with the forces of one of them.
+    Stands(SpaceField, String),
+    /// All collapse below the end.
+    Collapses(String),
+    /// They differ, or some was not solved.
+    Open(String),
+}
+
+/// The courses of a problem with different stiffnesses.
+struct Courses<'a> {
+    descent: Descent<'a>,
+    program: &'a Program,
+    /// The least state that each course leads to.
+    states: Vec<Found>,
+    /// The courses without a state, with the reason.
+    failures: Vec<String>,
+    counters: Counters,
+}
+
+impl<'a> Courses<'a> {
+    fn joints(&self, ratio: f64) -> Joints<'a> {
+        Joints::new(self.program, springs(self.descent.problem, ratio))
+    }
+
+    fn factor(&self, lambda: f64) -> f64 {
+        self.program.start + lambda * self.program.unit
+    }
+
+    fn count(&mut self, joints: &Joints) {
+        *self.counters.entry("joint_iterations".into()).or_default() += joints.iterations;
+    }
+
+    /// Runs a course with a ratio of stiffnesses, from zero stress or from forces at a factor.
+    fn run(&mut self, ratio: f64, from: Option<(&SpaceField, f64)>) {
+        let mut joints = self.joints(ratio);
+        let end = match from {
             None => course(&mut joints),
-            Some(field) => {
+            Some((field, lambda)) => {
                 joints.press(field);
-                live_load(&mut joints, (associated.field_factor - start) / program.unit)
+                live_load(&mut joints, lambda)
             }
         };
-        let from = if field.is_some() { "the associated forces" } else { "zero stress" };
-        let mut fails =
-            |why: String| failures.push(format!("elastic joints with k_t/k_n = {ratio}, from {from}: {why}"));
-        match end {
-            End::Settled(state) => states.push(lowest(&descent, &mut joints, state, &mut counters)),
+        let from = if from.is_some() { "the associated forces" } else { "zero stress" };
+        let why = match end {
+            End::Settled(state) => {
+                self.states.push(lowest(&self.descent, &mut joints, state, &mut self.counters));
+                None
+            }
             End::Wanders([least, greatest], excess) => {
-                let [least, greatest] = [least, greatest].map(|lambda| start + lambda * program.unit);
-                fails(format!(
+                let [least, greatest] = [least, greatest].map(|lambda| self.factor(lambda));
+                Some(format!(
                     "no state was reached; the last factors are between {least:.6} and {greatest:.6}, which is no bound, \
                      with shear forces up to {excess:.1e} of the loads beyond friction"
-                ));
+                ))
             }
-            End::Stuck => fails("no step under the live load was solved".into()),
-            End::Fell => fails("no state under the dead load was found".into()),
-        }
-        *counters.entry("joint_iterations".into()).or_default() += joints.iterations;
+            End::Stuck => Some("no step under the live load was solved".into()),
+            End::Fell => Some("no state under the dead load was found".into()),
+        };
+        let told = why.map(|why| format!("elastic joints with k_t/k_n = {ratio}, from {from}: {why}"));
+        self.failures.extend(told);
+        self.count(&joints);
     }
-    let bound = associated.motion.filter(|_| associated.status == Status::Collapse);
-    let own = SpaceNonAssociated {
-        // The upper end of its bounds: no state of any flow rule is above it.
-        associated_factor: bound.as_ref().map(|motion| -power(&problem.fixed, motion)),
-        associated_motion: bound,
-    };
-    states.sort_by(|a, b| a.factor.total_cmp(&b.factor));
-    let mut notes = if states.is_empty() { failures } else { Vec::new() };
-    notes.extend(spread(&states, courses.len()));
-    let answer = SpaceAnswer { non_associated: Some(own), counters, ..SpaceAnswer::default() };
-    match states.into_iter().next().filter(|state| state.factor <= max) {
-        Some(Found { factor, field, motion, .. }) => SpaceAnswer {
-            status: Status::Collapse,
-            factor: Some(factor),
-            field_factor: factor,
-            field: Some(field),
-            motion: Some(motion),
-            notes,
-            ..answer
-        },
-        None => {
-            notes.push("no collapse state with the laws' own flow was found".into());
-            SpaceAnswer { status: Status::Open, notes, ..answer }
+
+    /// Loads joints with all ratios from zero stress up to a factor above the start, and again with halved steps.
+    fn verdict(&mut self, end: f64) -> Verdict {
+        let (mut fields, mut collapses, mut ends) = (Vec::new(), 0, Vec::new());
+        for (parts, ratio) in JOINTS.parts.iter().flat_map(|parts| JOINTS.ratios.map(|ratio| (*parts, ratio))) {
+            let mut joints = self.joints(ratio);
+            let told = match load(&mut joints, end, parts) {
+                Loaded::Carries(forces) => {
+                    fields.push(self.program.by_contacts(&forces));
+                    "carried".into()
+                }
+                Loaded::Snaps(lambda) => {
+                    format!("carried, but the factor falls before from {:.6}", self.factor(lambda))
+                }
+                Loaded::Collapses(lambda) => {
+                    collapses += 1;
+                    format!("collapse; the greatest factor is {:.6}", self.factor(lambda))
+                }
+                Loaded::Stops(lambda) => format!("no step was solved beyond {:.6}", self.factor(lambda)),
+                Loaded::Fell => "no state under the dead load was found".into(),
+            };
+            let halved = if parts > 1.0 { ", halved steps" } else { "" };
+            ends.push(format!("k_t/k_n = {ratio}{halved}: {told}"));
+            self.count(&joints);
+        }
+        let factor = self.factor(end);
+        let ratios = JOINTS.ratios.map(|ratio| ratio.to_string()).join(", ");
+        let list = ends.join("; ");
+        if fields.len() == ends.len()
+            && let Some(field) = fields.pop()
+        {
+            return Verdict::Stands(
+                field,
+                format!(
+                    "blocks on elastic joints, loaded step by step from zero stress, carry the factor {factor:.6} with \
+                     k_t/k_n = {ratios}, and with halved steps"
+                ),
+            );
+        }
+        let whole = "blocks on elastic joints, loaded step by step from zero stress,";
+        if collapses == ends.len() {
+            return Verdict::Collapses(format!("{whole} do not carry the factor {factor:.6}. {list}"));
+        }
+        Verdict::Open(format!("{whole} do not decide if the factor {factor:.6} is carried. {list}"))
+    }
+
+    /// Returns the answer with the least state.
+    fn answer(&mut self, associated: SpaceAnswer) -> SpaceAnswer {
+        let bound = associated.motion.filter(|_| associated.status == Status::Collapse);
+        let own = SpaceNonAssociated {
+            // The upper end of its bounds: no state of any flow rule is above it.
+            associated_factor: bound.as_ref().map(|motion| -power(&self.descent.problem.fixed, motion)),
+            associated_motion: bound,
+        };
+        let mut states = std::mem::take(&mut self.states);
+        let courses = states.len() + self.failures.len();
+        states.sort_by(|a, b| a.factor.total_cmp(&b.factor));
+        let mut notes = if states.is_empty() { std::mem::take(&mut self.failures) } else { Vec::new() };
+        notes.extend(spread(&states, courses));
+        let answer = SpaceAnswer {
+            self_stress: associated.self_stress,
+            non_associated: Some(own),
+            counters: std::mem::take(&mut self.counters),
+            ..SpaceAnswer::default()
+        };
+        match states.into_iter().next() {
+            Some(Found { factor, field, motion, .. }) => SpaceAnswer {
+                status: Status::Collapse,
+                factor: Some(factor),
+                field_factor: factor,
+                field: Some(field),
+                motion: Some(motion),
+                notes,
+                ..answer
+            },
+            None => {
+                notes.push("no collapse state with the laws' own flow was found".into());
+                SpaceAnswer { status: Status::Open, notes, ..answer }
+            }
         }
     }
 }

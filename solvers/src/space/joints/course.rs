@@ -33,8 +33,12 @@ pub enum End {
     Fell,
 }
 
-/// Applies the dead load at zero stress.
-fn dead_load(joints: &mut Joints) -> Option<()> {
+/// Applies the dead load at zero stress. One step is enough: the response of joints without stress is homogeneous, so smaller steps give
+/// the same forces.
+pub fn dead_load(joints: &mut Joints) -> Option<()> {
+    if joints.loads(0.0) == 0.0 {
+        return Some(());
+    }
     let still = vec![0.0; joints.program.base.len()];
     let held = Control::Factor(0.0);
     let step = match joints.coulomb(still.clone(), 0.0, held) {
@@ -72,9 +76,8 @@ pub fn course(joints: &mut Joints) -> End {
 
 /// Runs the course from the present state in equilibrium at a factor.
 pub fn live_load(joints: &mut Joints, mut lambda: f64) -> End {
-    let unit = dot(&joints.program.varying, &joints.program.varying).sqrt();
     let mut rate = along(joints.program, 1.0);
-    let compliance = compliance(joints, unit);
+    let compliance = compliance(joints);
     let mut power = JOINTS.first * compliance;
     let first = joints.iterations;
     let most = first + JOINTS.iterations;
@@ -116,7 +119,8 @@ pub fn live_load(joints: &mut Joints, mut lambda: f64) -> End {
 }
 
 /// Returns the power of the live load per factor in a small first step.
-fn compliance(joints: &mut Joints, unit: f64) -> f64 {
+pub fn compliance(joints: &mut Joints) -> f64 {
+    let unit = dot(&joints.program.varying, &joints.program.varying).sqrt();
     if let Some(known) = joints.compliance {
         return known;
     }
@@ -128,20 +132,20 @@ fn compliance(joints: &mut Joints, unit: f64) -> f64 {
 }
 
 /// Tries the law's own friction, from the last rate and from rest.
-fn own_step(joints: &mut Joints, guess: &[f64], lambda: f64, power: f64) -> Option<Step> {
+pub fn own_step(joints: &mut Joints, guess: &[f64], lambda: f64, power: f64) -> Option<Step> {
     let first = joints.coulomb(guess.to_vec(), lambda, Control::Power);
     first.or_else(|| joints.coulomb(along(joints.program, power), lambda, Control::Power))
 }
 
 /// Returns the motion along the live load with a power.
-fn along(program: &Program, power: f64) -> Bodies {
+pub fn along(program: &Program, power: f64) -> Bodies {
     let live = &program.varying;
     let share = power / dot(live, live);
     live.iter().map(|p| p * share).collect()
 }
 
 /// Returns true if the rates follow the flow of the laws, and no contact has power left, within rounding.
-fn settled(joints: &Joints, rate: &[f64], lambda: f64) -> bool {
+pub fn settled(joints: &Joints, rate: &[f64], lambda: f64) -> bool {
     let (mut largest, mut closing, mut idle) = (0.0f64, 0.0f64, 0.0);
     for ((spring, contact), v) in joints.springs.iter().zip(&joints.contacts).zip(joints.jumps(rate)) {
         let slip = v[1].hypot(v[2]);

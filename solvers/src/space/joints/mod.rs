@@ -3,12 +3,14 @@
 //! The dead load is applied at zero stress, then the power of the live load grows in steps (`course`). Each step is one implicit step
 //! of joints with friction, solved by semismooth Newton iterations (`step`) on the response of single points (`point`). As steps grow, the
 //! elastic deformation becomes a vanishing share of them; the forces become constant and the motion a mechanism. That end is a collapse
-//! state with the laws' own flow. Its mechanism may have states at lower factors (`least`).
+//! state with the laws' own flow. Its mechanism may have states at lower factors (`least`). If a stage has an end, smaller steps from zero
+//! stress decide if the structure stands there (`loading`).
 
 mod answer;
 mod course;
 mod descent;
 mod least;
+mod loading;
 mod point;
 mod step;
 

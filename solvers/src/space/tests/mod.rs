@@ -7,3 +7,4 @@ mod random;
 mod scenes;
 mod statuses;
 mod strengths;
+mod wedging;

@@ -12,7 +12,7 @@ use voussoir_core::space::{SpaceProblem, Vec3};
 const EXACT: f64 = 1e-8;
 
 /// Returns the problem with slip that does not open the joints.
-fn without_dilatancy(scene: &Scene, direction: &Vec3) -> SpaceProblem {
+pub fn without_dilatancy(scene: &Scene, direction: &Vec3) -> SpaceProblem {
     let mut problem = scene.problem(direction);
     problem.contacts.iter_mut().for_each(|contact| contact.law = FrictionCone::dry(contact.law.friction, 0.0));
     problem
@@ -31,7 +31,7 @@ fn meets(found: f64, expected: f64, case: &str) {
 }
 
 /// A prism of length `length` in a groove whose faces are at α to the vertical, pulled along the groove.
-fn groove(alpha: f64, friction: f64, length: f64) -> SpaceProblem {
+pub fn groove(alpha: f64, friction: f64, length: f64) -> SpaceProblem {
     let (sin, cos) = alpha.to_radians().sin_cos();
     let mut scene = Scene { bodies: vec![(1.0, Vec3::new(length / 2.0, 0.0, cos * 2.0 / 3.0))], contacts: Vec::new() };
     for side in [1.0, -1.0] {
@@ -55,26 +55,32 @@ fn a_block_in_a_groove_slides_at_the_friction_of_both_faces() {
     }
 }
 
+/// A block that fills a square duct turned by β about its axis x. Also returns the normal of a face.
+pub fn duct(beta: f64, friction: f64) -> (Scene, Vec3) {
+    let (sin, cos) = beta.to_radians().sin_cos();
+    let mut scene = Scene { bodies: vec![(1.0, Vec3::new(2.0, 0.0, 0.0))], contacts: Vec::new() };
+    let turned = |x: f64, y: f64, z: f64| Vec3::new(x, y * cos - z * sin, y * sin + z * cos);
+    for (y, z) in [(0.0, 1.0), (0.0, -1.0), (1.0, 0.0), (-1.0, 0.0)] {
+        let corner = |x: f64, along: f64| turned(x, 0.5 * y - along * z, 0.5 * z + along * y);
+        let face = vec![corner(0.0, -0.5), corner(4.0, -0.5), corner(4.0, 0.5), corner(0.0, 0.5)];
+        scene.contacts.push((None, Some(0), face, turned(0.0, -y, -z), friction));
+    }
+    (scene, turned(0.0, 1.0, 0.0))
+}
+
 /// A block that fills a square duct turned by β about its axis jams with associated flow; it slides at μ (cos β + sin β).
 #[test]
 fn a_block_in_a_duct_slides_where_statics_alone_jams() {
     for (beta, friction) in [(30.0, 0.4), (20.0, 0.7), (0.0, 0.6)] {
         let (sin, cos) = f64::to_radians(beta).sin_cos();
-        let mut scene = Scene { bodies: vec![(1.0, Vec3::new(2.0, 0.0, 0.0))], contacts: Vec::new() };
-        let turned = |x: f64, y: f64, z: f64| Vec3::new(x, y * cos - z * sin, y * sin + z * cos);
-        for (y, z) in [(0.0, 1.0), (0.0, -1.0), (1.0, 0.0), (-1.0, 0.0)] {
-            let corner = |x: f64, along: f64| turned(x, 0.5 * y - along * z, 0.5 * z + along * y);
-            let face = vec![corner(0.0, -0.5), corner(4.0, -0.5), corner(4.0, 0.5), corner(0.0, 0.5)];
-            scene.contacts.push((None, Some(0), face, turned(0.0, -y, -z), friction));
-        }
-        let (least, associated) = found(&without_dilatancy(&scene, &Vec3::x()));
+        let (least, associated) = found(&without_dilatancy(&duct(beta, friction).0, &Vec3::x()));
         assert_eq!(associated, None);
         meets(least, friction * (cos + sin), &format!("{beta}° {friction}"));
     }
 }
 
 /// A slab 2 × 2 × .5 on the floor with a cube on it that touches walls; the slab is pulled towards them.
-fn under_a_block(friction: f64, walls: &[Vec3], direction: &Vec3) -> SpaceProblem {
+pub fn under_a_block(friction: f64, walls: &[Vec3], direction: &Vec3) -> SpaceProblem {
     let mut scene = Scene::default();
     scene.add_box([-1.0, 1.0], [-1.0, 1.0], [0.0, 0.5]);
     scene.add_box([-0.5, 0.5], [-0.5, 0.5], [0.5, 1.5]);

@@ -31,8 +31,8 @@ pub(crate) fn verify(
     let stored = StoredInSpace::read(space, &problem, &proof)?;
     let read = result.flow_read_as.as_deref() == Some("associated");
     let flows = space.non_associated() && result.status != Status::Stalled;
-    let ends = matches!(result.status, Status::Collapse | Status::Open);
-    let own = (flows && !read && ends).then(|| SpaceNonAssociated {
+    let bounded = matches!(result.status, Status::Collapse | Status::Open);
+    let own = (flows && !read && (bounded || result.status == Status::Stands)).then(|| SpaceNonAssociated {
         associated_factor: result.non_associated.associated_load_factor,
         associated_motion: stored.associated_motion.clone(),
     });
@@ -76,7 +76,8 @@ pub(crate) fn verify(
         "flow_read_as must be \"associated\" if some law of the study has another flow that the result does not prove, and null otherwise",
     );
     findings.expect(
-        own.is_some() || (result.non_associated.associated_load_factor.is_none() && stored.associated_motion.is_none()),
+        (own.is_some() && bounded)
+            || (result.non_associated.associated_load_factor.is_none() && stored.associated_motion.is_none()),
         "associated_load_factor and associated_motion belong to collapse with the laws' own flow",
     );
     let plane = result.mechanism.is_some() || result.feasible_interval.is_some() || result.proof.thrust_line.is_some();

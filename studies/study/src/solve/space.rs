@@ -133,10 +133,10 @@ fn certified(
     let field = answer.field.filter(|_| shows(&[Status::Stands, Status::Collapse, Status::Unbounded, Status::Open]));
     let motion = answer.motion.filter(|_| shows(&[Status::Collapse, Status::NoEquilibrium, Status::Open]));
     let ray = answer.ray.filter(|_| shows(&[Status::Unbounded]));
-    let own = answer.non_associated.filter(|_| shows(&[Status::Collapse, Status::Open]));
+    let own = answer.non_associated.filter(|_| shows(&[Status::Stands, Status::Collapse, Status::Open]));
     let read = status != Status::Stalled && space.non_associated() && own.is_none();
     let mut notes = answer.notes;
-    if answer.self_stress && status == Status::Unbounded && is_ours(tag) {
+    if answer.self_stress && is_ours(tag) {
         notes.push(SELF_STRESS.to_string());
     }
     if status == Status::Collapse && answer.unique == Some(false) && is_ours(tag) {
