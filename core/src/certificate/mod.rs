@@ -9,6 +9,7 @@ mod residuals;
 mod rounding;
 mod settlement;
 mod space;
+mod space_mechanism;
 mod space_settlement;
 
 pub use self::limit::{Claim, ContactForce, NonAssociatedClaim, ROUNDING, Verdict, certify, largest_jump, motion_size};
@@ -25,6 +26,7 @@ pub use self::products::{COVERED, proved};
 pub use self::residuals::Certificate;
 pub use self::settlement::{settlement_residuals, support_motions};
 pub use self::space::{SpaceClaim, SpaceVerdict, certify_space};
+pub use self::space_mechanism::{ClosedPart, ContactMode, MovingContact, space_mechanism};
 pub use self::space_settlement::{
     space_openings, space_settlement_ray, space_settlement_residuals, space_support_motions,
 };
