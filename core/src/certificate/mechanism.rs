@@ -1,6 +1,6 @@
 //! Mechanisms: the joints that rotate, slide and crush in a motion, and the kind of collapse.
 
-use super::space_mechanism::MovingContact;
+use super::moving_contact::{ContactMode, MovingContact};
 use crate::law::{FacetMode, FlowRule, InterfaceLaw, YieldPolygon};
 use crate::model::geometry::{Vec2, turned};
 use crate::model::{Assembly, Bond, Joint};
@@ -284,6 +284,17 @@ impl Mechanism {
     /// Returns true if more than [`CRUSHES`] of a joint crushes.
     pub fn crushes(&self, joint: usize) -> bool {
         self.crushing.iter().any(|c| c.joint == joint && c.share > CRUSHES)
+    }
+
+    /// Returns the number of contacts in space that move in this way.
+    pub fn count_of(&self, mode: ContactMode) -> usize {
+        self.contacts.iter().filter(|contact| contact.has(mode)).count()
+    }
+
+    /// Returns the contacts in space that move in one of these ways.
+    pub fn contacts_with<'a>(&'a self, modes: &'a [ContactMode]) -> impl Iterator<Item = usize> + 'a {
+        let moves = |contact: &&MovingContact| modes.iter().any(|mode| contact.has(*mode));
+        self.contacts.iter().filter(moves).map(|contact| contact.joint)
     }
 
     /// Counts hinges and determines the kind.

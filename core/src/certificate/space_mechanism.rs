@@ -5,11 +5,11 @@
 //! points that have all directions turn about a point of the contact; other slips slide.
 
 use super::mechanism::{CRUSHES, Mechanism, MechanismKind};
+use super::moving_contact::{ClosedPart, ContactMode, MovingContact};
 use super::space::jump;
 use crate::law::FlowRule;
 use crate::limit::{SpaceContact, SpaceProblem, SpaceVelocity};
 use crate::model::space::Vec3;
-use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
 /// Greatest rate that is ignored, relative to the greatest: ten times the distance that the bounds of a collapse may have.
@@ -20,79 +20,6 @@ const SAME_AXIS: f64 = 1e-4;
 
 /// Greatest sine of the angle between points on one edge, and excess over π \[rad\] of directions on one side.
 const STRAIGHT: f64 = 1e-6;
-
-/// A way in which a contact moves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ContactMode {
-    /// It opens about an edge or a vertex; if it crushes, about an axis inside it.
-    Hinge,
-    /// Its closed points slip to one side.
-    Sliding,
-    /// Its closed points slip about a point between them: torsion.
-    Twisting,
-    /// All its points open.
-    Separating,
-    /// More than half of its area crushes.
-    Crushing,
-}
-
-/// The part of a contact that stays closed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ClosedPart {
-    /// Points that are not on one line.
-    Face,
-    /// Points on one line.
-    Edge,
-    /// One point.
-    Vertex,
-    /// No point.
-    Nothing,
-}
-
-/// The motion of a contact in space.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct MovingContact {
-    /// Index of the contact.
-    pub joint: usize,
-    /// Names of the bodies \[minus, plus\].
-    pub between: [String; 2],
-    /// The ways in which it moves.
-    pub modes: Vec<ContactMode>,
-    /// The part that stays closed.
-    pub closed: ClosedPart,
-    /// The ends of a closed edge, or the closed vertex \[m\]; empty otherwise.
-    pub points: Vec<[f64; 3]>,
-    /// Rotation of plus relative to minus \[rad per unit of motion\].
-    pub rotation: [f64; 3],
-    /// Slip of plus relative to minus at the mean of the closed points \[m per unit of motion\]; zero if none is closed.
-    pub slip: [f64; 3],
-    /// Greatest opening of its points \[m per unit of motion\].
-    pub opening: f64,
-    /// Crushed share of its area.
-    pub share: f64,
-}
-
-impl MovingContact {
-    /// Returns true if it moves in this way, perhaps among others.
-    pub fn has(&self, mode: ContactMode) -> bool {
-        self.modes.contains(&mode)
-    }
-}
-
-impl Mechanism {
-    /// Returns the number of contacts in space that move in this way.
-    pub fn count_of(&self, mode: ContactMode) -> usize {
-        self.contacts.iter().filter(|contact| contact.has(mode)).count()
-    }
-
-    /// Returns the contacts in space that move in one of these ways.
-    pub fn contacts_with<'a>(&'a self, modes: &'a [ContactMode]) -> impl Iterator<Item = usize> + 'a {
-        let moves = |contact: &&MovingContact| modes.iter().any(|mode| contact.has(*mode));
-        self.contacts.iter().filter(moves).map(|contact| contact.joint)
-    }
-}
 
 /// Identifies the mechanism of velocities of the free bodies in which contacts have the flow `flow`. `names` gives the names of the
 /// bodies \[minus, plus\] of a contact of the assembly. `None` if no contact moves.
