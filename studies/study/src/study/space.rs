@@ -193,7 +193,8 @@ pub(super) fn check_space_solver(diagnostics: &mut DiagnosticList<'_>, solver: &
         diagnostics.wrong("solver.kinematics", message, "set kinematics = \"small\"");
     }
     if let Err(why) = space.cones() {
-        let help = "laws that have it: coulomb, coulomb_associated, mohr_coulomb, and unilateral with tangential = \"free\"";
+        let help =
+            "laws that have it: coulomb, coulomb_associated, mohr_coulomb, and unilateral with tangential = \"free\"";
         diagnostics.wrong("joints", why, help);
     }
 }
