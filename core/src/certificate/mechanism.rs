@@ -1,5 +1,6 @@
 //! Mechanisms: the joints that rotate, slide and crush in a motion, and the kind of collapse.
 
+use super::moving_contact::{ContactMode, MovingContact};
 use crate::law::{FacetMode, FlowRule, InterfaceLaw, YieldPolygon};
 use crate::model::geometry::{Vec2, turned};
 use crate::model::{Assembly, Bond, Joint};
@@ -21,7 +22,11 @@ pub enum MechanismKind {
     Sliding,
     /// Crushing only.
     Crushing,
-    /// A combination of hinges, sliding and crushing.
+    /// Torsion of contacts only; in space.
+    Twisting,
+    /// Contacts only open completely; in space.
+    Separating,
+    /// A combination of hinges, sliding, torsion and crushing.
     Mixed,
 }
 
@@ -77,7 +82,7 @@ pub struct Crushing {
 pub struct Mechanism {
     /// Its kind.
     pub kind: MechanismKind,
-    /// Number of hinges; neighbouring joints with equal side and sense count as one.
+    /// Number of hinges; neighbouring joints with equal side and sense count as one. In space: number of distinct axes.
     pub hinge_count: usize,
     /// True if it is the only mechanism; `null` if not known.
     pub unique: Option<bool>,
@@ -88,6 +93,9 @@ pub struct Mechanism {
     /// All joints that crush over more than [`CRUSHES`] of their height, and all joints next to a yielding block that
     /// has crushed, over any share. The kind counts shares above [`CRUSHES`].
     pub crushing: Vec<Crushing>,
+    /// In space: all contacts that move. The lists above are then empty.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub contacts: Vec<MovingContact>,
     /// Its place on a path; `None` for limit analysis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at: Option<MechanismPlace>,
@@ -215,6 +223,7 @@ pub fn mechanism_of_deforming(
         hinges: Vec::new(),
         sliding: Vec::new(),
         crushing: Vec::new(),
+        contacts: Vec::new(),
         at: None,
     };
     for (index, (joint, jump)) in assembly.joints.iter().zip(&jumps).enumerate() {
@@ -275,6 +284,17 @@ impl Mechanism {
     /// Returns true if more than [`CRUSHES`] of a joint crushes.
     pub fn crushes(&self, joint: usize) -> bool {
         self.crushing.iter().any(|c| c.joint == joint && c.share > CRUSHES)
+    }
+
+    /// Returns the number of contacts in space that move in this way.
+    pub fn count_of(&self, mode: ContactMode) -> usize {
+        self.contacts.iter().filter(|contact| contact.has(mode)).count()
+    }
+
+    /// Returns the contacts in space that move in one of these ways.
+    pub fn contacts_with<'a>(&'a self, modes: &'a [ContactMode]) -> impl Iterator<Item = usize> + 'a {
+        let moves = |contact: &&MovingContact| modes.iter().any(|mode| contact.has(*mode));
+        self.contacts.iter().filter(moves).map(|contact| contact.joint)
     }
 
     /// Counts hinges and determines the kind.

@@ -4,7 +4,8 @@
 //! body has a pole at the centre of its contacts. A contact has six rates in its own frame at its centre; the rates of
 //! its points follow from them. Forces of a point are y = (μ n + c a, s, t), so that every cone is y₀ ≥ |(y₁, y₂)|; the
 //! forces of the tip, y = 0, count as loads. Without friction the shear forces have no effect. A tensile strength below the
-//! tip and a compressive strength bound y₀.
+//! tip and a compressive strength bound y₀. Without friction, cohesion bounds the shear force alone: a second member has the
+//! points with areas, no normal force, and y₀ ≤ c a.
 
 use super::cone::{Cone, UNIT, margin};
 use std::ops::Range;
@@ -13,9 +14,13 @@ use voussoir_core::space::{PointSet, SpaceContact, SpaceProblem, Vec3, Wrench};
 /// Velocities or wrenches of all bodies in units of the program, six numbers each.
 pub type Bodies = Vec<f64>;
 
-/// A contact of a program.
+/// A contact of a program, or the cohesion of a contact without friction.
 #[derive(Clone)]
 pub struct Member {
+    /// Index of the contact in the problem.
+    contact: usize,
+    /// Indices of its points in the contact.
+    places: Vec<usize>,
     /// Plus and minus body.
     pub bodies: [Option<usize>; 2],
     /// Unit vectors n, s, t.
@@ -53,6 +58,8 @@ pub struct Program {
     pub members: Vec<Member>,
     /// Points relative to the centre of their contact, in its frame.
     pub points: Vec<Vec3>,
+    /// Number of points of each contact of the problem.
+    counts: Vec<usize>,
     /// y₀ of each point without force.
     offsets: Vec<f64>,
     /// Least and greatest y₀ of each point.
@@ -89,9 +96,13 @@ impl Program {
         let length = length(problem);
         let poles = poles(problem);
         let mut points = Vec::new();
-        let contacts = problem.contacts.iter();
-        let members =
-            contacts.map(|contact| member(contact, side.of(contact), (&poles, length), &mut points)).collect();
+        let parts = parts(problem, side);
+        let members = parts.iter().map(|part| {
+            let contact = &problem.contacts[part.contact];
+            member(contact, (part, side.of(contact)), (&poles, length), &mut points)
+        });
+        let members: Vec<Member> = members.collect();
+        let counts = problem.contacts.iter().map(|contact| side.of(contact).points.len()).collect();
         let local = |wrench: &Wrench, pole: &Vec3| {
             let (force, moment) =
                 (Vec3::new(wrench[0], wrench[1], wrench[2]), Vec3::new(wrench[3], wrench[4], wrench[5]));
@@ -108,9 +119,12 @@ impl Program {
         let unit = if sizes[1] > 0.0 { force / sizes[1] } else { 1.0 };
         base.iter_mut().for_each(|w| *w /= force);
         varying.iter_mut().for_each(|p| *p *= unit / force);
-        let (offsets, limits) = strengths(problem, side, force);
+        let [offsets, least, most] = [0, 1, 2].map(|k| {
+            parts.iter().flat_map(|part| part.bounds.iter().map(move |bounds| bounds[k] / force)).collect::<Vec<f64>>()
+        });
+        let limits = least.into_iter().zip(most).map(<[f64; 2]>::from).collect();
         let mut program =
-            Program { members, points, offsets, limits, base, varying, poles, length, force, unit, start };
+            Program { members, points, counts, offsets, limits, base, varying, poles, length, force, unit, start };
         let tips: Vec<Cone> = program.offsets.iter().map(|offset| [-offset, 0.0, 0.0]).collect();
         let mut base = std::mem::take(&mut program.base);
         program.press(&tips, &mut base);
@@ -186,8 +200,19 @@ impl Program {
 
     /// Returns forces (n, s, t) of all points \[N\], contact by contact, from forces in units of the program.
     pub fn by_contacts(&self, forces: &[[f64; 3]]) -> Vec<Vec<[f64; 3]>> {
-        let of = |member: &Member| forces[member.points.clone()].iter().map(|f| f.map(|f| f * self.force)).collect();
-        self.members.iter().map(of).collect()
+        self.sums(|_, point| forces[point])
+    }
+
+    /// Returns the sums over the members of each contact of forces of all points \[N\], in units of the program.
+    fn sums(&self, force: impl Fn(&Member, usize) -> [f64; 3]) -> Vec<Vec<[f64; 3]>> {
+        let mut all: Vec<Vec<[f64; 3]>> = self.counts.iter().map(|count| vec![[0.0; 3]; *count]).collect();
+        for member in &self.members {
+            for (place, point) in member.places.iter().zip(member.points.clone()) {
+                let own = force(member, point);
+                (0..3).for_each(|k| all[member.contact][*place][k] += self.force * own[k]);
+            }
+        }
+        all
     }
 
     /// Returns forces (n, s, t) of all points in units of the program.
@@ -197,8 +222,7 @@ impl Program {
 
     /// Returns differences of forces (n, s, t) of all points \[N\], contact by contact.
     pub fn differences(&self, y: &[Cone]) -> Vec<Vec<[f64; 3]>> {
-        let force = |member: &Member, y: &Cone| -> [f64; 3] { (member.force(y) * self.force).into() };
-        self.members.iter().map(|member| y[member.points.clone()].iter().map(|y| force(member, y)).collect()).collect()
+        self.sums(|member, point| member.force(&y[point]).into())
     }
 
     /// Returns y of all points without any force.
@@ -294,33 +318,61 @@ fn poles(problem: &SpaceProblem) -> Vec<Vec3> {
     poles.into_iter().map(|(sum, count)| if count > 0.0 { sum / count } else { sum }).collect()
 }
 
-/// Returns y₀ without force, and the limits of y₀, of all points.
-fn strengths(problem: &SpaceProblem, side: Side, force: f64) -> (Vec<f64>, Vec<[f64; 2]>) {
-    let (mut offsets, mut limits) = (Vec::new(), Vec::new());
-    for contact in &problem.contacts {
-        let law = &contact.law;
-        // Without friction y₀ is the normal force above the tensile strength.
-        let (slope, tip) = if law.friction > 0.0 { (law.friction, law.cohesion) } else { (1.0, law.tension()) };
-        for area in side.of(contact).areas.iter().map(|area| area / force) {
-            offsets.push(tip * area);
-            let least = if law.has_one_tip() { 0.0 } else { ((tip - slope * law.tension()) * area).max(0.0) };
-            let crushing = law.compressive_strength;
-            limits.push([least, if crushing.is_finite() { (tip + slope * crushing) * area } else { f64::INFINITY }]);
-        }
-    }
-    (offsets, limits)
+/// A member before it is scaled.
+struct Part {
+    /// Index of the contact in the problem.
+    contact: usize,
+    /// Indices of its points in the contact.
+    places: Vec<usize>,
+    /// Forces n and (s, t) for y = 1.
+    strengths: [f64; 2],
+    /// y₀ without force, and its least and greatest value, of each point \[N\].
+    bounds: Vec<[f64; 3]>,
 }
 
-/// Scales a contact and appends its points.
-fn member(contact: &SpaceContact, set: &PointSet, (poles, length): (&[Vec3], f64), points: &mut Vec<Vec3>) -> Member {
+/// Returns the members of all contacts.
+fn parts(problem: &SpaceProblem, side: Side) -> Vec<Part> {
+    let of = |(contact, own): (usize, &SpaceContact)| {
+        let (law, areas) = (&own.law, &side.of(own).areas);
+        // Without friction y₀ is the normal force above the tensile strength.
+        let (slope, tip) = if law.friction > 0.0 { (law.friction, law.cohesion) } else { (1.0, law.tension()) };
+        let crushing = law.compressive_strength;
+        let most = |area: f64| if crushing.is_finite() { (tip + slope * crushing) * area } else { f64::INFINITY };
+        let least = |area: f64| {
+            if law.has_one_tip() { 0.0 } else { ((tip - slope * law.tension()) * area).max(0.0) }
+        };
+        let bounds = areas.iter().map(|area| [tip * area, least(*area), most(*area)]).collect();
+        let strengths = if law.friction > 0.0 { [law.friction.recip(), 1.0] } else { [1.0, 0.0] };
+        let main = Part { contact, places: (0..areas.len()).collect(), strengths, bounds };
+        let sheared: Vec<usize> = (0..areas.len()).filter(|k| law.cohesion * areas[*k] > 0.0).collect();
+        let bounds = sheared.iter().map(|k| [0.0, 0.0, law.cohesion * areas[*k]]).collect();
+        let shear = Part { contact, places: sheared, strengths: [0.0, 1.0], bounds };
+        std::iter::once(main).chain((law.friction == 0.0 && law.cohesion > 0.0).then_some(shear))
+    };
+    problem.contacts.iter().enumerate().flat_map(of).collect()
+}
+
+/// Scales a member and appends its points.
+fn member(
+    contact: &SpaceContact,
+    (part, set): (&Part, &PointSet),
+    (poles, length): (&[Vec3], f64),
+    points: &mut Vec<Vec3>,
+) -> Member {
     let (centre, frame, first) = (centre(contact), contact.frame, points.len());
-    points.extend(set.points.iter().map(|point| {
-        let arm = (point - centre) / length;
+    points.extend(part.places.iter().map(|place| {
+        let arm = (set.points[*place] - centre) / length;
         Vec3::new(frame[0].dot(&arm), frame[1].dot(&arm), frame[2].dot(&arm))
     }));
     let bodies = [contact.plus, contact.minus];
     let arms = bodies.map(|body| body.map_or(Vec3::zeros(), |body| (centre - poles[body]) / length));
-    let friction = contact.law.friction;
-    let strengths = if friction > 0.0 { [friction.recip(), 1.0] } else { [1.0, 0.0] };
-    Member { bodies, frame, arms, points: first..points.len(), strengths }
+    Member {
+        contact: part.contact,
+        places: part.places.clone(),
+        bodies,
+        frame,
+        arms,
+        points: first..points.len(),
+        strengths: part.strengths,
+    }
 }

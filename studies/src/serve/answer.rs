@@ -8,7 +8,7 @@ use voussoir_report::figures::{curve_svg, scene_svg, space_svg};
 use voussoir_report::writers::live::case_data;
 use voussoir_study::config::document::Node;
 use voussoir_study::results::CaseResult;
-use voussoir_study::results::format::{format_number, headline, kind_words, proved_interval};
+use voussoir_study::results::format::{contact_words, format_number, headline, kind_words, proved_interval};
 use voussoir_study::study::Case;
 
 /// Greatest number of hinges that are listed by their joints.
@@ -30,7 +30,11 @@ pub(super) fn answer(case: &Case, result: &CaseResult, root: &Node) -> Json {
             count => format!(", {count} hinges"),
         };
         let unique = if mechanism.unique == Some(false) { ", not the only one" } else { "" };
-        format!("{}{hinges}{unique}", kind_words(mechanism.kind))
+        let parts = match contact_words(mechanism) {
+            words if words.is_empty() => hinges,
+            words => format!(", contacts: {words}"),
+        };
+        format!("{}{parts}{unique}", kind_words(mechanism.kind))
     });
     let scene = match &case.space {
         Some(space) => space_svg("", space, stages, result),

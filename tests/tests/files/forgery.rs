@@ -18,7 +18,7 @@ use voussoir_tests::{Arch, changed, crushing, first_case, friction};
 /// Words of results, by meaning: any other word of the same row is a forgery.
 pub const WORDS: [&[&str]; 7] = [
     &["collapse", "stands", "unbounded", "no_equilibrium", "limit_point", "stalled"],
-    &["three_hinge", "four_hinge", "five_hinge", "rocking", "sliding", "crushing", "mixed"],
+    &["three_hinge", "four_hinge", "five_hinge", "rocking", "sliding", "crushing", "twisting", "separating", "mixed"],
     &["intrados", "extrados"],
     &["opens", "closes", "slips", "sticks", "reverses"],
     &["limit_chain", "limit_conic", "event_path", "newton_path"],

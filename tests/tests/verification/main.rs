@@ -21,6 +21,7 @@ mod finite;
 mod flow_rule;
 mod joint_chain;
 mod lourenco_rots;
+mod mechanisms_in_space;
 mod new_laws;
 mod newton;
 mod once_wrong;

@@ -83,13 +83,49 @@ fn crushing_moves_the_hinge_inwards() {
 #[test]
 fn torsion_of_a_cohesive_base_is_enclosed() {
     let (cohesion, [a, b]) = (3.0, [WIDTH, DEPTH]);
-    let d = a.hypot(b);
-    let shear = (2.0 * a * b * d + a.powi(3) * ((b + d) / a).ln() + b.powi(3) * ((a + d) / b).ln()) / 12.0;
     let friction = 0.4;
-    let exact = cohesion * shear / WEIGHT + friction * d / 2.0;
+    let exact = cohesion * polar() / WEIGHT + friction * a.hypot(b) / 2.0;
     let [low, high] = bounds(&block(law(friction, cohesion, 0.0, f64::INFINITY), 8, TWIST));
     assert!(low < exact && exact < high, "[{low}, {high}] {exact}");
     assert!(high - low < 0.01 * exact, "[{low}, {high}]");
+}
+
+/// Returns ∫ r dA of the base.
+fn polar() -> f64 {
+    let ([a, b], d) = ([WIDTH, DEPTH], WIDTH.hypot(DEPTH));
+    (2.0 * a * b * d + a.powi(3) * ((b + d) / a).ln() + b.powi(3) * ((a + d) / b).ln()) / 12.0
+}
+
+/// A cohesive joint without friction slides at λ = c A/W, also if it can be crushed or torn, and torsion reaches c ∫ r dA. With enough
+/// cohesion it overturns at the load of a joint with tension.
+#[test]
+fn cohesion_without_friction_has_its_closed_forms() {
+    let (cohesion, area) = (1.2, WIDTH * DEPTH);
+    for [tension, crushing] in [[0.0, f64::INFINITY], [0.5, f64::INFINITY], [0.0, 400.0]] {
+        for parts in [1, 4] {
+            meet(bounds(&block(law(0.0, cohesion, tension, crushing), parts, PUSH)), cohesion * area / WEIGHT);
+        }
+    }
+    let exact = cohesion * polar() / WEIGHT;
+    let [low, high] = bounds(&block(law(0.0, cohesion, 0.0, f64::INFINITY), 8, TWIST));
+    assert!(low < exact && exact < high && high - low < 0.01 * exact, "[{low}, {high}] {exact}");
+    let tension = 0.5;
+    let overturning = WIDTH / HEIGHT * (1.0 + tension * area / WEIGHT);
+    meet(bounds(&block(law(0.0, 5.0, tension, f64::INFINITY), 3, PUSH)), overturning);
+}
+
+/// The compressive strength defines where the normal force may be: in torsion the pressure is f_c outside a circle of radius r₀ with
+/// N = f_c (A − π r₀²), and the moment is μ f_c (∫ r dA − 2 π r₀³/3). For f_c = N/A the pressure is uniform.
+#[test]
+fn crushing_limits_torsion() {
+    let (friction, area) = (0.4, WIDTH * DEPTH);
+    for ratio in [1.02, 1.5, 2.2] {
+        let radius = (area * (1.0 - 1.0 / ratio) / std::f64::consts::PI).sqrt();
+        let lost = 2.0 * std::f64::consts::PI / 3.0 * radius.powi(3);
+        let exact = friction * ratio / area * (polar() - lost);
+        let [low, high] = bounds(&block(law(friction, 0.0, 0.0, ratio * WEIGHT / area), 8, TWIST));
+        assert!(low < exact && exact < high && high - low < 0.02 * exact, "{ratio}: [{low}, {high}] {exact}");
+    }
 }
 
 /// A tensile strength just below the tip gives nearly the bounds of the cone, although another program finds them.

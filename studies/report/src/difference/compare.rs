@@ -206,7 +206,8 @@ fn mechanism_words(mechanism: &StoredMechanism) -> String {
     let joints = |list: &[StoredJoint]| list.iter().map(|own| own.joint.to_string()).collect::<Vec<_>>().join(" ");
     let lists =
         lists.iter().filter(|(_, list)| !list.is_empty()).map(|(name, list)| format!("{name} {}", joints(list)));
-    format!("{}: {}", mechanism.kind, lists.collect::<Vec<_>>().join(", "))
+    let moving = mechanism.contacts.iter().map(|own| format!("{} {}", own.modes.join("+"), own.joint));
+    format!("{}: {}", mechanism.kind, lists.chain(moving).collect::<Vec<_>>().join(", "))
 }
 
 /// The limit points of both cases, if one of them differs.

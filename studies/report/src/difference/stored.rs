@@ -40,6 +40,15 @@ pub(super) struct StoredMechanism {
     pub hinges: Vec<StoredJoint>,
     pub sliding: Vec<StoredJoint>,
     pub crushing: Vec<StoredJoint>,
+    pub contacts: Vec<StoredContact>,
+}
+
+/// A contact in space that moves.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Deserialize)]
+#[serde(default)]
+pub(super) struct StoredContact {
+    pub joint: usize,
+    pub modes: Vec<String>,
 }
 
 /// A limit point of a path.

@@ -2,7 +2,7 @@
 //! the order in which they formed.
 
 use crate::postprocess::joint_events::{JointState, joint_events};
-use voussoir_core::certificate::{Hinge, Mechanism};
+use voussoir_core::certificate::{ContactMode, Hinge, Mechanism};
 use voussoir_core::model::Assembly;
 use voussoir_study::results::CaseResult;
 
@@ -48,9 +48,10 @@ pub fn drawn_hinges(hinges: &[Hinge]) -> Vec<DrawnHinge<'_>> {
     drawn
 }
 
-/// Joints of hinges: neighbours that count as one hinge stand together, `4 8+9+10 14`.
+/// Joints of hinges: neighbours that count as one hinge are joined, `4 8+9+10 14`. In space: the contacts with hinges.
 pub fn hinge_list(mechanism: &Mechanism) -> Vec<String> {
-    drawn_hinges(&mechanism.hinges).iter().map(DrawnHinge::label).collect()
+    let in_space = mechanism.contacts_with(&[ContactMode::Hinge]).map(|contact| contact.to_string());
+    drawn_hinges(&mechanism.hinges).iter().map(DrawnHinge::label).chain(in_space).collect()
 }
 
 /// A hinge whose rotation is less than this share of the greatest is deformation to an engineer.

@@ -166,8 +166,8 @@ impl Shown {
         let displaced = result.path.displacements.as_ref()?;
         let entry = |at: &DisplacementEntry| MotionEntry { body: at.body.clone(), velocity: at.displacement };
         let (kind, hinge_count) = (MechanismKind::Rocking, named.len());
-        let (sliding, crushing) = (Vec::new(), Vec::new());
-        let mechanism = Mechanism { kind, hinge_count, unique: None, hinges, sliding, crushing, at: None };
+        let (sliding, crushing, contacts) = (Vec::new(), Vec::new(), Vec::new());
+        let mechanism = Mechanism { kind, hinge_count, unique: None, hinges, sliding, crushing, contacts, at: None };
         Some(Shown { mechanism, motion: displaced.iter().map(entry).collect(), moved_on: false, stands: true })
     }
 }

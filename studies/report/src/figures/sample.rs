@@ -210,6 +210,7 @@ impl FourHinges {
             hinges: hinges.collect(),
             sliding: vec![],
             crushing: vec![],
+            contacts: vec![],
             at: None,
         };
         (motion.collect(), mechanism)
@@ -367,6 +368,7 @@ fn wall_answer(assembly: &Assembly, top: f64, pole: Vec2) -> CaseResult {
             .collect(),
         sliding: slide.map(|(k, j)| Sliding { joint: k, between: between(j), slip: -1e-3 }).into_iter().collect(),
         crushing: vec![],
+        contacts: vec![],
         at: None,
     };
     CaseResult {

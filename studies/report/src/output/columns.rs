@@ -1,6 +1,7 @@
 //! The columns of the table of results. CSV, Parquet, the terminal, the report and Python use this list.
 
 use serde_json::Value as Json;
+use voussoir_core::certificate::ContactMode;
 use voussoir_core::plugin::OutputOf;
 use voussoir_study::results::format::{continuation_word, format_value, kind_word, status_word};
 use voussoir_study::results::{CaseResult, OutputColumn};
@@ -111,13 +112,22 @@ const FIELDS: [(&str, &str, Value); 22] = [
     ("kind", "", |case| Cell::Text(case.mechanism.as_ref().map(|found| kind_word(found.kind).into()))),
     ("hinge_count", "", |case| count(case.mechanism.as_ref().map(|found| found.hinge_count))),
     ("hinge_joints", "", |case| {
-        joints(case.mechanism.as_ref().map(|found| found.hinges.iter().map(|hinge| hinge.joint).collect()))
+        joints(case.mechanism.as_ref().map(|found| {
+            let in_space = found.contacts_with(&[ContactMode::Hinge]);
+            found.hinges.iter().map(|hinge| hinge.joint).chain(in_space).collect()
+        }))
     }),
     ("sliding_joints", "", |case| {
-        joints(case.mechanism.as_ref().map(|found| found.sliding.iter().map(|slip| slip.joint).collect()))
+        joints(case.mechanism.as_ref().map(|found| {
+            let in_space = found.contacts_with(&[ContactMode::Sliding, ContactMode::Twisting]);
+            found.sliding.iter().map(|slip| slip.joint).chain(in_space).collect()
+        }))
     }),
     ("crushing_joints", "", |case| {
-        joints(case.mechanism.as_ref().map(|found| found.crushing.iter().map(|crush| crush.joint).collect()))
+        joints(case.mechanism.as_ref().map(|found| {
+            let in_space = found.contacts_with(&[ContactMode::Crushing]);
+            found.crushing.iter().map(|crush| crush.joint).chain(in_space).collect()
+        }))
     }),
     ("unique", "", |case| Cell::Truth(case.mechanism.as_ref().and_then(|found| found.unique))),
     ("flow_read_as", "", |case| Cell::Text(case.flow_read_as.clone())),

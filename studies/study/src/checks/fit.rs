@@ -211,6 +211,12 @@ impl Fit<'_> {
             let share = (0.0..=1.0).contains(&crushing.share);
             self.expect(share, || format!("crushing: the share {} of a joint is not between 0 and 1", crushing.share));
         }
+        let count = self.case.space.as_ref().map_or(0, |space| space.assembly.contacts.len());
+        for contact in &mechanism.contacts {
+            self.expect(contact.joint < count, || format!("mechanism.contacts: there is no contact {}", contact.joint));
+            let numbers = [contact.opening, contact.share].into_iter().chain(contact.rotation).chain(contact.slip);
+            self.numbers("mechanism.contacts", numbers.chain(contact.points.iter().flatten().copied()));
+        }
     }
 
     fn path(&mut self, result: &CaseResult) {

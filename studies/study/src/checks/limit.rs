@@ -2,7 +2,7 @@
 
 use crate::checks::fields::{EQUAL, close, contacts, velocities};
 use crate::checks::findings::Findings;
-use crate::checks::mechanism::{differences, joints, same_line};
+use crate::checks::mechanism::{compare, joints, same_line};
 use crate::checks::tolerances::GEOMETRY;
 use crate::results::stage_start::search_start;
 use crate::results::thrust_line::thrust_line;
@@ -244,12 +244,7 @@ fn verify_mechanism(
 ) {
     let unique = result.mechanism.as_ref().and_then(|m| m.unique);
     let recomputed = stored.motion.as_ref().and_then(|motion| mechanism(assembly, motion, unique, reading));
-    match (&result.mechanism, &recomputed) {
-        (Some(stored), Some(recomputed)) => findings.0.extend(differences(stored, recomputed)),
-        (None, None) => {}
-        (Some(_), None) => findings.expect(false, "mechanism is given, but motion is missing or moves no joint"),
-        (None, Some(_)) => findings.expect(false, "motion is given, but mechanism is missing"),
-    }
+    compare(result.mechanism.as_ref(), recomputed.as_ref(), findings);
     let hinges: Vec<Hinge> = result.mechanism.iter().flat_map(|m| &m.hinges).cloned().collect();
     // If supports have moved, the hinges follow from the displacements. They are compared with solving again.
     let settled = result.path.displacements.is_some() && result.mechanism.is_none();

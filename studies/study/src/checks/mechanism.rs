@@ -1,8 +1,8 @@
 //! Compares a stored mechanism and thrust line with those computed from the stored motion and forces.
 
 use crate::checks::fields::{EQUAL, close};
-use crate::checks::findings::mismatch;
-use voussoir_core::certificate::{Hinge, Mechanism};
+use crate::checks::findings::{Findings, mismatch};
+use voussoir_core::certificate::{Hinge, Mechanism, MovingContact};
 use voussoir_core::model::geometry::Vec2;
 
 /// The source of values that are recomputed from the stored motion.
@@ -13,8 +13,18 @@ pub(crate) fn joints(hinges: &[Hinge]) -> Vec<usize> {
     hinges.iter().map(|hinge| hinge.joint).collect()
 }
 
+/// Compares a stored mechanism with the one that the stored motion gives.
+pub(crate) fn compare(stored: Option<&Mechanism>, recomputed: Option<&Mechanism>, findings: &mut Findings) {
+    match (stored, recomputed) {
+        (Some(stored), Some(recomputed)) => findings.0.extend(differences(stored, recomputed)),
+        (None, None) => {}
+        (Some(_), None) => findings.expect(false, "mechanism is given, but motion is missing or moves no joint"),
+        (None, Some(_)) => findings.expect(false, "motion is given, but mechanism is missing"),
+    }
+}
+
 /// Returns the differences between a stored mechanism and the recomputed one.
-pub(crate) fn differences(stored: &Mechanism, recomputed: &Mechanism) -> Vec<String> {
+fn differences(stored: &Mechanism, recomputed: &Mechanism) -> Vec<String> {
     let mut wrong = Vec::new();
     if stored.kind != recomputed.kind {
         wrong.push(mismatch("mechanism.kind", (stored.kind, MOTION, recomputed.kind)));
@@ -52,7 +62,30 @@ pub(crate) fn differences(stored: &Mechanism, recomputed: &Mechanism) -> Vec<Str
     if !sliding || !crushing {
         wrong.push("mechanism: sliding or crushing joints differ from those that the stored motion gives".into());
     }
+    if stored.at != recomputed.at {
+        wrong.push("mechanism.at: only a mechanism of a path has a place on it".into());
+    }
+    if !same_contacts(&stored.contacts, &recomputed.contacts) {
+        wrong.push("mechanism.contacts: they differ from those that the stored motion gives".into());
+    }
     wrong
+}
+
+/// Returns true if two lists of moving contacts differ only by rounding, relative to the greatest number of their kind.
+fn same_contacts(stored: &[MovingContact], recomputed: &[MovingContact]) -> bool {
+    let words = |own: &MovingContact| (own.joint, own.between.clone(), own.modes.clone(), own.closed, own.points.len());
+    let numbers: [fn(&MovingContact) -> Vec<f64>; 4] = [
+        |own| own.rotation.to_vec(),
+        |own| own.slip.iter().copied().chain([own.opening]).collect(),
+        |own| own.points.concat(),
+        |own| vec![own.share],
+    ];
+    let near = |of: &fn(&MovingContact) -> Vec<f64>| {
+        let [a, b] = [stored, recomputed].map(|list| list.iter().flat_map(of).collect::<Vec<f64>>());
+        let greatest = b.iter().fold(0.0f64, |most, x| most.max(x.abs()));
+        a.len() == b.len() && a.iter().zip(&b).all(|(a, b)| a == b || (a - b).abs() <= EQUAL * greatest)
+    };
+    stored.iter().map(words).eq(recomputed.iter().map(words)) && numbers.iter().all(near)
 }
 
 /// Returns true if two thrust lines differ only by rounding.

@@ -2,17 +2,19 @@
 
 use crate::checks::findings::Findings;
 use crate::checks::limit::{compare_verdict, verify_reached};
-use crate::results::CaseResult;
+use crate::checks::mechanism::compare;
 use crate::results::stage_start::search_start;
+use crate::results::{CaseResult, SpaceMotionEntry};
 use crate::solve::space::space_problem;
-use crate::solve::space_entries::{StoredInSpace, gap_in_space};
+use crate::solve::space_entries::{StoredInSpace, gap_in_space, stored_mechanism};
 use crate::solve::space_settlement::Moved;
 use crate::study::{Case, SpaceCase};
 use std::collections::BTreeMap;
 use voussoir_core::certificate::{Certificate, Verdict};
+use voussoir_core::law::FlowRule;
 use voussoir_core::limit::{Greatest, Status};
 use voussoir_core::model::Target;
-use voussoir_core::space::{SpaceClaim, SpaceField, SpaceNonAssociated, SpaceVerdict, certify_space};
+use voussoir_core::space::{SpaceClaim, SpaceField, SpaceNonAssociated, SpaceProblem, SpaceVerdict, certify_space};
 
 /// Greatest difference of stored and given motions of supports, relative to the greatest motion: rounding.
 const SAME_MOTION: f64 = 1e-12;
@@ -80,14 +82,30 @@ pub(crate) fn verify(
             || (result.non_associated.associated_load_factor.is_none() && stored.associated_motion.is_none()),
         "associated_load_factor and associated_motion belong to collapse with the laws' own flow",
     );
-    let plane = result.mechanism.is_some() || result.feasible_interval.is_some() || result.proof.thrust_line.is_some();
-    findings.expect(!plane, "mechanism, feasible_interval and thrust_line belong to plane scenes");
+    let flow = if own.is_some() { FlowRule::NonAssociated } else { FlowRule::Associated };
+    verify_mechanism(space, &problem, (result, proof.motion.as_deref()), flow, findings);
+    let plane = result.feasible_interval.is_some() || result.proof.thrust_line.is_some();
+    findings.expect(!plane, "feasible_interval and thrust_line belong to plane scenes");
     let hinges = result.stages.iter().all(|stage| stage.hinges.is_empty());
     findings.expect(hinges, "hinges of a stage belong to plane scenes");
     if verdict.status != result.status {
         findings.0.extend(verdict.certificate.failures);
     }
     Ok(())
+}
+
+/// Compares the mechanism with the one that the stored velocities give. Displacements of a case that stands are no mechanism.
+fn verify_mechanism(
+    space: &SpaceCase,
+    problem: &SpaceProblem,
+    (result, motion): (&CaseResult, Option<&[SpaceMotionEntry]>),
+    flow: FlowRule,
+    findings: &mut Findings,
+) {
+    let unique = result.mechanism.as_ref().and_then(|stored| stored.unique);
+    let moving = motion.filter(|_| result.status != Status::Stands);
+    let recomputed = moving.and_then(|motion| stored_mechanism(space, problem, motion, (unique, flow)));
+    compare(result.mechanism.as_ref(), recomputed.as_ref(), findings);
 }
 
 /// Returns the residuals of stored displacements of blocks that follow their supports; fails with the reason.

@@ -1,7 +1,7 @@
 //! How numbers, units and results are written in words, for figures, tables and reports alike.
 
 use crate::results::{CaseResult, other_limit_point};
-use voussoir_core::certificate::MechanismKind;
+use voussoir_core::certificate::{ContactMode, Mechanism, MechanismKind};
 use voussoir_core::limit::Status;
 use voussoir_core::model::Stage;
 use voussoir_core::model::geometry::Vec2;
@@ -122,6 +122,8 @@ pub fn kind_word(kind: MechanismKind) -> &'static str {
         MechanismKind::Rocking => "rocking",
         MechanismKind::Sliding => "sliding",
         MechanismKind::Crushing => "crushing",
+        MechanismKind::Twisting => "twisting",
+        MechanismKind::Separating => "separating",
         MechanismKind::Mixed => "mixed",
     }
 }
@@ -135,8 +137,27 @@ pub fn kind_words(kind: MechanismKind) -> &'static str {
         MechanismKind::Rocking => "rocking",
         MechanismKind::Sliding => "sliding",
         MechanismKind::Crushing => "crushing",
+        MechanismKind::Twisting => "twisting",
+        MechanismKind::Separating => "separating",
         MechanismKind::Mixed => "mixed mechanism",
     }
+}
+
+/// The contacts of a mechanism in space in words: `6 hinges about 2 axes, 3 sliding`. Empty in the plane.
+pub fn contact_words(mechanism: &Mechanism) -> String {
+    let several = |count: usize, one: &str, more: &str| format!("{count} {}", if count == 1 { one } else { more });
+    let hinges = mechanism.count_of(ContactMode::Hinge);
+    let axes = several(mechanism.hinge_count, "axis", "axes");
+    let turning = (hinges > 0).then(|| format!("{} about {axes}", several(hinges, "hinge", "hinges")));
+    let others = [
+        (ContactMode::Sliding, "sliding"),
+        (ContactMode::Twisting, "twisting"),
+        (ContactMode::Crushing, "crushing"),
+        (ContactMode::Separating, "separating"),
+    ];
+    let others = others.map(|(mode, word)| (mechanism.count_of(mode), word));
+    let others = others.into_iter().filter(|(count, _)| *count > 0).map(|(count, word)| format!("{count} {word}"));
+    turning.into_iter().chain(others).collect::<Vec<_>>().join(", ")
 }
 
 /// The resultant of a stage's forces at factor 1 \[N\]; `None` where the last stage has none, they

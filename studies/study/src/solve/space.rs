@@ -4,10 +4,11 @@ use super::auto::space_solvers;
 use super::case_input::CaseInput;
 use super::limit::{READ_AS_ASSOCIATED, ask, record_stages, start_is_open};
 use super::ours::is_ours;
-use super::space_entries::{field_entries, gap_in_space, motion_entries};
+use super::space_entries::{field_entries, gap_in_space, motion_entries, stored_mechanism};
 use super::space_settlement::follow_supports;
 use crate::results::{CaseResult, NonAssociatedAnswer, ProofFields, SpaceProof};
 use crate::study::SpaceCase;
+use voussoir_core::law::FlowRule;
 use voussoir_core::limit::{Counters, LimitQuestion, Status};
 use voussoir_core::model::{Stage, Target};
 use voussoir_core::space::{SpaceAnswer, SpaceClaim, SpaceLoads, SpaceProblem, SpaceVerdict, certify_space};
@@ -132,9 +133,14 @@ fn certified(
     let shows = |statuses: &[Status]| statuses.contains(&status);
     let field = answer.field.filter(|_| shows(&[Status::Stands, Status::Collapse, Status::Unbounded, Status::Open]));
     let motion = answer.motion.filter(|_| shows(&[Status::Collapse, Status::NoEquilibrium, Status::Open]));
+    let motion = motion.map(|motion| motion_entries(space, problem, &motion));
     let ray = answer.ray.filter(|_| shows(&[Status::Unbounded]));
     let own = answer.non_associated.filter(|_| shows(&[Status::Stands, Status::Collapse, Status::Open]));
     let read = status != Status::Stalled && space.non_associated() && own.is_none();
+    let flow = if own.is_some() { FlowRule::NonAssociated } else { FlowRule::Associated };
+    // No check proves that a mechanism is unique.
+    let unique = answer.unique.filter(|unique| !unique || is_ours(tag));
+    let mechanism = motion.as_ref().and_then(|motion| stored_mechanism(space, problem, motion, (unique, flow)));
     let mut notes = answer.notes;
     if answer.self_stress && is_ours(tag) {
         notes.push(SELF_STRESS.to_string());
@@ -155,11 +161,12 @@ fn certified(
         },
         bounds: (bounds != [None; 2]).then_some(bounds),
         greatest,
+        mechanism,
         proof: ProofFields {
             field_factor: field.is_some().then_some(answer.field_factor),
             space: Some(Box::new(SpaceProof {
                 field: field.map(|field| field_entries(problem, &field)),
-                motion: motion.map(|motion| motion_entries(space, problem, &motion)),
+                motion,
                 associated_motion: own
                     .as_ref()
                     .and_then(|own| own.associated_motion.as_ref())

@@ -2,7 +2,11 @@
 
 use crate::results::{SpaceFieldEntry, SpaceMotionEntry, SpaceProof};
 use crate::study::SpaceCase;
-use voussoir_core::space::{SpaceBody, SpaceContact, SpaceField, SpaceProblem, SpaceVelocity, Vec3, velocity_at};
+use voussoir_core::certificate::{Mechanism, space_mechanism};
+use voussoir_core::law::FlowRule;
+use voussoir_core::space::{
+    SpaceAssembly, SpaceBody, SpaceContact, SpaceField, SpaceProblem, SpaceVelocity, Vec3, velocity_at,
+};
 
 /// Least relative distance of the bounds of a collapse that a study can ask for. In space bounds come from an interior-point
 /// method, whose last digits are lost where many mechanisms have nearly the same factor.
@@ -76,11 +80,8 @@ impl StoredInSpace {
         let all = |entries: &Option<Vec<SpaceMotionEntry>>| {
             entries.as_ref().map(|entries| read_motion(space, problem, entries))
         };
-        let free = |all: &Vec<SpaceVelocity>| {
-            let kept = all.iter().zip(&problem.free).filter(|(_, free)| free.is_some());
-            kept.map(|(own, _)| *own).collect()
-        };
         let (of_all, associated) = (all(&proof.motion), all(&proof.associated_motion));
+        let free = |all: &Vec<SpaceVelocity>| of_free(problem, all);
         let (motion, associated_motion) = (of_all.as_ref().map(free), associated.as_ref().map(free));
         Ok(StoredInSpace {
             field: forces("field", &proof.field)?,
@@ -90,6 +91,26 @@ impl StoredInSpace {
             ray: forces("ray", &proof.ray)?,
         })
     }
+}
+
+/// Selects the motions of the free bodies from a list for all bodies.
+fn of_free(problem: &SpaceProblem, all: &[SpaceVelocity]) -> Vec<SpaceVelocity> {
+    let kept = all.iter().zip(&problem.free).filter(|(_, free)| free.is_some());
+    kept.map(|(own, _)| *own).collect()
+}
+
+/// Returns the mechanism of stored velocities, so that solving and verifying read the same numbers.
+pub(crate) fn stored_mechanism(
+    space: &SpaceCase,
+    problem: &SpaceProblem,
+    motion: &[SpaceMotionEntry],
+    (unique, flow): (Option<bool>, FlowRule),
+) -> Option<Mechanism> {
+    let SpaceAssembly { bodies, contacts, .. } = &space.assembly;
+    let names =
+        |contact: usize| [contacts[contact].minus, contacts[contact].plus].map(|body| bodies[body].name.clone());
+    let motion = of_free(problem, &read_motion(space, problem, motion));
+    space_mechanism(problem, &names, &motion, unique, flow)
 }
 
 /// Greatest distance of a stored point from its contact point, as a share of the scene's size.

@@ -47,11 +47,11 @@ impl SpaceCase {
         let laws = self.assembly.catalogue.laws.iter().enumerate();
         let cone = |(index, (name, law)): (usize, &(String, Arc<dyn InterfaceLaw>))| {
             let used = self.assembly.contacts.iter().any(|contact| contact.law == index);
-            // Without friction cohesion leaves no cone.
-            match law.cone().filter(|cone| cone.friction > 0.0 || cone.cohesion == 0.0) {
+            match law.cone() {
                 Some(cone) => Ok(cone),
                 None if used => Err(format!(
-                    "joint law \"{name}\" is not isotropic friction, or has cohesion without friction; limit analysis in space needs a cone"
+                    "joint law \"{name}\" has no friction cone: it never slides, or its friction depends on the direction; limit \
+                     analysis in space needs a cone. For a joint that hardly slides, give a large coefficient of friction"
                 )),
                 None => Ok(FrictionCone::dry(0.0, 0.0)),
             }
@@ -193,7 +193,8 @@ pub(super) fn check_space_solver(diagnostics: &mut DiagnosticList<'_>, solver: &
         diagnostics.wrong("solver.kinematics", message, "set kinematics = \"small\"");
     }
     if let Err(why) = space.cones() {
-        let help = "laws that have it: coulomb, coulomb_associated, mohr_coulomb with friction";
+        let help =
+            "laws that have it: coulomb, coulomb_associated, mohr_coulomb, and unilateral with tangential = \"free\"";
         diagnostics.wrong("joints", why, help);
     }
 }

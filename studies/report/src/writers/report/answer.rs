@@ -9,11 +9,12 @@ use crate::writers::record::section;
 use crate::writers::seismic::seismic_sentence;
 use crate::writers::table::id_list;
 use maud::{Markup, html};
+use voussoir_core::certificate::Mechanism;
 use voussoir_core::limit::Status;
 use voussoir_study::results::carried::ReserveFlow;
 use voussoir_study::results::format::{
-    capitalised, certificate_verdict, format_force, format_number, format_short, headline, kind_words, open_bounds,
-    proved_interval, status_meaning, status_word, unit_load,
+    capitalised, certificate_verdict, contact_words, format_force, format_number, format_short, headline, kind_words,
+    open_bounds, proved_interval, status_meaning, status_word, unit_load,
 };
 use voussoir_study::results::{CaseResult, Comparison, WorstEntry, best_of, governing, least_of};
 
@@ -78,7 +79,12 @@ fn sentence(study: &StudyOutput) -> String {
     let Some(place) = worst(study) else { return "No case has a load factor.".into() };
     let case = &cases[place];
     let words = headline(case, study.scene(place).map_or(&[], |(_, stages)| stages));
-    let mechanism = case.mechanism.as_ref().map_or(String::new(), |own| format!(", {}", kind_words(own.kind)));
+    let moving = |own: &Mechanism| match contact_words(own) {
+        words if words.is_empty() => String::new(),
+        words => format!(" (contacts: {words})"),
+    };
+    let mechanism = case.mechanism.as_ref();
+    let mechanism = mechanism.map_or(String::new(), |own| format!(", {}{}", kind_words(own.kind), moving(own)));
     let words = format!("{words}{mechanism}");
     let at = whereabouts(study, case);
     let own = &study.results.own;
@@ -225,6 +231,7 @@ pub(super) fn critical_numbers(study: &StudyOutput) -> Markup {
         ("first limit point", case.snaps_from().map(with_force)),
         ("proved", proved_interval(case)),
         ("mechanism", case.mechanism.as_ref().map(|own| kind_words(own.kind).to_string())),
+        ("contacts", case.mechanism.as_ref().map(contact_words).filter(|words| !words.is_empty())),
         ("hinges at joints", Some(hinges(case)).filter(|joints| !joints.is_empty())),
         ("solver", Some(case.solver.clone()).filter(|solver| !solver.is_empty())),
         ("certificate", Some(certificate_verdict(case).to_string())),

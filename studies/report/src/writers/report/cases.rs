@@ -6,8 +6,8 @@ use crate::writers::page;
 use crate::writers::table::{distinct_notes, id_list};
 use maud::{Markup, html};
 use voussoir_study::results::format::{
-    certificate_verdict, format_force, format_number, format_seconds, format_short, kind_words, open_bounds,
-    proved_interval, snap_words, status_word, unit_load,
+    certificate_verdict, contact_words, format_force, format_number, format_seconds, format_short, kind_words,
+    open_bounds, proved_interval, snap_words, status_word, unit_load,
 };
 use voussoir_study::results::{CaseResult, load_rank};
 
@@ -70,6 +70,9 @@ fn columns<'a>(study: &'a StudyOutput) -> Vec<Column<'a>> {
     let associated = cases.iter().any(|case| case.non_associated.associated_load_factor.is_some());
     add(associated, "with associated flow", Box::new(|place| with_associated_flow(&cases[place])));
     add(true, "mechanism", Box::new(|place| mechanism(&cases[place])));
+    let in_space = |case: &CaseResult| case.mechanism.as_ref().map(contact_words).unwrap_or_default();
+    let wanted = cases.iter().any(|case| !in_space(case).is_empty());
+    add(wanted, "contacts", Box::new(move |place| in_space(&cases[place])));
     add(true, "hinges at joints", Box::new(|place| hinges(&cases[place])));
     add(true, "certificate", Box::new(|place| certificate_verdict(&cases[place]).into()));
     add(true, "time", Box::new(|place| format_seconds(cases[place].seconds)));
