@@ -46,7 +46,7 @@ pub fn space_mechanism(
             continue;
         }
         if modes.contains(&ContactMode::Hinge) {
-            axes.push(state.axis().numbers(problem.length));
+            axes.push(state.axis(problem.length));
         }
         contacts.push(MovingContact {
             joint: contact.contact,
@@ -90,6 +90,8 @@ struct State<'a> {
     part: ClosedPart,
     /// The ends of a closed edge, or the closed vertex, relative to the pole.
     ends: Vec<Vec3>,
+    /// Velocity of plus relative to minus at the pole.
+    velocity: Vec3,
     /// Rotation of plus relative to minus.
     rotation: Vec3,
     /// Crushed share of the area.
@@ -110,12 +112,12 @@ impl<'a> State<'a> {
         let closed: Vec<usize> = (0..clear.len()).filter(|k| clear[*k] <= still).collect();
         let points: Vec<Vec3> = closed.iter().map(|k| contact.outer.points[*k]).collect();
         let (part, ends) = extent(&points);
-        let turn = |body: Option<usize>| {
-            body.map_or(Vec3::zeros(), |body| Vec3::new(motion[body][3], motion[body][4], motion[body][5]))
+        let part_of = |body: Option<usize>, from: usize| {
+            body.map_or(Vec3::zeros(), |body| Vec3::from_column_slice(&motion[body][from..from + 3]))
         };
-        let rotation = turn(contact.plus) - turn(contact.minus);
+        let [velocity, rotation] = [0, 3].map(|from| part_of(contact.plus, from) - part_of(contact.minus, from));
         let share = if whole > 0.0 { crushed / whole } else { 0.0 };
-        State { contact, rates, still, closed, part, ends, rotation, share }
+        State { contact, rates, still, closed, part, ends, velocity, rotation, share }
     }
 
     /// Returns the ways in which the contact moves.
@@ -146,12 +148,6 @@ impl<'a> State<'a> {
         high - low > self.still
     }
 
-    /// Returns the mean of the closed points.
-    fn middle(&self) -> Vec3 {
-        let sum: Vec3 = self.closed.iter().map(|k| self.contact.outer.points[*k]).sum();
-        sum / self.closed.len().max(1) as f64
-    }
-
     /// Returns the slip at the mean of the closed points.
     fn slip(&self) -> Vec3 {
         let sum: Vec3 = self.closed.iter().map(|k| self.rates[*k]).sum();
@@ -159,21 +155,12 @@ impl<'a> State<'a> {
         (s * sum.y + t * sum.z) / self.closed.len().max(1) as f64
     }
 
-    /// Returns the axis of a hinge: the closed edge, the rotation axis through the closed vertex, or in a contact that crushes the line
-    /// that neither opens nor closes.
-    fn axis(&self) -> Axis {
-        let normal = &self.contact.frame[0];
-        let across = self.rotation - normal * normal.dot(&self.rotation);
-        if self.share > 0.0 {
-            let sum: f64 = self.closed.iter().map(|k| self.rates[*k].x).sum();
-            let slope = normal.cross(&across);
-            let neutral = self.middle() - slope * (sum / self.closed.len() as f64 / slope.norm_squared());
-            return Axis { direction: across.normalize(), point: neutral };
-        }
-        match self.ends.as_slice() {
-            [a, b] => Axis { direction: (b - a).normalize(), point: *a },
-            _ => Axis { direction: self.rotation.normalize(), point: self.middle() },
-        }
+    /// Returns numbers that two lines share if they are equal, for the axis of the relative rotation: d dᵀ of its direction d, and its
+    /// point nearest the pole relative to a length.
+    fn axis(&self, length: f64) -> [f64; 9] {
+        let d = self.rotation.normalize();
+        let near = self.rotation.cross(&self.velocity) / self.rotation.norm_squared() / length;
+        [d.x * d.x, d.y * d.y, d.z * d.z, d.x * d.y, d.y * d.z, d.z * d.x, near.x, near.y, near.z]
     }
 }
 
@@ -205,22 +192,6 @@ fn on_one_side(directions: impl Iterator<Item = (f64, f64)>) -> bool {
     let (Some(first), Some(last)) = (angles.first(), angles.last()) else { return true };
     let between = angles.windows(2).map(|pair| pair[1] - pair[0]);
     between.fold(first + TAU - last, f64::max) > PI + STRAIGHT
-}
-
-/// A line in space, relative to the pole.
-struct Axis {
-    /// Unit vector of any sense.
-    direction: Vec3,
-    point: Vec3,
-}
-
-impl Axis {
-    /// Returns numbers that two lines share if they are equal: d dᵀ, and the point nearest the pole relative to a length.
-    fn numbers(&self, length: f64) -> [f64; 9] {
-        let d = &self.direction;
-        let near = (self.point - d * d.dot(&self.point)) / length;
-        [d.x * d.x, d.y * d.y, d.z * d.z, d.x * d.y, d.y * d.z, d.z * d.x, near.x, near.y, near.z]
-    }
 }
 
 /// Returns the number of distinct axes: those that a chain of equal axes joins are one.
@@ -375,6 +346,23 @@ mod tests {
         reversed[1].frame[0] *= -1.0;
         reversed[1].frame.swap(1, 2);
         assert_eq!(count(reversed, [1.0, 1.0]), 1);
+    }
+
+    /// Contacts along a stepped fold turn about the one line of the fold, though each is closed along another edge.
+    #[test]
+    fn a_stepped_fold_has_one_axis() {
+        let upright = |index: usize, y: f64, z: f64| {
+            let corners = [[0.0, z], [1.0, z], [1.0, z + 1.0], [0.0, z + 1.0]];
+            let vertices = corners.map(|[x, z]| Vec3::new(x, y, z));
+            let frame = [Vec3::y(), Vec3::z(), Vec3::x()];
+            SpaceContact::new(index, [None, Some(0)], &vertices, frame, (DRY, 1))
+        };
+        let bed = face(0, [None, Some(0)], [0.0, 1.0], [0.0, 1.0], DRY);
+        let fold = problem(1, vec![bed, upright(1, 0.0, 0.0), upright(2, -1.0, 1.0)]);
+        let motion = turning([0.0, -1.0, 1.0], [0.0, 0.0, 0.0], [0.0; 3]);
+        let own = found(&fold, &[motion], FlowRule::NonAssociated);
+        assert_eq!((own.hinge_count, own.count_of(ContactMode::Hinge)), (1, 3), "{own:?}");
+        assert!(own.contacts.iter().all(|contact| contact.closed == ClosedPart::Edge));
     }
 
     /// A contact that crushes over less than half of its area is a hinge, over more it crushes.
