@@ -39,8 +39,6 @@ const MAX_STEPS: u64 = 6000;
 const MAX_ITERATIONS: u64 = 20_000;
 /// Lengths of steps across a corner, relative to the first step.
 const CORNER_STEPS: [f64; 4] = [1e-4, 1e-3, 1e-5, 1e-6];
-/// Growth of these steps while pieces between them have almost zero length.
-const CORNER_GROWTH: f64 = 4.0;
 /// Greatest number of successive pieces of almost zero length.
 const MAX_SHORT_PIECES: u32 = 50;
 
@@ -262,10 +260,10 @@ impl<'d> Run<'d> {
 
     /// Makes a short step from a corner, approximately along a piece, by Newton's method on the laws themselves: modes
     /// and branches may change in it. The next corner may follow at once, where points that slip and blocks that yield
-    /// decide about each other; steps then grow, but a turn is passed by a short one. `None` if there is no such step.
+    /// decide about each other; steps then grow by a factor of four, but a turn is passed by a short one. `None` if there is no such step.
     fn across(&mut self, tracer: &mut Tracer, facing: &State, piece: &Piece) -> Option<Ending> {
         let here = tracer.state.clone();
-        let grown = self.cluster.across.map(|share| (CORNER_GROWTH * share).min(1.0));
+        let grown = self.cluster.across.map(|share| (4.0 * share).min(1.0));
         let (share, next, rate) = grown.into_iter().chain(CORNER_STEPS).find_map(|share| {
             let control = piece.control(share * self.length.first);
             let guess = moved(facing, &piece.tangent, share * self.length.first);
