@@ -260,7 +260,8 @@ impl<'d> Run<'d> {
 
     /// Makes a short step from a corner, approximately along a piece, by Newton's method on the laws themselves: modes
     /// and branches may change in it. The next corner may follow at once, where points that slip and blocks that yield
-    /// decide about each other; steps then grow by a factor of four, but a turn is passed by a short one. `None` if there is no such step.
+    /// decide about each other; steps then grow by a factor of four, but a turn is passed by a short one. `None` if
+    /// there is no such step.
     fn across(&mut self, tracer: &mut Tracer, facing: &State, piece: &Piece) -> Option<Ending> {
         let here = tracer.state.clone();
         let grown = self.cluster.across.map(|share| (4.0 * share).min(1.0));
