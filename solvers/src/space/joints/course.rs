@@ -43,22 +43,29 @@ pub fn dead_load(joints: &mut Joints) -> Option<()> {
     let held = Control::Factor(0.0);
     let step = match joints.coulomb(still.clone(), 0.0, held) {
         Some(step) => step,
-        None => carried(joints, still)?,
+        None => {
+            let endless = vec![joints.loads(0.0) * JOINTS.endless; joints.springs.len()];
+            by_cohesion(joints, still, 0.0, held, endless)?
+        }
     };
     joints.contacts = step.contacts;
     Some(())
 }
 
-/// Finds the state under dead load from steps with fictitious cohesion, at first as great as needed.
-fn carried(joints: &mut Joints, mut motion: Bodies) -> Option<Step> {
-    let held = Control::Factor(0.0);
-    let mut normals = vec![joints.loads(0.0) * JOINTS.endless; joints.springs.len()];
+/// Finds a step with the friction of the law from steps with fictitious cohesion, at first that of known normal forces.
+pub fn by_cohesion(
+    joints: &mut Joints,
+    mut motion: Bodies,
+    lambda: f64,
+    control: Control,
+    mut normals: Vec<f64>,
+) -> Option<Step> {
     for pass in 0..JOINTS.passes {
-        let step = joints.lagged(motion, 0.0, held, &normals)?;
+        let step = joints.lagged(motion, lambda, control, &normals)?;
         let share = if pass == 0 { 1.0 } else { JOINTS.relaxed };
         relax(&mut normals, share, &step.contacts);
         motion = step.motion;
-        if let Some(step) = joints.coulomb(motion.clone(), 0.0, held) {
+        if let Some(step) = joints.coulomb(motion.clone(), step.lambda, control) {
             return Some(step);
         }
     }

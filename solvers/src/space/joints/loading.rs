@@ -3,7 +3,7 @@
 //! Every step obeys the law. It counts if two steps of half its size lead to nearly the same forces, so that few falls of the load factor
 //! are passed over. The course ends when the load factor reaches its end or becomes constant.
 
-use super::course::{along, compliance, dead_load, own_step, settled};
+use super::course::{along, by_cohesion, compliance, dead_load, own_step, settled};
 use super::step::{Control, Joints, Step};
 use crate::space::program::Bodies;
 use crate::space::settings::JOINTS;
@@ -71,7 +71,13 @@ pub fn load(joints: &mut Joints, end: f64, parts: f64) -> Loaded {
 /// Returns two half steps in place of a step. `None` if a step is not solved, or if the forces differ.
 fn halves(joints: &mut Joints, rate: &[f64], [lambda, power]: [f64; 2], accuracy: f64) -> Option<[Step; 2]> {
     let guess: Bodies = rate.iter().map(|q| q * power).collect();
-    let full = own_step(joints, &guess, lambda, power)?;
+    let full = match own_step(joints, &guess, lambda, power) {
+        Some(step) => step,
+        None => {
+            let normals = joints.contacts.iter().map(|contact| contact.force[0]).collect();
+            by_cohesion(joints, guess, lambda, Control::Power, normals)?
+        }
+    };
     let half = full.motion.iter().map(|u| 0.5 * u).collect();
     let first = joints.coulomb(half, lambda, Control::Power)?;
     let before = std::mem::replace(&mut joints.contacts, first.contacts.clone());
