@@ -81,18 +81,24 @@ impl Evidence {
         }
     }
 
-    /// Adds a field near the forces of a state.
+    /// Adds a field near the forces of a state. Late in the search rounding can prevent a balance in the metric of the flexibilities. The
+    /// forces are then repaired like those at the end: their errors are still small.
     fn field(&mut self, method: &mut InteriorPoint, lambda: f64) {
-        let y = method.state.forces(method.state.tau);
+        let forces = |method: &InteriorPoint| method.state.forces(method.state.tau);
+        let y = forces(method);
         let program = method.program;
-        if let Some(y) = balanced(method, y, [lambda, 1.0]).filter(|y| inside(program, y)) {
-            let field = Field { lambda, y };
-            let mean = method.state.mean();
-            if self.fields.last().is_none_or(|(last, _)| mean <= SETTINGS.apart * last) {
-                self.fields.push((mean, field.clone()));
+        let Some(y) = balanced(method, y, [lambda, 1.0]).filter(|y| inside(program, y)) else {
+            if !self.fields.is_empty() {
+                self.repair(program, forces(method), lambda);
             }
-            self.raise(field);
+            return;
+        };
+        let field = Field { lambda, y };
+        let mean = method.state.mean();
+        if self.fields.last().is_none_or(|(last, _)| mean <= SETTINGS.apart * last) {
+            self.fields.push((mean, field.clone()));
         }
+        self.raise(field);
     }
 
     /// Keeps a field if its factor is the greatest.

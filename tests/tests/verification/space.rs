@@ -52,6 +52,21 @@ fn a_corner_has_the_published_factors() {
     }
 }
 
+/// Two small corners, in which many courses can slide at the same factor, have bounds that nearly meet. One slides at μ.
+#[test]
+fn small_corners_have_bounds_that_meet() {
+    let corner = "scene = \"masonry_wall\"\nblock = [2.0, 1.0, 0.5]\ncourses = 4\nblocks = 3\n\
+                  corner = { blocks = 3, joint = \"toothed\" }";
+    for (friction, push, known) in [(0.4, [-1.0, 0.0, 0.0], 0.4), (0.7, [0.6, 0.7, 0.0], 0.744830726910 * 10.0 / 9.81)]
+    {
+        let result = answered(&pushed(corner, friction, push));
+        assert_eq!(result.status, Status::Collapse, "{:?} {:?}", result.notes, result.certificate);
+        let Some([Some(low), Some(high)]) = result.bounds else { panic!("{:?}", result.bounds) };
+        assert!(high - low <= 1e-9 * high, "{low} {high}");
+        assert_close(low, known, 2e-9);
+    }
+}
+
 /// The corner with slip that does not open the joints collapses below the associated factor, in two directions.
 #[test]
 fn a_corner_collapses_earlier_with_its_own_flow() {
