@@ -61,6 +61,12 @@ impl Evidence {
         }
     }
 
+    /// Returns true if the distance of the bounds is at most a share of the factor.
+    pub fn is_within(&self, share: f64) -> bool {
+        let size = self.lower.as_ref().map_or(0.0, |lower| lower.lambda.abs()).max(SETTINGS.least_factor);
+        self.gap() <= share * size
+    }
+
     /// Collects the evidence of a factorised state.
     pub fn collect(&mut self, method: &mut InteriorPoint) {
         let (program, held, mean) = (method.program, method.held, method.state.mean());
@@ -88,7 +94,7 @@ impl Evidence {
         let y = forces(method);
         let program = method.program;
         let Some(y) = balanced(method, y, [lambda, 1.0]).filter(|y| inside(program, y)) else {
-            if !self.fields.is_empty() {
+            if !self.fields.is_empty() && !self.is_within(SETTINGS.closed) {
                 self.repair(program, forces(method), lambda);
             }
             return;

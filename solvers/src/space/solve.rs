@@ -306,10 +306,6 @@ fn run(program: &Program, held: bool, counters: &mut Counters) -> Option<Evidenc
 
 /// Returns true if a program is decided.
 fn ended(evidence: &Evidence, method: &InteriorPoint) -> bool {
-    let size = evidence.lower.as_ref().map_or(0.0, |lower| lower.lambda.abs()).max(SETTINGS.least_factor);
     let refuted = evidence.refutation.is_some() && (method.held || method.state.kappa > method.state.tau);
-    evidence.gap() <= SETTINGS.aim * size
-        || (method.held && evidence.start.is_some())
-        || evidence.ray.is_some()
-        || refuted
+    evidence.is_within(SETTINGS.aim) || (method.held && evidence.start.is_some()) || evidence.ray.is_some() || refuted
 }
