@@ -47,7 +47,7 @@ pub struct MovingContact {
     pub points: Vec<[f64; 3]>,
     /// Rotation of plus relative to minus \[rad per unit of motion\].
     pub rotation: [f64; 3],
-    /// Slip of plus relative to minus at the mean of the closed points \[m per unit of motion\]; zero if none is closed.
+    /// Slip of plus relative to minus at the mean of the closed points \[m per unit of motion\]; zero if all points open.
     pub slip: [f64; 3],
     /// Greatest opening of its points \[m per unit of motion\].
     pub opening: f64,
