@@ -4,7 +4,7 @@ use super::plug_ins::LIAR;
 use serde::{Deserialize, Serialize};
 use voussoir::core::limit::{LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, Status};
 use voussoir::core::plugin::{Capability, Card, Need, Parameter, PluginKind, Shape};
-use voussoir::core::space::{SpaceAnswer, SpaceField, SpaceProblem, SpaceSettled};
+use voussoir::core::space::{SpaceAnswer, SpaceField, SpaceNonAssociated, SpaceProblem, SpaceSettled};
 use voussoir::core::{inventory, typetag};
 use voussoir::solve_case;
 use voussoir_tests::first_case;
@@ -65,6 +65,7 @@ impl LimitSolver for LyingSpace {
             "motion_does_not_open" => answer.motion.iter_mut().flatten().for_each(|own| own[2] = 0.0),
             "motion_scaled" => answer.motion.iter_mut().flatten().flatten().for_each(|v| *v *= 0.9),
             "stands" => answer.status = Status::Stands,
+            "own_flow" => answer.non_associated = Some(SpaceNonAssociated::default()),
             "unbounded" => (answer.status, answer.ray) = (Status::Unbounded, answer.field.clone()),
             "no_equilibrium" => answer.status = Status::NoEquilibrium,
             "short_lists" => {
@@ -158,6 +159,21 @@ fn the_start_of_a_stage_must_be_carried() {
         let told = format!("{lie}: {:?} {:?} {:?}", result.status, result.bounds, result.notes);
         assert_eq!(result.status == Status::NoEquilibrium, lie == "honest", "{told}");
         assert!(matches!(result.status, Status::NoEquilibrium | Status::Open | Status::Stalled), "{told}");
+    }
+}
+
+/// A field at the end of a stage is a proof for associated flow only. A solver of another project that calls this the laws' own flow is
+/// not believed; `limit_sequential` has loaded the joints step by step.
+#[test]
+fn a_field_is_no_proof_of_the_laws_own_flow() {
+    let own = cube("1.0", "own_flow")
+        .replace("coulomb_associated", "coulomb")
+        .replace("until = \"collapse\"", "factor = 0.3");
+    let ours = own.replace("lying_space", "limit_sequential").replace("lie = \"own_flow\"\n", "");
+    for (study, read) in [(own, Some("associated")), (ours, None)] {
+        let result = solve_case(&first_case(&study));
+        assert_eq!(result.status, Status::Stands, "{:?}", result.notes);
+        assert_eq!(result.flow_read_as.as_deref(), read, "{:?}", result.notes);
     }
 }
 

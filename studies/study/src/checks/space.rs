@@ -5,6 +5,7 @@ use crate::checks::limit::{compare_verdict, verify_reached};
 use crate::checks::mechanism::compare;
 use crate::results::stage_start::search_start;
 use crate::results::{CaseResult, SpaceMotionEntry};
+use crate::solve::ours::is_ours;
 use crate::solve::space::space_problem;
 use crate::solve::space_entries::{StoredInSpace, gap_in_space, stored_mechanism};
 use crate::solve::space_settlement::Moved;
@@ -34,7 +35,8 @@ pub(crate) fn verify(
     let read = result.flow_read_as.as_deref() == Some("associated");
     let flows = space.non_associated() && result.status != Status::Stalled;
     let bounded = matches!(result.status, Status::Collapse | Status::Open);
-    let own = (flows && !read && (bounded || result.status == Status::Stands)).then(|| SpaceNonAssociated {
+    let searched = result.status == Status::Stands && is_ours(&result.solver);
+    let own = (flows && !read && (bounded || searched)).then(|| SpaceNonAssociated {
         associated_factor: result.non_associated.associated_load_factor,
         associated_motion: stored.associated_motion.clone(),
     });

@@ -135,7 +135,9 @@ fn certified(
     let motion = answer.motion.filter(|_| shows(&[Status::Collapse, Status::NoEquilibrium, Status::Open]));
     let motion = motion.map(|motion| motion_entries(space, problem, &motion));
     let ray = answer.ray.filter(|_| shows(&[Status::Unbounded]));
-    let own = answer.non_associated.filter(|_| shows(&[Status::Stands, Status::Collapse, Status::Open]));
+    // A field at the end of the stage proves it for associated flow only. For the laws' own flow the search decides, and only ours is believed.
+    let searched = answer.status == Status::Stands && shows(&[Status::Stands]) && is_ours(tag);
+    let own = answer.non_associated.filter(|_| searched || shows(&[Status::Collapse, Status::Open]));
     let read = status != Status::Stalled && space.non_associated() && own.is_none();
     let flow = if own.is_some() { FlowRule::NonAssociated } else { FlowRule::Associated };
     // No check proves that a mechanism is unique.
