@@ -29,16 +29,13 @@ pub fn answer(problem: &SpaceProblem, question: LimitQuestion, solve: Associated
         associated.notes.extend(searched(&associated).then(|| STRENGTHS.into()));
         return associated;
     }
-    // Factors of associated flow beyond the end of the stage do not decide about it.
+    // If associated flow carries the end of the stage, this does not decide about the laws' own flow.
     let mut associated = solve(problem, LimitQuestion::Collapse { start, max: f64::INFINITY });
     if !searched(&associated) || problem.varying.iter().flatten().all(|load| *load == 0.0) {
         return associated;
     }
     let program = Program::new(problem, start, Side::Inner);
-    let refuted = match associated.status {
-        Status::Collapse => associated.factor.is_some_and(|factor| factor <= max),
-        status => status == Status::Open,
-    };
+    let carried = associated.status == Status::Unbounded || associated.field.is_some() && associated.field_factor > max;
     let mut courses = Courses {
         descent: Descent { problem, solve, start },
         program: &program,
@@ -46,7 +43,7 @@ pub fn answer(problem: &SpaceProblem, question: LimitQuestion, solve: Associated
         failures: Vec::new(),
         counters: std::mem::take(&mut associated.counters),
     };
-    let verdict = (!refuted).then(|| {
+    let verdict = carried.then(|| {
         let end = if max.is_finite() { (max - start) / program.unit } else { JOINTS.end };
         courses.verdict(end)
     });

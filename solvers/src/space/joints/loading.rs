@@ -1,7 +1,7 @@
 //! Loading from zero stress: the course that decides if a structure stands.
 //!
-//! Every step obeys the law. It counts if two steps of half its size lead to nearly the same forces, so that few falls of the load factor
-//! are passed over. The course ends when the load factor reaches its end or becomes constant.
+//! Every step obeys the law; steps with fictitious cohesion only lead to a first guess. A step counts if two steps of half its size lead to
+//! nearly the same forces, so that few falls of the load factor are passed over. The course ends when the load factor reaches its end or becomes constant.
 
 use super::course::{along, by_cohesion, compliance, dead_load, own_step, settled};
 use super::step::{Control, Joints, Step};
