@@ -40,6 +40,9 @@ const UNIT_POWER: f64 = 1e-9;
 /// Greatest jump, relative to the greatest speed, that counts as none: a body without contact moves.
 const NO_JUMP: f64 = 1e-9;
 
+/// Greatest relative distance between a state and the lower end of a search that proves it to be the least one.
+const CLOSED: f64 = 2e-5;
+
 /// Factor, relative to the ratio of fixed and varying loads, below which the gap is compared with the loads.
 const LEAST_FACTOR: f64 = 1e-3;
 
@@ -64,6 +67,8 @@ pub struct SpaceClaim<'a> {
     pub ray: Option<&'a SpaceField>,
     /// Set if the claim is about the laws' own flow.
     pub non_associated: Option<&'a SpaceNonAssociated>,
+    /// True if the solver belongs to this project: its search for lower factors is believed.
+    pub search_is_trusted: bool,
 }
 
 /// The result of checking a claim.
@@ -164,9 +169,11 @@ impl<'a> Check<'a> {
             let certificate = std::mem::replace(&mut self.certificate, Certificate::blank());
             match bounds {
                 Some(bounds) if certificate.passed => {
-                    let open =
-                        status == Status::Stands || (status == Status::Collapse && claim.non_associated.is_some());
-                    let greatest = if open { Greatest::Open } else { Greatest::ProvedOptimal };
+                    let (status, bounds, greatest) = match claim.non_associated {
+                        Some(own) if status == Status::Collapse => self.least(claim, own, bounds),
+                        _ if status == Status::Stands => (status, bounds, Greatest::Open),
+                        _ => (status, bounds, Greatest::ProvedOptimal),
+                    };
                     return SpaceVerdict { certificate, status, bounds, greatest };
                 }
                 _ if status == claim.hint => first = Some(certificate),
@@ -176,12 +183,43 @@ impl<'a> Check<'a> {
         self.open(claim, gap, first.unwrap_or_else(Certificate::blank))
     }
 
+    /// Returns the verdict on the least load with the laws' own flow of a certified state. Without a search the bounds are those of
+    /// the state; a search that proves no lower end leaves the least load open.
+    fn least(
+        &self,
+        claim: &SpaceClaim,
+        own: &SpaceNonAssociated,
+        bounds: [Option<f64>; 2],
+    ) -> (Status, [Option<f64>; 2], Greatest) {
+        let ([Some(lower), Some(factor)], Some(_)) = (bounds, own.searched) else {
+            return (Status::Collapse, bounds, Greatest::Open);
+        };
+        if factor - lower <= CLOSED * factor.abs().max(self.factor_scale()) {
+            return (Status::Collapse, bounds, Greatest::ProvedOptimal);
+        }
+        if lower > claim.start {
+            return (Status::Collapse, bounds, Greatest::Bracketed);
+        }
+        (Status::Open, [None, Some(factor)], Greatest::Open)
+    }
+
+    /// Returns the lower end that a search proves. `None` if the answer has no search, or if the search proves nothing.
+    fn searched(&mut self, claim: &SpaceClaim, own: &SpaceNonAssociated) -> Option<f64> {
+        let lower = own.searched?;
+        if !claim.search_is_trusted {
+            self.certificate.fail("the lower bound: an exhaustive search leaves nothing that could be checked");
+        }
+        Some(lower).filter(|lower| claim.search_is_trusted && *lower > claim.start)
+    }
+
     /// Returns the verdict with the ends that field and motion prove by themselves.
     fn open(&mut self, claim: &SpaceClaim, gap: f64, mut certificate: Certificate) -> SpaceVerdict {
         self.certificate = Certificate::blank();
         // A field does not bound factors of other than associated flow, but every motion of associated flow does.
-        let own = claim.non_associated.is_some();
-        let lower = if own { None } else { self.field(claim).filter(|lower| *lower > claim.start) };
+        let lower = match claim.non_associated {
+            Some(own) => self.searched(claim, own),
+            None => self.field(claim).filter(|lower| *lower > claim.start),
+        };
         self.certificate = Certificate::blank();
         let upper = match claim.non_associated {
             None => self.upper_bound(claim.motion),
@@ -239,7 +277,7 @@ impl<'a> Check<'a> {
     }
 
     /// Checks that field and mechanism exist at one factor with the laws' own flow, and that the bound of associated flow is not
-    /// exceeded. Returns \[start, factor\]: there may be lower factors.
+    /// exceeded. Returns \[lower, factor\]: there may be lower factors, and a search bounds them. Without one, the start is the lower end.
     fn own_flow(&mut self, claim: &SpaceClaim, own: &SpaceNonAssociated, gap: f64) -> Option<[f64; 2]> {
         let (Some(factor), Some(motion)) = (self.field(claim), claim.motion) else {
             self.certificate.fail("a collapse needs a factor, an admissible field and a mechanism");
@@ -264,7 +302,11 @@ impl<'a> Check<'a> {
             let distance = shown.map_or(f64::INFINITY, |shown| (shown - greatest).abs() / scale);
             self.certificate.residual("associated_gap", distance, gap);
         }
-        Some([claim.start, factor])
+        let lower = self.searched(claim, own).unwrap_or(claim.start);
+        if lower > factor {
+            self.certificate.fail(format!("the lower bound {lower} is above the factor"));
+        }
+        Some([lower, factor])
     }
 
     /// Returns the factor of a state with the laws' own flow: the least collapse factor is not above it.
@@ -512,6 +554,7 @@ mod tests {
             motion: Some(motion),
             ray: None,
             non_associated: None,
+            search_is_trusted: true,
         }
     }
 
@@ -611,6 +654,7 @@ mod tests {
         problem.contacts[0].law = FrictionCone::dry(0.4, 0.0);
         let forces = forces();
         let own = |factor, motion: Option<SpaceVelocity>| SpaceNonAssociated {
+            searched: None,
             associated_factor: factor,
             associated_motion: motion.map(|motion| vec![motion]),
         };
@@ -645,6 +689,21 @@ mod tests {
         let idle = SpaceClaim { factor: Some(0.2), field_factor: 0.2, ..state(&low, &honest) };
         let verdict = certify_space(&problem, &idle, 1e-8);
         assert_eq!((verdict.status, verdict.bounds), (Status::Open, [None, Some(0.4)]));
+        // A search of this project bounds the least load; a search of another project is refused.
+        for (lower, status, low, greatest) in [
+            (0.3999999, Status::Collapse, Some(0.3999999), Greatest::ProvedOptimal),
+            (0.3, Status::Collapse, Some(0.3), Greatest::Bracketed),
+            (0.0, Status::Open, None, Greatest::Open),
+            (0.41, Status::Open, None, Greatest::Open),
+        ] {
+            let searched = SpaceNonAssociated { searched: Some(lower), ..honest.clone() };
+            let verdict = certify_space(&problem, &state(&forces, &searched), 1e-8);
+            let upper = Some(0.4);
+            assert_eq!((verdict.status, verdict.bounds, verdict.greatest), (status, [low, upper], greatest));
+            let stranger = SpaceClaim { search_is_trusted: false, ..state(&forces, &searched) };
+            let verdict = certify_space(&problem, &stranger, 1e-8);
+            assert_eq!((verdict.status, verdict.bounds), (Status::Open, [None, upper]), "{lower}");
+        }
     }
 
     /// Evidence of the wrong size and numbers that are not finite are refused without a panic.

@@ -46,6 +46,9 @@ pub struct SpaceNonAssociated {
     pub associated_factor: Option<f64>,
     /// The motion with associated flow that proves it, scaled as `motion`.
     pub associated_motion: Option<Vec<SpaceVelocity>>,
+    /// Lower bound of all such factors, by an exhaustive search that leaves no data to check. If a solver proves none, this is the
+    /// factor at the start; a solver that proves no lower bounds gives `None`.
+    pub searched: Option<f64>,
 }
 
 /// The answer of a limit solver about rigid blocks in space whose supports move, with associated flow.

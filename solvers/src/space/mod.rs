@@ -3,9 +3,11 @@
 //! [`solve`] uses an interior point method on second-order cones (`interior_point`); each contact is condensed to a
 //! 6 × 6 block of the normal equations (`stiffness`). Its iterates are repaired to exact evidence (`evidence`):
 //! forces in equilibrium inside the cones, and mechanisms inside the dual cones. [`solve_by_clarabel`] is the second
-//! route and the fallback. [`solve_with_own_flow`] finds collapse states with the flow rules of the laws (`joints`). The
-//! certificate of `voussoir_core::space` decides the status.
+//! route and the fallback. [`solve_with_own_flow`] finds collapse states with the flow rules of the laws (`joints`), and
+//! [`least_with_own_flow`] also proves that a few blocks have no lower one (`branching`). The certificate of `voussoir_core::space` decides
+//! the status.
 
+mod branching;
 mod by_clarabel;
 mod cone;
 mod evidence;
@@ -21,6 +23,9 @@ mod stiffness;
 mod tests;
 mod uniqueness;
 
+pub use self::branching::answer as least_with_own_flow;
+#[cfg(test)]
+pub use self::branching::lower_bound;
 pub use self::joints::answer as solve_with_own_flow;
 pub use self::settlement::settle as settle_in_space;
 pub use self::solve::{solve, solve_by_clarabel};

@@ -231,3 +231,39 @@ pub const DESCENT: DescentSettings = DescentSettings {
     null: 1e-10,
     proved: 5e-13,
 };
+
+/// Numbers of the proof by branching.
+#[derive(Debug, Clone, Copy)]
+pub struct BranchingSettings {
+    /// Greatest number of blocks.
+    pub bodies: usize,
+    /// Relative distance below the known state at which the proof ends.
+    pub gap: f64,
+    /// Greatest number of tangents of the friction of a point.
+    pub tangents: usize,
+    /// Relative excess of a shear force over friction that adds a tangent.
+    pub exceeded: f64,
+    /// Greatest number of programs with more tangents in a part.
+    pub rounds: usize,
+    /// Greatest number of pivots of a program.
+    pub pivots: u64,
+    /// Rounding by which bounds are relaxed.
+    pub outward: f64,
+    /// Width of a sector that is not divided \[rad\].
+    pub narrow: f64,
+    /// Power left, relative to greatest force times greatest jump, of forces and jumps that fit.
+    pub fits: f64,
+}
+
+/// The numbers in use.
+pub const BRANCHING: BranchingSettings = BranchingSettings {
+    bodies: 12,
+    gap: 1e-5,
+    tangents: 48,
+    exceeded: 1e-3,
+    rounds: 4,
+    pivots: 5000,
+    outward: 1e-9,
+    narrow: 1e-7,
+    fits: 1e-9,
+};

@@ -12,6 +12,7 @@ use crate::limit::settings::SETTINGS;
 use crate::limit::settlement::settle;
 use crate::limit::systems::{LARGEST, Systems, greatest_shares};
 use crate::optimise::dense_simplex::Feasibility;
+use crate::space::{least_with_own_flow, settle_in_space, solve};
 use voussoir_core::law::FlowRule;
 use voussoir_core::limit::{
     BracketWork, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, LowerProof, LowerProofKind, NonAssociated,
@@ -20,6 +21,7 @@ use voussoir_core::limit::{
 use voussoir_core::model::Wrenches;
 use voussoir_core::plugin::{Capability, Card, Keys, PluginKind};
 use voussoir_core::random::Random;
+use voussoir_core::space::{SpaceAnswer, SpaceField, SpaceProblem, SpaceSettled};
 
 /// Greatest number of rows of products that are solved only to make the result of the search checkable.
 const MAX_CHECKED_ROWS: usize = 5_000;
@@ -42,6 +44,13 @@ pub struct LimitNonassociated {
     pub product_limit: f64,
 }
 
+impl LimitNonassociated {
+    /// Returns the greatest number of matrix entries that a search sweeps.
+    fn entries(&self) -> u64 {
+        (self.search_limit * 1e9).min(1e18) as u64
+    }
+}
+
 impl Default for LimitNonassociated {
     fn default() -> Self {
         Self::defaults()
@@ -53,7 +62,7 @@ voussoir_core::inventory::submit! {
         kind: PluginKind::LimitSolver,
         tag: "limit_least",
         summary: "the least load factor with the flow rules of the laws, with a proved lower bound",
-        provides: &[Capability::NON_ASSOCIATED],
+        provides: &[Capability::NON_ASSOCIATED, Capability::SPACE],
         requires: &[&[Capability::FACETS], &[Capability::RIGID_LIMIT]],
         cost: Some(10),
         sources: &[
@@ -280,6 +289,14 @@ impl LimitSolver for LimitNonassociated {
         settle(problem, loads, openings, FlowRule::NonAssociated)
     }
 
+    fn solve_space(&self, problem: &SpaceProblem, question: LimitQuestion) -> Option<SpaceAnswer> {
+        Some(least_with_own_flow(problem, question, solve, self.entries()))
+    }
+
+    fn settle_space(&self, problem: &SpaceProblem, openings: &SpaceField) -> SpaceSettled {
+        settle_in_space(problem, openings)
+    }
+
     fn refuses(&self, problem: &LimitProblem) -> Option<String> {
         problem.has_envelopes().then(|| NO_ENVELOPES.into())
     }
@@ -358,7 +375,7 @@ impl Least<'_> {
 
     /// Raises the lower bound as far as the limits of work allow, and keeps lower states found on the way.
     fn prove(&mut self, limits: &LimitNonassociated, most: f64, best: &mut Option<(f64, FlowState)>) -> Lower {
-        let entries = (limits.search_limit * 1e9).min(1e18) as u64;
+        let entries = limits.entries();
         let (mut lower, mut gap) = (Lower { theta: 0.0, products: None, searched: 0.0 }, SETTINGS.below_state);
         let mut whole = true;
         loop {

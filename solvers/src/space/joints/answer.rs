@@ -202,6 +202,7 @@ impl<'a> Courses<'a> {
             // The upper end of its bounds: no state of any flow rule is above it.
             associated_factor: bound.as_ref().map(|motion| -power(&self.descent.problem.fixed, motion)),
             associated_motion: bound,
+            searched: None,
         };
         let mut states = std::mem::take(&mut self.states);
         let courses = states.len() + self.failures.len();

@@ -1,9 +1,10 @@
 //! Tests of limit analysis in space: closed forms, invariance, the second route.
 
+mod branching;
 mod closed_forms;
 mod invariance;
 pub mod own_flow;
-mod random;
+pub mod random;
 mod scenes;
 mod statuses;
 mod strengths;

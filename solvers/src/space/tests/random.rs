@@ -8,7 +8,7 @@ use voussoir_core::random::Random;
 use voussoir_core::space::Vec3;
 
 /// Returns a stack of boxes of random size and offset with random friction.
-fn stack(random: &mut Random) -> Scene {
+pub fn stack(random: &mut Random) -> Scene {
     let mut scene = Scene::default();
     let mut below = (None, [-10.0, 10.0], [-10.0, 10.0], 0.0);
     for _ in 0..random.whole(2, 6) {
@@ -56,7 +56,7 @@ fn both_routes_prove_overlapping_brackets_of_random_stacks() {
 
 /// Returns boxes in the cells of a grid, some of them missing, with contacts to all neighbours and to the ground. One
 /// contact in ten has no friction.
-fn grid(random: &mut Random) -> Scene {
+pub fn grid(random: &mut Random) -> Scene {
     let count: [usize; 3] = std::array::from_fn(|_| random.whole(1, 3));
     let lines = count.map(|count| {
         let mut line = vec![0.0];

@@ -87,6 +87,7 @@ pub fn certified(problem: &SpaceProblem, answer: &SpaceAnswer, question: LimitQu
         motion: answer.motion.as_deref(),
         ray: answer.ray.as_ref(),
         non_associated: answer.non_associated.as_ref(),
+        search_is_trusted: true,
     };
     certify_space(problem, &claim, GAP)
 }

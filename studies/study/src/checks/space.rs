@@ -13,7 +13,7 @@ use crate::study::{Case, SpaceCase};
 use std::collections::BTreeMap;
 use voussoir_core::certificate::{Certificate, Verdict};
 use voussoir_core::law::FlowRule;
-use voussoir_core::limit::{Greatest, Status};
+use voussoir_core::limit::{Greatest, LowerProofKind, Status};
 use voussoir_core::model::Target;
 use voussoir_core::space::{SpaceClaim, SpaceField, SpaceNonAssociated, SpaceProblem, SpaceVerdict, certify_space};
 
@@ -29,6 +29,10 @@ pub(crate) fn verify(
     findings: &mut Findings,
 ) -> Result<(), String> {
     let stage = &case.stages[last];
+    let (start, target) = match stage.target {
+        Target::Collapse => (search_start(stage), stage.factor_max),
+        Target::Factor(factor) => (factor.min(0.0), factor),
+    };
     let problem = space_problem(space, &space.loads(&case.stages)[last])?;
     let proof = result.proof.space.as_deref().cloned().unwrap_or_default();
     let stored = StoredInSpace::read(space, &problem, &proof)?;
@@ -39,11 +43,8 @@ pub(crate) fn verify(
     let own = (flows && !read && (bounded || searched)).then(|| SpaceNonAssociated {
         associated_factor: result.non_associated.associated_load_factor,
         associated_motion: stored.associated_motion.clone(),
+        searched: lower_end(result, start),
     });
-    let (start, target) = match stage.target {
-        Target::Collapse => (search_start(stage), stage.factor_max),
-        Target::Factor(factor) => (factor.min(0.0), factor),
-    };
     let field_factor = result.proof.field_factor.unwrap_or(start);
     let claim = SpaceClaim {
         hint: result.status,
@@ -55,6 +56,7 @@ pub(crate) fn verify(
         motion: stored.motion.as_deref(),
         ray: stored.ray.as_ref(),
         non_associated: own.as_ref(),
+        search_is_trusted: is_ours(&result.solver),
     };
     let gap = gap_in_space(case.solver.settings.tolerance);
     let moved = space.settles(last).then(|| Moved::new(space, &case.stages, last, &problem, field_factor));
@@ -94,6 +96,16 @@ pub(crate) fn verify(
         findings.0.extend(verdict.certificate.failures);
     }
     Ok(())
+}
+
+/// Returns the lower end of the least load by a search, if the result states one.
+fn lower_end(result: &CaseResult, start: f64) -> Option<f64> {
+    let proof = result.non_associated.lower_proof.as_ref()?;
+    match proof.by {
+        LowerProofKind::Search => result.bounds.and_then(|bounds| bounds[0]).or(Some(f64::NAN)),
+        LowerProofKind::Start => Some(start),
+        LowerProofKind::Products | LowerProofKind::Associated => Some(f64::NAN),
+    }
 }
 
 /// Compares the mechanism with the one that the stored velocities give. Displacements of a case that stands are no mechanism.

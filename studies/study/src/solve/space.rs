@@ -9,7 +9,7 @@ use super::space_settlement::follow_supports;
 use crate::results::{CaseResult, NonAssociatedAnswer, ProofFields, SpaceProof};
 use crate::study::SpaceCase;
 use voussoir_core::law::FlowRule;
-use voussoir_core::limit::{Counters, LimitQuestion, Status};
+use voussoir_core::limit::{Counters, LimitQuestion, LowerProof, LowerProofKind, Status};
 use voussoir_core::model::{Stage, Target};
 use voussoir_core::space::{SpaceAnswer, SpaceClaim, SpaceLoads, SpaceProblem, SpaceVerdict, certify_space};
 
@@ -127,6 +127,7 @@ fn certified(
         motion: answer.motion.as_deref(),
         ray: answer.ray.as_ref(),
         non_associated: answer.non_associated.as_ref(),
+        search_is_trusted: is_ours(tag),
     };
     let SpaceVerdict { certificate, status, bounds, greatest } =
         certify_space(problem, &claim, gap_in_space(input.settings.tolerance));
@@ -179,6 +180,9 @@ fn certified(
         },
         flow_read_as: read.then(|| "associated".into()),
         non_associated: NonAssociatedAnswer {
+            lower_proof: own.as_ref().and_then(|own| own.searched).filter(|_| is_ours(tag)).map(|lower| {
+                LowerProof::by(if lower > start { LowerProofKind::Search } else { LowerProofKind::Start })
+            }),
             associated_load_factor: own.and_then(|own| own.associated_factor),
             ..NonAssociatedAnswer::default()
         },

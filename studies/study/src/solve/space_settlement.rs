@@ -60,6 +60,7 @@ impl Moved {
             motion: Some(motion),
             ray: None,
             non_associated: None,
+            search_is_trusted: false,
         };
         let verdict = certify_space(&self.problem, &claim, gap);
         if verdict.status != Status::Stands {

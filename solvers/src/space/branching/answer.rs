@@ -1,0 +1,42 @@
+//! The answer with a proved lower end.
+
+use super::search::{Bracket, lower_bound, misfit};
+use crate::space::joints;
+use crate::space::settings::BRANCHING;
+use voussoir_core::limit::{LimitQuestion, Status};
+use voussoir_core::space::{SpaceAnswer, SpaceProblem};
+
+/// Answers a question with the laws' own flow like the search of collapse states, and proves a lower end of the least load. The proof
+/// sweeps at most `most` matrix entries.
+pub fn answer(
+    problem: &SpaceProblem,
+    question: LimitQuestion,
+    solve: fn(&SpaceProblem, LimitQuestion) -> SpaceAnswer,
+    most: u64,
+) -> SpaceAnswer {
+    let mut answer = joints::answer(problem, question, solve);
+    let LimitQuestion::Collapse { start, .. } = question else { return answer };
+    let Some(own) = answer.non_associated.as_mut().filter(|_| answer.status != Status::Stands) else { return answer };
+    own.searched = Some(start);
+    // No state is above the associated load.
+    let Some(known) = answer.factor.or(own.associated_factor).filter(|known| *known > start) else {
+        return answer;
+    };
+    if let Some(why) = misfit(problem) {
+        answer.notes.push(format!("{why}: no lower end is proved"));
+        return answer;
+    }
+    let Bracket { lower, parts, work } = lower_bound(problem, start, known, most);
+    answer.counters.insert("search_parts".into(), parts);
+    own.searched = Some(lower);
+    let why = if work >= most { "the search ended at its limit" } else { "rounding ended the search" };
+    if answer.factor.is_none() {
+        let note = format!("no collapse state with the laws' own flow is below {lower:.9} (proved)");
+        answer.notes.push(note);
+    } else if known - lower > 2.0 * BRANCHING.gap * known.abs() {
+        answer.notes.push(format!(
+            "the least load factor of the laws' own flow lies between {lower:.9} (proved) and {known:.9} (found): {why}"
+        ));
+    }
+    answer
+}
