@@ -9,6 +9,7 @@ mod block_program;
 pub mod chain;
 pub mod conic;
 mod equilibrium;
+mod nearest;
 pub mod nonassociated;
 mod recovery;
 #[cfg(test)]

@@ -1,41 +1,8 @@
 //! Fields and mechanisms to rounding from the known yielding and moving rows.
 
+use super::nearest::nearest;
 use super::systems::Systems;
-use crate::limit::settings::SETTINGS;
 use voussoir_core::limit::{JointForce, LimitProblem, SparseRow, Velocity, with_unit_power};
-use voussoir_core::linear::{Entries, SparseLdlt};
-
-/// Returns the solution of J z = h nearest to `start`, and its greatest residual.
-fn nearest(rows: &[SparseRow], right: &[f64], start: Vec<f64>) -> Option<(Vec<f64>, f64)> {
-    let (n, m) = (start.len(), rows.len());
-    let mut entries: Entries = (0..n).map(|j| (j, j, 1.0)).collect();
-    for (i, row) in rows.iter().enumerate() {
-        entries.push((n + i, n + i, -SETTINGS.shift));
-        for &(j, v) in row {
-            entries.push((n + i, j, v));
-            entries.push((j, n + i, v));
-        }
-    }
-    let factorised = SparseLdlt::new(n + m, n, &entries)?;
-    let mut z = start;
-    let mut best: Option<(Vec<f64>, f64)> = None;
-    for _ in 0..12 {
-        let residual: Vec<f64> =
-            rows.iter().zip(right).map(|(row, h)| row.iter().map(|&(j, v)| v * z[j]).sum::<f64>() - h).collect();
-        let worst = residual.iter().fold(0.0f64, |w, r| w.max(r.abs()));
-        if best.as_ref().is_none_or(|b| worst < b.1) {
-            best = Some((z.clone(), worst));
-        }
-        if worst < SETTINGS.exhausted {
-            break;
-        }
-        let mut load = vec![0.0; n];
-        load.extend(&residual);
-        let step = factorised.solve(&load)?;
-        (0..n).for_each(|j| z[j] -= step[j]);
-    }
-    best
-}
 
 impl Systems {
     /// Returns the force variables and θ nearest to `start` in equilibrium with these pairs on their yield surface, and
@@ -129,22 +96,5 @@ impl Systems {
             }
         }
         gamma
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The solution of x + y = 2 nearest to the origin is (1, 1); contradictory equations leave a residual.
-    #[test]
-    fn the_nearest_solution_is_found() {
-        let row: SparseRow = vec![(0, 1.0), (1, 1.0)];
-        let (z, worst) = nearest(std::slice::from_ref(&row), &[2.0], vec![0.0; 2]).expect("a solution");
-        assert!(z.iter().all(|x| (x - 1.0).abs() < 1e-12) && worst < 1e-12, "{z:?}");
-        let (z, worst) = nearest(std::slice::from_ref(&row), &[2.0], vec![3.0, 1.0]).expect("a solution");
-        assert!((z[0] - 2.0).abs() < 1e-12 && z[1].abs() < 1e-12 && worst < 1e-12, "{z:?}");
-        let (_, worst) = nearest(&[row.clone(), row], &[2.0, 3.0], vec![0.0; 2]).expect("a best attempt");
-        assert!(worst > 0.4, "{worst}");
     }
 }

@@ -12,12 +12,13 @@
 //! scene. If the fields have no bound, no motion exists; the answer is the ray that proves it. Source: Iannuzzo et al.
 //! 2018, Meccanica 53 (rigid blocks under settlements by least energy).
 
+use super::nearest::nearest;
 use super::systems::{LARGEST, PIVOTS, Pair, Systems};
 use crate::limit::settings::SETTINGS;
+use crate::linear::largest;
 use crate::optimise::dense_simplex::{Dictionary, Equations, Feasibility};
-use nalgebra::{DMatrix, DVector};
 use voussoir_core::law::FlowRule;
-use voussoir_core::limit::{LimitProblem, SettlementAnswer, Velocity};
+use voussoir_core::limit::{LimitProblem, SettlementAnswer, SparseRow, Velocity};
 use voussoir_core::model::Wrenches;
 
 /// Greatest number of linear programs of a sequence.
@@ -133,7 +134,7 @@ fn own_flow(systems: &Systems, driven: &[f64]) -> Result<Vec<f64>, String> {
             reference.iter_mut().zip(&start).for_each(|(old, own)| *old += 0.5 * (own - *old));
             continue;
         };
-        let size = force.iter().fold(f64::MIN_POSITIVE, |most: f64, r| most.max(r.abs()));
+        let size = largest(&force).max(f64::MIN_POSITIVE);
         let moved = |pair: &Pair| (relief(pair, &force) - relief(pair, &reference)).abs();
         change = systems.pairs.iter().map(moved).fold(0.0, f64::max) / size;
         if change <= SETTINGS.balanced {
@@ -157,19 +158,10 @@ fn own_flow(systems: &Systems, driven: &[f64]) -> Result<Vec<f64>, String> {
 /// Corrects a field near its fixed point: the tight pairs of its program move onto the yield surface itself.
 fn onto_yield(systems: &Systems, program: &Systems, force: &[f64]) -> Option<Vec<f64>> {
     let tight = tight(program, force);
-    let mut matrix = DMatrix::zeros(systems.equilibrium.len() + tight.len(), systems.forces);
-    let mut values = DVector::zeros(matrix.nrows());
-    let balance = systems.equilibrium.iter().zip(systems.fixed.iter().map(|w| -w));
     let yields = tight.iter().map(|&i| (&systems.pairs[i].normal, systems.pairs[i].bound));
-    for (row, (entries, value)) in balance.chain(yields).enumerate() {
-        entries.iter().for_each(|&(j, v)| matrix[(row, j)] += v);
-        values[row] = value - entries.iter().map(|&(j, v)| v * force[j]).sum::<f64>();
-    }
-    let correction = least_squares(matrix, &values, "forces").ok()?;
-    let moved: Vec<f64> = force.iter().zip(&correction).map(|(r, by)| r + by).collect();
-    let size = moved.iter().fold(f64::MIN_POSITIVE, |most: f64, r| most.max(r.abs()));
-    let excess = |pair: &Pair| pair.normal.iter().map(|&(j, v)| v * moved[j]).sum::<f64>() - pair.bound;
-    systems.pairs.iter().all(|pair| excess(pair) <= SETTINGS.balanced * size).then_some(moved)
+    let moved = nearest_to(force.to_vec(), balance(systems).chain(yields), "forces").ok()?;
+    let least = -SETTINGS.balanced * largest(&moved).max(f64::MIN_POSITIVE);
+    (0..systems.pairs.len()).all(|i| systems.slack(i, &moved) >= least).then_some(moved)
 }
 
 /// Returns the field of most work of the supports against the blocks, in units of force; `None` without a bound.
@@ -204,17 +196,9 @@ fn field(systems: &Systems, driven: &[f64]) -> Result<Option<Vec<f64>>, String> 
         return Err("the program of the field took too many pivots".into());
     }
     // The forces for these slacks and this work.
-    let height = systems.equilibrium.len() + pairs + 1;
-    let mut matrix = DMatrix::zeros(height, free);
-    let mut values = DVector::zeros(height);
-    let sides = systems.equilibrium.iter().zip(systems.fixed.iter().map(|w| -w));
     let yields =
         systems.pairs.iter().enumerate().map(|(i, pair)| (&pair.normal, pair.bound - program.value(i).max(0.0)));
-    for (row, (entries, value)) in sides.chain(yields).chain([(&work, least)]).enumerate() {
-        entries.iter().for_each(|&(j, v)| matrix[(row, j)] += v);
-        values[row] = value;
-    }
-    least_squares(matrix, &values, "forces").map(Some)
+    nearest_to(vec![0.0; free], balance(systems).chain(yields).chain([(&work, least)]), "forces").map(Some)
 }
 
 /// Returns balanced forces without loads, the greatest force one, that prove that no motion fits the supports (Farkas'
@@ -241,52 +225,41 @@ fn ray(systems: &Systems, driven: &[f64]) -> Result<Option<Vec<f64>>, String> {
     // The least sum of slacks selects one vertex with few forces.
     let slacks: Vec<(usize, f64)> = (0..pairs).map(|i| (i, 1.0)).collect();
     program.minimise(&slacks, PIVOTS);
-    let mut matrix = DMatrix::zeros(systems.equilibrium.len() + pairs + 1, free);
-    let mut values = DVector::zeros(matrix.nrows());
     let flows = systems.pairs.iter().enumerate().map(|(i, pair)| (&pair.flow, -program.value(i).max(0.0)));
     let balance = systems.equilibrium.iter().map(|entries| (entries, 0.0));
-    for (row, (entries, value)) in balance.chain(flows).chain([(&work, -1.0)]).enumerate() {
-        entries.iter().for_each(|&(j, v)| matrix[(row, j)] += v);
-        values[row] = value;
-    }
-    let mut ray = least_squares(matrix, &values, "ray")?;
-    let greatest = ray.iter().fold(f64::MIN_POSITIVE, |most: f64, r| most.max(r.abs()));
+    let mut ray = nearest_to(vec![0.0; free], balance.chain(flows).chain([(&work, -1.0)]), "ray")?;
+    let greatest = largest(&ray).max(f64::MIN_POSITIVE);
     ray.iter_mut().for_each(|r| *r /= greatest);
     Ok(Some(ray))
 }
 
-/// Returns the least x among all solutions of the equations.
-fn least_squares(matrix: DMatrix<f64>, right: &DVector<f64>, what: &str) -> Result<Vec<f64>, String> {
-    let (rows, columns) = matrix.shape();
-    if columns == 0 {
-        return Ok(Vec::new());
+/// Returns the rows of equilibrium with their right-hand sides.
+fn balance(systems: &Systems) -> impl Iterator<Item = (&SparseRow, f64)> {
+    systems.equilibrium.iter().zip(systems.fixed.iter().map(|w| -w))
+}
+
+/// Returns the solution of the equations, given as rows with their right-hand sides, that is nearest to `start`.
+fn nearest_to<'a>(
+    start: Vec<f64>,
+    equations: impl Iterator<Item = (&'a SparseRow, f64)>,
+    what: &str,
+) -> Result<Vec<f64>, String> {
+    if start.is_empty() {
+        return Ok(start);
     }
-    // Rows of zeros give at least as many rows as columns.
-    let high = matrix.clone().resize_vertically(rows.max(columns), 0.0);
-    let tall = right.clone().resize_vertically(rows.max(columns), 0.0);
-    let svd = high
-        .clone()
-        .try_svd(true, true, f64::EPSILON, 10_000)
-        .ok_or_else(|| format!("no singular values of the {what}"))?;
-    let least = SETTINGS.admissible * svd.singular_values.max();
-    let mut x = svd.solve(&tall, least).map_err(|why| format!("{what}: {why}"))?;
-    let rest = &tall - &high * &x;
-    x += svd.solve(&rest, least).map_err(|why| format!("{what}: {why}"))?;
-    let left = (right - matrix * &x).amax();
-    if left > SETTINGS.active * right.amax().max(f64::MIN_POSITIVE) {
+    let (rows, right): (Vec<SparseRow>, Vec<f64>) = equations.map(|(row, value)| (row.clone(), value)).unzip();
+    let (x, left) =
+        nearest(&rows, &right, start).ok_or_else(|| format!("no factorisation gives the {what} of the settlement"))?;
+    if left > SETTINGS.active * largest(&right).max(f64::MIN_POSITIVE) {
         return Err(format!("the {what} of the settlement leave {left:.1e} of their equations"));
     }
-    Ok(x.iter().copied().collect())
+    Ok(x)
 }
 
 /// Returns the pairs without slack.
 fn tight(systems: &Systems, force: &[f64]) -> Vec<usize> {
-    let size = force.iter().fold(0.0, |a: f64, r| a.max(r.abs()));
-    let slack = |i: usize| {
-        let pair = &systems.pairs[i];
-        pair.bound - pair.normal.iter().map(|&(j, v)| v * force[j]).sum::<f64>()
-    };
-    (0..systems.pairs.len()).filter(|i| slack(*i) <= SETTINGS.active * size).collect()
+    let least = SETTINGS.active * largest(force);
+    (0..systems.pairs.len()).filter(|i| systems.slack(*i, force) <= least).collect()
 }
 
 /// Returns γ of the tight pairs, in the relative interior of all solutions, and true if the solution is unique.
@@ -327,13 +300,13 @@ fn multipliers(systems: &Systems, driven: &[f64], tight: &[usize]) -> Result<(Ve
 
 /// Returns q with Eᵀ q = −g_s − Dᵀ γ.
 fn motion(systems: &Systems, driven: &[f64], tight: &[usize], multipliers: &[f64]) -> Result<Vec<f64>, String> {
-    let mut matrix = DMatrix::zeros(systems.forces, systems.equilibrium.len());
+    let mut rows: Vec<SparseRow> = vec![Vec::new(); systems.forces];
     for (i, entries) in systems.equilibrium.iter().enumerate() {
-        entries.iter().for_each(|&(j, v)| matrix[(j, i)] += v);
+        entries.iter().for_each(|&(j, v)| rows[j].push((i, v)));
     }
-    let mut right = DVector::from_iterator(systems.forces, driven.iter().map(|g| -g));
+    let mut right: Vec<f64> = driven.iter().map(|g| -g).collect();
     for (&i, gamma) in tight.iter().zip(multipliers) {
         systems.pairs[i].normal.iter().for_each(|&(j, v)| right[j] -= gamma * v);
     }
-    least_squares(matrix, &right, "motion")
+    nearest_to(vec![0.0; systems.equilibrium.len()], rows.iter().zip(right), "motion")
 }

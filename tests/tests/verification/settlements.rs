@@ -263,6 +263,17 @@ fn a_common_motion_of_all_supports_changes_nothing() {
     }
 }
 
+/// A flat arch of many voussoirs follows its support: the equations of its motion are solved to rounding, although they
+/// are ill conditioned.
+#[test]
+fn a_flat_arch_of_many_voussoirs_follows_its_support() {
+    let settlement = "{ support = \"left\", displacement = [0.01, -0.02] }";
+    let text = changed(&rigid("coulomb_associated", settlement, "", ""), "voussoirs = 15", "voussoirs = 51");
+    let result = answered(&changed(&text, "rise = 2.99", "rise = 1.5"));
+    assert_eq!(result.status, Status::Stands, "{:?}", result.notes);
+    passes(&result);
+}
+
 /// Rigid blocks whose loads cannot be carried do not settle.
 #[test]
 fn what_does_not_stand_before_does_not_settle() {

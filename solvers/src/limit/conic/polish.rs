@@ -8,6 +8,7 @@
 
 use super::interior_point::Pair;
 use super::system::System;
+use crate::limit::nearest::nearest;
 use crate::limit::settings::SETTINGS;
 use voussoir_core::limit::SparseRow;
 use voussoir_core::linear::{Entries, SparseLdlt};
@@ -64,16 +65,8 @@ pub fn polish(system: &System, approximate: &Pair) -> Option<Polished> {
 /// Returns the interior point moved the shortest way to equilibrium, for use if the polish does not converge. Its
 /// slacks are its own and its motion is that of the conic solver; the certificate checks it.
 pub fn balanced(system: &System, approximate: &Pair) -> Option<Pair> {
-    let (n, delta) = (system.variables, SETTINGS.shift);
-    let factorised = SparseLdlt::new(n + system.equations.len(), n, &saddle(system, &[], delta))?;
-    let mut pair = approximate.clone();
-    for _ in 0..4 {
-        let mut right = vec![0.0; n];
-        right.extend(system.equations.iter().zip(&system.right).map(|(row, b)| dot(row, &pair.x) - b));
-        let step = factorised.solve(&right)?;
-        (0..n).for_each(|j| pair.x[j] -= step[j]);
-    }
-    Some(pair)
+    let (x, _) = nearest(&system.equations, &system.right, approximate.x.clone())?;
+    Some(Pair { x, ..approximate.clone() })
 }
 
 fn polish_with(system: &System, approximate: &Pair, delta: f64) -> Option<Polished> {
