@@ -123,25 +123,23 @@ impl<E: Factorised> BorderedSystem<E> {
         &self.held.equations
     }
 
-    /// Returns the control row c, w and c·w, if an unknown is held in the control's place.
-    pub fn border(&self) -> Option<(&[f64], &[f64], f64)> {
-        match (&self.held.last, &self.border) {
-            (Last::Unknown(w), Some((control, along))) => Some((control, w, *along)),
-            _ => None,
-        }
+    /// Moves a solution z of the equations above the control along w until c·z has a value. z has the unknowns from
+    /// `first`; the control has none before them.
+    pub fn onto_control(&self, z: &mut [f64], first: usize, value: f64) {
+        let (Last::Unknown(w), Some((control, along))) = (&self.held.last, &self.border) else { return };
+        let t = (value - inner(&control[first..], z)) / along;
+        z.iter_mut().zip(&w[first..]).for_each(|(z, w)| *z += t * w);
     }
 
     /// Solves once, without refinement.
     pub fn apply(&self, right: &[f64]) -> Option<Vec<f64>> {
-        let (Last::Unknown(w), Some((control, along))) = (&self.held.last, &self.border) else {
+        if self.border.is_none() {
             return self.held.equations.apply(right);
-        };
-        let last = right.len() - 1;
+        }
         let mut above = right.to_vec();
-        above[last] = 0.0;
+        let value = std::mem::take(above.last_mut()?);
         let mut z = self.held.equations.apply(&above)?;
-        let t = (right[last] - inner(control, &z)) / along;
-        z.iter_mut().zip(w).for_each(|(z, w)| *z += t * w);
+        self.onto_control(&mut z, 0, value);
         z.iter().all(|v| v.is_finite()).then_some(z)
     }
 

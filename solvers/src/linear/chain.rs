@@ -12,9 +12,9 @@
 //! added terms.
 
 use super::blocks::GapRows;
+use super::condensed::inverse;
 use super::csr::CsrMatrix;
 use super::factorised::{Factorised, row_error};
-use crate::settings::SETTINGS;
 use std::rc::Rc;
 use voussoir_core::linear::{FrontRows, FrontalLu};
 
@@ -76,14 +76,7 @@ pub struct ChainFactors {
 
 /// Returns P⁻¹ of a point without gaps in its rows.
 fn own_inverse(rows: &PointRows) -> Option<[[f64; 2]; 2]> {
-    if rows.gap != [[0.0; 2]; 2] {
-        return None;
-    }
-    let at = |i: usize, j: usize| rows.force[i][j];
-    let determinant = at(0, 0) * at(1, 1) - at(0, 1) * at(1, 0);
-    let size = [0, 1].map(|i| at(i, 0).abs().max(at(i, 1).abs()));
-    let strong = determinant != 0.0 && determinant.abs() >= SETTINGS.small * size[0] * size[1];
-    strong.then(|| [[at(1, 1), -at(0, 1)], [-at(1, 0), at(0, 0)]].map(|row| row.map(|v| v / determinant)))
+    if rows.gap == [[0.0; 2]; 2] { inverse(rows.force) } else { None }
 }
 
 impl ChainRows {

@@ -15,6 +15,7 @@
 
 use super::csr::CsrMatrix;
 use super::factorised::{Factorised, row_error};
+use super::largest;
 use crate::settings::SETTINGS;
 use std::sync::Arc;
 use voussoir_core::linear::{Analysis, Entries, FrontalLu, SparseLu};
@@ -114,14 +115,16 @@ fn own_inverse(rows: [impl Iterator<Item = (usize, f64)>; 2], forces: usize) -> 
             }
         }
     }
-    let size = [0, 1].map(|k: usize| own[k][0].abs().max(own[k][1].abs()));
-    let determinant = own[0][0] * own[1][1] - own[0][1] * own[1][0];
-    let strong = (0..2).all(|k| size[k] >= SETTINGS.small * other[k])
-        && determinant.abs() >= SETTINGS.small * size[0] * size[1]
-        && determinant != 0.0;
-    strong.then(|| {
-        [[own[1][1] / determinant, -own[0][1] / determinant], [-own[1][0] / determinant, own[0][0] / determinant]]
-    })
+    let strong = (0..2).all(|k| own[k][0].abs().max(own[k][1].abs()) >= SETTINGS.small * other[k]);
+    if strong { inverse(own) } else { None }
+}
+
+/// Returns the inverse of the two rows of a point, if they are well conditioned.
+pub fn inverse([a, b]: [[f64; 2]; 2]) -> Option<[[f64; 2]; 2]> {
+    let size = [a, b].map(|row| row[0].abs().max(row[1].abs()));
+    let determinant = a[0] * b[1] - a[1] * b[0];
+    let strong = determinant != 0.0 && determinant.abs() >= SETTINGS.small * size[0] * size[1];
+    strong.then(|| [[b[1], -a[1]], [-b[0], a[0]]].map(|row| row.map(|v| v / determinant)))
 }
 
 /// Returns the contact points whose forces are condensed out, and the position of every point among them.
@@ -312,7 +315,6 @@ impl Condensed {
 
     /// Solves with refinement while it halves the residual, at most `refinements` times.
     pub fn solve(&self, right: &[f64], refinements: usize) -> Option<Vec<f64>> {
-        let norm = |v: &[f64]| v.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
         let mut x = self.apply(right)?;
         let mut left = if refinements > 0 { self.left(right, &x) } else { Vec::new() };
         for _ in 0..refinements {
@@ -320,7 +322,7 @@ impl Condensed {
             let better: Vec<f64> = x.iter().zip(&step).map(|(x, s)| x + s).collect();
             let now = self.left(right, &better);
             // No decrease: only rounding is left, or the residual is zero.
-            if norm(&now) >= norm(&left) {
+            if largest(&now) >= largest(&left) {
                 break;
             }
             (x, left) = (better, now);

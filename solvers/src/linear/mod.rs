@@ -1,4 +1,17 @@
 //! Sparse rows, rows in blocks, factorisations with changes of few rows, dense products, equations with a control row.
+//!
+//! Three methods solve equations of which a few rows have changed since they were factorised. They differ in the
+//! knowledge of the new rows:
+//!
+//! - [`updated`]: the new rows are not known. The right-hand sides of the old rows are the unknowns of a rate problem,
+//!   which is a complementarity problem (`event_path`).
+//! - `path::newton::solve::nearby`: the new rows are known, but all other rows have changed slightly, too. A small
+//!   linear system gives the effect of the new rows, and refinement the effect of the others (`newton_path`, chains).
+//! - `path::event::joint_chain::factors`: the inverses of the joints are stored and changed themselves. Later changes
+//!   start from the changed inverses, up to a thousand times (`event_path`, chains).
+//!
+//! [`bordered`] replaces one dense row, which is never part of the factors. In a simplex method each pivot exchanges a
+//! column of the basis, so that `optimise::dense_simplex` and `limit::chain` have their own small matrices.
 
 pub(crate) mod blocks;
 pub(crate) mod bordered;
@@ -17,13 +30,14 @@ pub(crate) fn inner(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Returns the greatest absolute value.
+/// Returns the greatest absolute value; NaN does not count.
 pub(crate) fn largest(values: &[f64]) -> f64 {
-    let eights = values.chunks_exact(8);
-    let rest = eights.remainder().iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-    let mut lanes = [0.0f64; 8];
+    // `f64::max` takes several instructions, because either number may be NaN.
+    let greater = |a: f64, b: f64| if b > a { b } else { a };
+    let (eights, rest) = values.as_chunks::<8>();
+    let mut lanes = [0.0; 8];
     for eight in eights {
-        lanes.iter_mut().zip(eight).for_each(|(lane, value)| *lane = lane.max(value.abs()));
+        (0..8).for_each(|i| lanes[i] = greater(lanes[i], eight[i].abs()));
     }
-    lanes.into_iter().fold(rest, f64::max)
+    lanes.into_iter().chain(rest.iter().map(|v| v.abs())).fold(0.0, greater)
 }

@@ -179,7 +179,9 @@ fn a_control_beside_the_equations_is_their_last_row() {
     let (entries, right) = (entries(), right());
     let control: Vec<f64> = (0..SIZE).map(|j| value(3, j)).collect();
     let own = bordered(&entries, &control);
-    assert!(own.border().is_some());
+    let mut along = vec![0.0; SIZE];
+    own.onto_control(&mut along, 0, 1.0);
+    assert!((inner(&control, &along) - 1.0).abs() < 1e-12);
     let x = own.apply(&right).unwrap();
     assert!(distance(&x, &solved(with_last_row(&entries, &control), &right)) < 1e-12);
     let (left, error) = own.left(&right, &x);

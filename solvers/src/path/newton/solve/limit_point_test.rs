@@ -230,7 +230,8 @@ pub fn active_facets(
 }
 
 /// Returns the rates of all unknowns except λ for a unit gap rate in each of the two directions of every point of the
-/// active set and, last, for λ̇ in the sense `direction`. `None` if linear algebra fails.
+/// active set and, last, for λ̇ in the sense `direction`. `None` if linear algebra fails. The factors of steps do not
+/// serve: their added terms are greater, so that the combinations of modes of a softening block are decided by rounding.
 pub fn responses_of(
     system: &StepSystem,
     state: &State,

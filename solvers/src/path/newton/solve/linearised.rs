@@ -20,6 +20,7 @@ use crate::linear::bordered::{BorderedFactors, BorderedSystem};
 use crate::linear::chain::{BodyRows, ChainFactors, ChainRows, PointRows};
 use crate::linear::condensed::Condensed;
 use crate::linear::csr::CsrMatrix;
+use crate::linear::largest;
 use crate::path::newton::model::derivatives::Gradient;
 use crate::path::newton::model::equations::Equations;
 use crate::path::newton::model::factors::{Kept, ModeEquations};
@@ -210,8 +211,7 @@ fn refined(bordered: &BorderedSystem<ModeEquations>, right: &[f64]) -> Option<(V
     let mut x = vec![0.0; right.len()];
     let mut rest = right.to_vec();
     let mut before = f64::INFINITY;
-    let norm = |v: &[f64]| v.iter().map(|x| x.abs()).fold(0.0, f64::max);
-    let aim = norm(right);
+    let aim = largest(right);
     if aim == 0.0 {
         return Some((x, true));
     }
@@ -221,7 +221,7 @@ fn refined(bordered: &BorderedSystem<ModeEquations>, right: &[f64]) -> Option<(V
         x.iter_mut().zip(&step).for_each(|(x, s)| *x += s);
         let (left, error) = bordered.left(right, &x);
         rest = left;
-        let now = norm(&rest);
+        let now = largest(&rest);
         if now < before {
             best.copy_from_slice(&x);
         }
@@ -232,6 +232,6 @@ fn refined(bordered: &BorderedSystem<ModeEquations>, right: &[f64]) -> Option<(V
         before = now;
     }
     // The remaining residual is rounding of the solution, or the system has no solution.
-    let size = norm(&best).max(aim);
+    let size = largest(&best).max(aim);
     Some((best, before <= 1e-9 * size))
 }

@@ -12,7 +12,7 @@ use super::linearised::{all_kept, chain_rows, factorised, solve_linear};
 use crate::linear::bordered::BorderedSystem;
 use crate::linear::chain::{ChainFactors, ChainRows};
 use crate::linear::factorised::Factorised;
-use crate::linear::inner;
+use crate::linear::{inner, largest};
 use crate::path::newton::model::equations::Equations;
 use crate::path::newton::model::factors::{Kept, ModeEquations};
 use crate::path::newton::model::state::State;
@@ -127,12 +127,7 @@ impl<'k> Nearby<'k> {
                 place.insert([unit(0)?, unit(1)?]).to_vec()
             }
         };
-        if let Some((control, w, along)) = self.bordered.border() {
-            for y in &mut columns {
-                let t = -inner(control, y) / along;
-                y.iter_mut().zip(w).for_each(|(y, w)| *y += t * w);
-            }
-        }
+        columns.iter_mut().for_each(|y| self.bordered.onto_control(y, 0, 0.0));
         Some(columns)
     }
 
@@ -157,21 +152,20 @@ impl<'k> Nearby<'k> {
     }
 
     fn solve(&self, right: &[f64], accuracy: f64) -> Option<Vec<f64>> {
-        let norm = |v: &[f64]| v.iter().map(|x| x.abs()).fold(0.0, f64::max);
-        let aim = norm(right);
+        let aim = largest(right);
         let (mut x, mut rest, mut before) = (vec![0.0; right.len()], right.to_vec(), aim);
         for _ in 0..MAX_REFINEMENTS {
             let step = self.apply(&rest)?;
             x.iter_mut().zip(&step).for_each(|(x, step)| *x += step);
             rest = self.rows.left(right, &x);
             rest.push(right[right.len() - 1] - inner(self.control, &x));
-            let now = norm(&rest);
+            let now = largest(&rest);
             if now <= accuracy * aim {
                 return Some(x);
             }
             if now.is_nan() || now > SETTINGS.contraction * before {
                 // The residual may be rounding of the solution.
-                return (now.min(before) <= accuracy * norm(&x)).then_some(x);
+                return (now.min(before) <= accuracy * largest(&x)).then_some(x);
             }
             before = now;
         }
@@ -282,7 +276,7 @@ mod tests {
                 factorised(&mut other, &start, &here, &control).expect("factors");
                 match solve_nearby(&mut other, &state, &there, (&control, &right), SETTINGS.ulps()) {
                     Some(y) => {
-                        let size = x.iter().fold(0.0, |a: f64, v| a.max(v.abs()));
+                        let size = largest(&x);
                         let off = x.iter().zip(&y).fold(0.0, |a: f64, (x, y)| a.max((x - y).abs()));
                         assert!(off <= 1e-8 * size, "{turn}: {off:e} of {size:e}");
                         solved += 1;

@@ -6,7 +6,6 @@ use super::tangent::tangent_at;
 use crate::contact::facet::slack;
 use crate::contact::mode::ContactMode;
 use crate::linear::bordered::BorderedSystem;
-use crate::linear::inner;
 use crate::path::newton::model::control::Control;
 use crate::path::newton::model::factors::ModeEquations;
 use crate::path::newton::model::state::State;
@@ -42,13 +41,10 @@ fn held_factor(system: &mut StepSystem, state: &State) -> Option<BorderedSystem<
 /// Returns the motions that solve the equations for some right-hand sides.
 fn solved(held: &BorderedSystem<ModeEquations>, rights: &[Vec<f64>], first: usize) -> Option<Vec<Vec<f64>>> {
     let mut found = held.equations().motions(first, rights)?;
-    if let Some((control, w, along)) = held.border() {
-        for z in &mut found {
-            let t = -inner(&control[first..], z) / along;
-            z.iter_mut().zip(&w[first..]).for_each(|(z, w)| *z += t * w);
-        }
+    for z in &mut found {
+        held.onto_control(z, first, 0.0);
+        z.pop();
     }
-    found.iter_mut().for_each(|z| z.truncate(z.len() - 1));
     Some(found)
 }
 
