@@ -99,7 +99,10 @@ impl JointChain {
             let resultants = self.sections.resultants(&load.wrench);
             let section = |f: &Factor| self.sections.all[f.joint.section].statics(&resultants[f.joint.section]);
             self.load.resultants = self.factors.all.iter().map(section).collect();
-            (self.load.step, self.updates.ready) = (Some(step), false);
+            (self.load.step, self.rates) = (Some(step), None);
+            if self.updates.ready {
+                self.respond_to(load);
+            }
         }
         if !self.updates.ready {
             return self.factorise(system, load, modes);
@@ -130,6 +133,13 @@ impl JointChain {
             return None;
         }
         self.factors.factorise()?;
+        self.respond_to(load);
+        self.updates.ready = true;
+        Some(())
+    }
+
+    /// Computes all responses in the present modes.
+    fn respond_to(&mut self, load: &Load) {
         let n = 3 * self.sections.cycles + 1;
         let columns = n + 3 * self.columns.weak.len();
         let mut right = Vec::with_capacity(self.joints());
@@ -148,8 +158,6 @@ impl JointChain {
         }
         self.columns.responses = self.factors.solve(right.clone());
         self.refine_responses(right);
-        self.updates.ready = true;
-        Some(())
     }
 
     /// Refines all responses by one step.

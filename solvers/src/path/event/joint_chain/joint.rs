@@ -3,6 +3,7 @@
 use super::sections::{Section, Sections};
 use crate::contact::mode::ContactMode;
 use crate::linear::dense::{add_product, dot};
+use crate::linear::largest;
 use crate::path::system::System;
 use crate::settings::SETTINGS;
 use nalgebra::{DMatrix, Vector3};
@@ -82,10 +83,10 @@ struct Shared(Vec<Rc<DMatrix<f64>>>);
 
 impl Shared {
     fn of(&mut self, matrix: DMatrix<f64>) -> Rc<DMatrix<f64>> {
-        let size = matrix.amax();
+        let least = SETTINGS.negligible() * largest(matrix.as_slice());
         let same = |other: &&Rc<DMatrix<f64>>| {
-            other.shape() == matrix.shape()
-                && other.iter().zip(&matrix).all(|(a, b)| (a - b).abs() <= SETTINGS.negligible() * size)
+            let mut pairs = other.as_slice().iter().zip(matrix.as_slice());
+            other.shape() == matrix.shape() && pairs.all(|(a, b)| (a - b).abs() <= least)
         };
         if let Some(known) = self.0.iter().find(same) {
             return known.clone();

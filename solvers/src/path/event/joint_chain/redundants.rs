@@ -9,10 +9,9 @@ use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 /// Greatest number of joints with a separate twist; with more, the whole system is solved.
 pub const MOST_WEAK: usize = 24;
 
-/// Returns the twist of a joint in a column of its unknowns.
-fn twist(factor: &Factor, columns: &DMatrix<f64>, column: usize) -> Vector3<f64> {
-    let m = 2 * factor.joint.contacts.len();
-    Vector3::from_fn(|i, _| columns[(m + i, column)])
+/// Returns the twist of a joint: the last three of its unknowns.
+fn twist(unknowns: &[f64]) -> Vector3<f64> {
+    Vector3::from_column_slice(&unknowns[unknowns.len() - 3..])
 }
 
 /// The rates whose cycles the redundants close: for λ̇ = 1, or for the residual in a step of refinement.
@@ -42,22 +41,22 @@ pub fn closing(
     for (e, factor) in factors.iter().enumerate() {
         let section = &sections.all[factor.joint.section];
         let to_origin: Matrix3<f64> = section.to_centre.transpose();
-        let m = 2 * factor.joint.contacts.len();
         let w = weak.iter().position(|w| *w == e);
-        let own = |own: &[Vec<f64>]| Vector3::new(own[e][m], own[e][m + 1], own[e][m + 2]);
+        let height = responses[e].nrows();
+        let by = |j: usize| twist(&responses[e].as_slice()[..height * (j + 1)]);
         let (constant, before) = match open {
-            Open::Load => (twist(factor, &responses[e], n), Vector3::zeros()),
-            Open::Refined(rates, added) => (twist(factor, &added[e], 0), own(rates)),
+            Open::Load => (by(n), Vector3::zeros()),
+            Open::Refined(rates, added) => (twist(added[e].as_slice()), twist(&rates[e])),
             Open::Corrected(rates) => {
                 let given = w.map(|w| Vector3::from_fn(|i, _| rates.share[n + 1 + 3 * w + i]));
-                let twist = own(&rates.own);
+                let twist = twist(&rates.own[e]);
                 (twist - given.unwrap_or(twist), given.unwrap_or(twist))
             }
         };
         if section.shares.iter().any(|s| *s != 0.0) {
             let shares = || section.shares.iter().enumerate().filter(|s| *s.1 != 0.0);
             for j in 0..size {
-                let v = to_origin * twist(factor, &responses[e], column(j));
+                let v = to_origin * by(column(j));
                 shares().for_each(|(k, share)| (0..3).for_each(|i| matrix[(3 * k + i, j)] += share * v[i]));
             }
             let constant = to_origin * (constant + before);
@@ -66,9 +65,7 @@ pub fn closing(
         if let Some(w) = w {
             let at = n + 3 * w;
             for i in 0..3 {
-                for j in 0..size {
-                    matrix[(at + i, j)] = twist(factor, &responses[e], column(j))[i];
-                }
+                (0..size).for_each(|j| matrix[(at + i, j)] = by(column(j))[i]);
                 matrix[(at + i, at + i)] -= 1.0;
                 right[at + i] = -constant[i];
             }
