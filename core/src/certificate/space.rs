@@ -169,10 +169,10 @@ impl<'a> Check<'a> {
             let certificate = std::mem::replace(&mut self.certificate, Certificate::blank());
             match bounds {
                 Some(bounds) if certificate.passed => {
-                    let (status, bounds, greatest) = match claim.non_associated {
-                        Some(own) if status == Status::Collapse => self.least(claim, own, bounds),
-                        _ if status == Status::Stands => (status, bounds, Greatest::Open),
-                        _ => (status, bounds, Greatest::ProvedOptimal),
+                    let greatest = match claim.non_associated {
+                        Some(own) if status == Status::Collapse => self.least(own, bounds),
+                        _ if status == Status::Stands => Greatest::Open,
+                        _ => Greatest::ProvedOptimal,
                     };
                     return SpaceVerdict { certificate, status, bounds, greatest };
                 }
@@ -183,24 +183,18 @@ impl<'a> Check<'a> {
         self.open(claim, gap, first.unwrap_or_else(Certificate::blank))
     }
 
-    /// Returns the verdict on the least load with the laws' own flow of a certified state. Without a search the bounds are those of
-    /// the state; a search that proves no lower end leaves the least load open.
-    fn least(
-        &self,
-        claim: &SpaceClaim,
-        own: &SpaceNonAssociated,
-        bounds: [Option<f64>; 2],
-    ) -> (Status, [Option<f64>; 2], Greatest) {
-        let ([Some(lower), Some(factor)], Some(_)) = (bounds, own.searched) else {
-            return (Status::Collapse, bounds, Greatest::Open);
-        };
-        if factor - lower <= CLOSED * factor.abs().max(self.factor_scale()) {
-            return (Status::Collapse, bounds, Greatest::ProvedOptimal);
+    /// Returns how far a state with the laws' own flow is known to be the least one.
+    fn least(&self, own: &SpaceNonAssociated, bounds: [Option<f64>; 2]) -> Greatest {
+        match (bounds, own.searched) {
+            ([Some(lower), Some(factor)], Some(_)) if self.closed(lower, factor) => Greatest::ProvedOptimal,
+            (_, Some(_)) => Greatest::Bracketed,
+            _ => Greatest::Open,
         }
-        if lower > claim.start {
-            return (Status::Collapse, bounds, Greatest::Bracketed);
-        }
-        (Status::Open, [None, Some(factor)], Greatest::Open)
+    }
+
+    /// Returns true if a search has closed the bracket of the least load.
+    fn closed(&self, lower: f64, factor: f64) -> bool {
+        factor - lower <= CLOSED * factor.abs().max(self.factor_scale())
     }
 
     /// Returns the lower end that a search proves. `None` if the answer has no search, or if the search proves nothing.
@@ -305,6 +299,8 @@ impl<'a> Check<'a> {
         let lower = self.searched(claim, own).unwrap_or(claim.start);
         if lower > factor {
             self.certificate.fail(format!("the lower bound {lower} is above the factor"));
+        } else if own.searched.is_some() && lower <= claim.start && !self.closed(lower, factor) {
+            self.certificate.fail("no lower bound of the least load is proved");
         }
         Some([lower, factor])
     }
@@ -313,7 +309,8 @@ impl<'a> Check<'a> {
     fn state(&mut self, claim: &SpaceClaim, own: &SpaceNonAssociated, gap: f64) -> Option<f64> {
         self.certificate = Certificate::blank();
         let at = SpaceClaim { factor: Some(claim.field_factor), target: f64::INFINITY, ..*claim };
-        let found = self.own_flow(&at, own, gap).filter(|_| self.certificate.passed);
+        let found = SpaceNonAssociated { searched: None, ..own.clone() };
+        let found = self.own_flow(&at, &found, gap).filter(|_| self.certificate.passed);
         found.map(|[_, factor]| factor)
     }
 
@@ -690,19 +687,18 @@ mod tests {
         let verdict = certify_space(&problem, &idle, 1e-8);
         assert_eq!((verdict.status, verdict.bounds), (Status::Open, [None, Some(0.4)]));
         // A search of this project bounds the least load; a search of another project is refused.
-        for (lower, status, low, greatest) in [
-            (0.3999999, Status::Collapse, Some(0.3999999), Greatest::ProvedOptimal),
-            (0.3, Status::Collapse, Some(0.3), Greatest::Bracketed),
-            (0.0, Status::Open, None, Greatest::Open),
-            (0.41, Status::Open, None, Greatest::Open),
+        for (lower, status, bounds, greatest) in [
+            (0.3999999, Status::Collapse, [Some(0.3999999), Some(0.4)], Greatest::ProvedOptimal),
+            (0.3, Status::Collapse, [Some(0.3), Some(0.4)], Greatest::Bracketed),
+            (0.0, Status::Open, [None, Some(0.4)], Greatest::Open),
+            (0.41, Status::Stalled, [None; 2], Greatest::Open),
         ] {
             let searched = SpaceNonAssociated { searched: Some(lower), ..honest.clone() };
             let verdict = certify_space(&problem, &state(&forces, &searched), 1e-8);
-            let upper = Some(0.4);
-            assert_eq!((verdict.status, verdict.bounds, verdict.greatest), (status, [low, upper], greatest));
+            assert_eq!((verdict.status, verdict.bounds, verdict.greatest), (status, bounds, greatest));
             let stranger = SpaceClaim { search_is_trusted: false, ..state(&forces, &searched) };
             let verdict = certify_space(&problem, &stranger, 1e-8);
-            assert_eq!((verdict.status, verdict.bounds), (Status::Open, [None, upper]), "{lower}");
+            assert_eq!((verdict.status, verdict.bounds), (Status::Open, [None, Some(0.4)]), "{lower}");
         }
     }
 

@@ -30,13 +30,19 @@ pub fn answer(
     answer.counters.insert("search_parts".into(), parts);
     own.searched = Some(lower);
     let why = if work >= most { "the search ended at its limit" } else { "rounding ended the search" };
-    if answer.factor.is_none() {
-        let note = format!("no collapse state with the laws' own flow is below {lower:.9} (proved)");
-        answer.notes.push(note);
-    } else if known - lower > 2.0 * BRANCHING.gap * known.abs() {
-        answer.notes.push(format!(
+    let note = if answer.factor.is_none() {
+        format!("no collapse state with the laws' own flow is below {lower:.9} (proved)")
+    } else if known - lower <= 2.0 * BRANCHING.gap * known.abs() {
+        return answer;
+    } else if lower > start {
+        format!(
             "the least load factor of the laws' own flow lies between {lower:.9} (proved) and {known:.9} (found): {why}"
-        ));
-    }
+        )
+    } else {
+        format!(
+            "the least load factor of the laws' own flow is at most {known:.9} (found); no lower end is proved: {why}"
+        )
+    };
+    answer.notes.push(note);
     answer
 }

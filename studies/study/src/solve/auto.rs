@@ -101,12 +101,14 @@ pub fn limit_solvers<'a>(
     named.into_iter().chain(willing.map(|(card, solver)| (card.tag, solver.as_ref())))
 }
 
-/// Returns the limit solvers to try for a scene in space, in order.
+/// Returns the limit solvers to try for a scene in space, in order. Searches for loads with the laws' own flow take long, and are used only
+/// if the study names them.
 pub fn space_solvers(selected: &SelectedSolver) -> Vec<(&str, Arc<dyn LimitSolver>)> {
     if let SelectedSolver::Limit(tag, solver) = selected {
         return vec![(tag, solver.clone())];
     }
     let cards = by_cost(PluginKind::LimitSolver).into_iter().filter(|card| card.offers(Capability::SPACE));
+    let cards = cards.filter(|card| !card.offers(Capability::NON_ASSOCIATED));
     cards.filter_map(|card| Some((card.tag, Arc::from(built::<dyn LimitSolver>(card)?)))).collect()
 }
 
