@@ -236,6 +236,14 @@ pub fn least_work(program: &Program, rates: &[Cone]) -> Option<LeastWork> {
     evidence.lower.map(|field| LeastWork::Field(field.y, motion))
 }
 
+/// Returns forces, factor and motion of a program without repair: a first guess, which proves nothing.
+pub fn guess(program: &Program) -> Option<(Vec<Cone>, f64, Vec<f64>)> {
+    let mut route = Route { program, wrenches: wrenches(program), iterations: 0 };
+    let Solution { x, z, status, .. } = route.greatest(&program.varying, 0.0, None)?;
+    let solved = matches!(status, SolverStatus::Solved | SolverStatus::AlmostSolved);
+    solved.then_some((by_points(&x, program.points.len()), *x.last()?, z[..program.base.len()].to_vec()))
+}
+
 /// Solves a program by Clarabel. `None` if it refuses the data.
 pub fn run(program: &Program, held: bool, counters: &mut Counters) -> Option<Evidence> {
     let mut route = Route { program, wrenches: wrenches(program), iterations: 0 };

@@ -239,6 +239,18 @@ impl Program {
         };
         q.chunks_exact(6).zip(&self.poles).map(about).collect()
     }
+
+    /// Returns a motion in units of the program, with unit power of the varying loads, from velocities about the pole of the problem.
+    pub fn scaled_motion(&self, velocities: &[[f64; 6]]) -> Bodies {
+        let about = |(v, pole): (&[f64; 6], &Vec3)| {
+            let omega = Vec3::new(v[3], v[4], v[5]);
+            let (v, omega) = (Vec3::new(v[0], v[1], v[2]) + omega.cross(pole), omega * self.length);
+            [v.x, v.y, v.z, omega.x, omega.y, omega.z]
+        };
+        let motion: Bodies = velocities.iter().zip(&self.poles).flat_map(about).collect();
+        let power: f64 = motion.iter().zip(&self.varying).map(|(q, p)| q * p).sum();
+        motion.iter().map(|q| q / power).collect()
+    }
 }
 
 impl Member {

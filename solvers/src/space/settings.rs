@@ -145,6 +145,18 @@ pub struct JointSettings {
     pub reported: usize,
     /// Greatest number of iterations of a course, and of its steps.
     pub iterations: u64,
+    /// Number of rigid programs of a sequence.
+    pub programs: usize,
+    /// Normal force of all points of the first program of a second sequence, relative to their mean.
+    pub sticky: f64,
+    /// Cohesion and tensile strength of each point of these programs, relative to the mean normal force. Few joints then move.
+    pub few: f64,
+    /// Power of the first step from a rigid program.
+    pub guessed: f64,
+    /// Jumps, relative to the greatest, of points of a guess that neither slip nor open.
+    pub resting: [f64; 2],
+    /// Greatest number of bodies of a scene with refined guesses: they decompose dense matrices.
+    pub bodies: usize,
 }
 
 /// The numbers in use.
@@ -180,6 +192,12 @@ pub const JOINTS: JointSettings = JointSettings {
     longest: 16,
     reported: 20,
     iterations: 1000,
+    programs: 4,
+    sticky: 100.0,
+    few: 1e-3,
+    guessed: 30.0,
+    resting: [1e-3, 1e-5],
+    bodies: 100,
 };
 
 /// Numbers of the descent over mechanisms.

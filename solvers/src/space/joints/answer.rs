@@ -1,10 +1,12 @@
 //! The answer with the laws' own flow: the associated bound, and the least state that the courses find.
 
-use super::course::{End, State, course, live_load};
+use super::course::{End, State, course, dead_load, follow, live_load};
 use super::descent::{Descent, Dual, Found};
 use super::least::Associated;
 use super::loading::{Loaded, load};
 use super::point::Spring;
+use super::refine::refined;
+use super::rigid::{Guess, mean, sequence};
 use super::step::Joints;
 use crate::space::program::{Program, Side};
 use crate::space::settings::JOINTS;
@@ -57,6 +59,7 @@ pub fn answer(problem: &SpaceProblem, question: LimitQuestion, solve: Associated
         let lambda = (associated.field_factor - start) / program.unit;
         JOINTS.ratios.iter().for_each(|ratio| courses.run(*ratio, Some((field, lambda))));
     }
+    courses.sequences(known);
     let mut answer = courses.answer(associated);
     let open = matches!(verdict, Some(Verdict::Open(_))) || answer.factor.is_some_and(|factor| factor > max);
     match verdict {
@@ -130,23 +133,80 @@ impl<'a> Courses<'a> {
             }
         };
         let from = if from.is_some() { "the associated forces" } else { "zero stress" };
-        let why = match end {
-            End::Settled(state) => {
-                self.states.push(lowest(&self.descent, &mut joints, state, &mut self.counters));
-                None
+        match self.reached(&joints, end) {
+            Ok(first) => self.states.push(lowest(&self.descent, &mut joints, first, &mut self.counters)),
+            Err(why) => self.failures.push(format!("elastic joints with k_t/k_n = {ratio}, from {from}: {why}")),
+        }
+        self.count(&joints);
+    }
+
+    /// Returns true if guesses are refined: the scene is small, and slip does not dilate.
+    fn refines(&self) -> bool {
+        let SpaceProblem { bodies, contacts, .. } = self.descent.problem;
+        *bodies <= JOINTS.bodies && contacts.iter().all(|contact| contact.law.dilatancy == 0.0)
+    }
+
+    /// Returns the state at the end of a course or near it, or the reason why the course has no state.
+    fn reached(&mut self, joints: &Joints, end: End) -> Result<(Found, Dual), String> {
+        match end {
+            End::Settled(state) => Ok(found(&self.descent, joints, &state, &mut self.counters)),
+            End::Wanders([least, greatest], excess, State { lambda, forces, motion }) => {
+                let [factor, least, greatest] = [lambda, least, greatest].map(|lambda| self.factor(lambda));
+                let (field, motion) = (self.program.by_contacts(&forces), self.program.motion(&motion));
+                let guess = Guess { factor, field, motion };
+                let near = self.refines().then(|| refined(&self.descent, &guess, &mut self.counters)).flatten();
+                near.ok_or_else(|| {
+                    format!(
+                        "no state was reached; the last factors are between {least:.6} and {greatest:.6}, which is no bound, \
+                         with shear forces up to {excess:.1e} of the loads beyond friction"
+                    )
+                })
             }
-            End::Wanders([least, greatest], excess) => {
-                let [least, greatest] = [least, greatest].map(|lambda| self.factor(lambda));
-                Some(format!(
-                    "no state was reached; the last factors are between {least:.6} and {greatest:.6}, which is no bound, \
-                     with shear forces up to {excess:.1e} of the loads beyond friction"
-                ))
-            }
-            End::Stuck => Some("no step under the live load was solved".into()),
-            End::Fell => Some("no state under the dead load was found".into()),
+            End::Stuck => Err("no step under the live load was solved".into()),
+            End::Fell => Err("no state under the dead load was found".into()),
+        }
+    }
+
+    /// Runs sequences of rigid programs from the normal forces of the associated load, from those of elastic joints under dead load, and
+    /// from great ones, with which hardly any joint slips.
+    fn sequences(&mut self, associated: Option<&SpaceField>) {
+        let mut joints = self.joints(JOINTS.ratios[2]);
+        if !self.refines() || dead_load(&mut joints).is_none() {
+            return;
+        }
+        let forces: Vec<[f64; 3]> = joints.contacts.iter().map(|contact| contact.force).collect();
+        self.count(&joints);
+        let pressed = |field: &SpaceField| -> Vec<Vec<f64>> {
+            field.iter().map(|forces| forces.iter().map(|force| force[0].max(0.0)).collect()).collect()
         };
-        let told = why.map(|why| format!("elastic joints with k_t/k_n = {ratio}, from {from}: {why}"));
-        self.failures.extend(told);
+        let dead = pressed(&self.program.by_contacts(&forces));
+        let great = JOINTS.sticky * mean(&dead);
+        let sticky = dead.iter().map(|normals| vec![great; normals.len()]).collect();
+        let associated = associated.map(|field| ("the associated forces", pressed(field)));
+        let starts = associated.into_iter().chain([("the dead load", dead), ("great normal forces", sticky)]);
+        starts.for_each(|(from, normals)| self.sequence(from, normals));
+    }
+
+    /// Runs a sequence of rigid programs, and a course from each guess that is not near a state.
+    fn sequence(&mut self, from: &str, normals: Vec<Vec<f64>>) {
+        let mut least: Option<(Found, Dual)> = None;
+        for guess in sequence(self.descent.problem, self.program.start, normals) {
+            let next = refined(&self.descent, &guess, &mut self.counters).or_else(|| {
+                let mut joints = self.joints(JOINTS.ratios[2]);
+                joints.press(&guess.field);
+                let lambda = (guess.factor - self.program.start) / self.program.unit;
+                let end = follow(&mut joints, lambda, self.program.scaled_motion(&guess.motion), JOINTS.guessed);
+                self.count(&joints);
+                self.reached(&joints, end).ok()
+            });
+            least = least.into_iter().chain(next).min_by(|a, b| a.0.factor.total_cmp(&b.0.factor));
+        }
+        let Some(first) = least else {
+            self.failures.push(format!("rigid blocks with fictitious cohesion, from {from}: no state was reached"));
+            return;
+        };
+        let mut joints = self.joints(JOINTS.ratios[2]);
+        self.states.push(lowest(&self.descent, &mut joints, first, &mut self.counters));
         self.count(&joints);
     }
 
@@ -242,7 +302,7 @@ fn spread(states: &[Found], courses: usize) -> Option<String> {
     let (count, least, greatest) = (states.len(), least.factor, greatest.factor);
     (near < count).then(|| {
         format!(
-            "{count} of {courses} courses of elastic joints end at a collapse state, {near} of them at the least one, which is given; the \
+            "{count} of {courses} searches end at a collapse state, {near} of them at the least one, which is given; the \
              factors are from {least:.9} to {greatest:.9}{local}"
         )
     })
@@ -250,8 +310,8 @@ fn spread(states: &[Found], courses: usize) -> Option<String> {
 
 /// Returns the lowest state that is reached from a state: the least one of its mechanism, then of the mechanism of joints that are
 /// loaded from there, and so on; at last those of mechanisms nearby.
-fn lowest(descent: &Descent, joints: &mut Joints, state: State, counters: &mut Counters) -> Found {
-    let (mut lowest, mut dual) = found(descent, joints, &state, counters);
+fn lowest(descent: &Descent, joints: &mut Joints, first: (Found, Dual), counters: &mut Counters) -> Found {
+    let (mut lowest, mut dual) = first;
     for _ in 0..JOINTS.rounds {
         joints.press(&lowest.field);
         let lambda = (lowest.factor - joints.program.start) / joints.program.unit;

@@ -25,8 +25,8 @@ pub struct State {
 pub enum End {
     /// A state, accurate within rounding.
     Settled(State),
-    /// Least and greatest factor of the last steps, and the greatest shear force beyond friction relative to the loads.
-    Wanders([f64; 2], f64),
+    /// Least and greatest factor of the last steps, the greatest shear force beyond friction relative to the loads, and the last step.
+    Wanders([f64; 2], f64, State),
     /// No step under the live load was solved.
     Stuck,
     /// The dead load was not carried.
@@ -82,10 +82,15 @@ pub fn course(joints: &mut Joints) -> End {
 }
 
 /// Runs the course from the present state in equilibrium at a factor.
-pub fn live_load(joints: &mut Joints, mut lambda: f64) -> End {
-    let mut rate = along(joints.program, 1.0);
+pub fn live_load(joints: &mut Joints, lambda: f64) -> End {
+    let rate = along(joints.program, 1.0);
+    follow(joints, lambda, rate, JOINTS.first)
+}
+
+/// Runs the course from the present forces at a factor, with a first guess of the rate and the power of the first step.
+pub fn follow(joints: &mut Joints, mut lambda: f64, mut rate: Bodies, first_power: f64) -> End {
     let compliance = compliance(joints);
-    let mut power = JOINTS.first * compliance;
+    let mut power = first_power * compliance;
     let first = joints.iterations;
     let most = first + JOINTS.iterations;
     let (mut lag, mut wait) = (0, 0);
@@ -122,7 +127,7 @@ pub fn live_load(joints: &mut Joints, mut lambda: f64) -> End {
         }
         power = (power * JOINTS.growth).min(JOINTS.greatest * compliance);
     }
-    wanders(joints, &factors, lambda)
+    wanders(joints, &factors, lambda, rate)
 }
 
 /// Returns the power of the live load per factor in a small first step.
@@ -166,7 +171,7 @@ pub fn settled(joints: &Joints, rate: &[f64], lambda: f64) -> bool {
 }
 
 /// Returns the end of a course without a state.
-fn wanders(joints: &Joints, factors: &[f64], lambda: f64) -> End {
+fn wanders(joints: &Joints, factors: &[f64], lambda: f64, motion: Bodies) -> End {
     if factors.is_empty() {
         return End::Stuck;
     }
@@ -177,5 +182,6 @@ fn wanders(joints: &Joints, factors: &[f64], lambda: f64) -> End {
         contact.force[1].hypot(contact.force[2]) - spring.friction * contact.force[0]
     };
     let excess = joints.contacts.iter().zip(&joints.springs).map(beyond).fold(0.0, f64::max);
-    End::Wanders([least, greatest], excess / joints.loads(lambda))
+    let forces = joints.contacts.iter().map(|contact| contact.force).collect();
+    End::Wanders([least, greatest], excess / joints.loads(lambda), State { lambda, forces, motion })
 }

@@ -124,7 +124,7 @@ fn below(problem: &SpaceProblem, next: &Found, found: &Found) -> bool {
 }
 
 /// Returns true if the motion follows the flow of the forces; the certificate checks the same.
-fn is_state(problem: &SpaceProblem, found: &Found) -> bool {
+pub fn is_state(problem: &SpaceProblem, found: &Found) -> bool {
     let force = |wrenches: &[Wrench]| wrenches.iter().map(|w| Vec3::new(w[0], w[1], w[2]).norm()).sum::<f64>();
     let loads = force(&problem.fixed) + found.factor.abs() * force(&problem.varying);
     let own = jumps(problem, &found.motion);
@@ -348,13 +348,13 @@ fn least_of_hull(vectors: &[DVector<f64>]) -> Vec<f64> {
     shares
 }
 
-fn matrix<'a>(rows: impl IntoIterator<Item = &'a DVector<f64>>, columns: usize) -> DMatrix<f64> {
+pub fn matrix<'a>(rows: impl IntoIterator<Item = &'a DVector<f64>>, columns: usize) -> DMatrix<f64> {
     let rows: Vec<_> = rows.into_iter().map(DVector::transpose).collect();
     if rows.is_empty() { DMatrix::zeros(0, columns) } else { DMatrix::from_rows(&rows) }
 }
 
 /// Returns the derivatives of the jump along an axis with respect to velocities and rotations times length of all bodies.
-fn row(problem: &SpaceProblem, contact: &SpaceContact, point: &Vec3, axis: &Vec3) -> DVector<f64> {
+pub fn row(problem: &SpaceProblem, contact: &SpaceContact, point: &Vec3, axis: &Vec3) -> DVector<f64> {
     let mut row = DVector::zeros(6 * problem.bodies);
     let moment = point.cross(axis) / problem.length;
     for (body, sign) in [(contact.plus, 1.0), (contact.minus, -1.0)] {
@@ -368,7 +368,7 @@ fn row(problem: &SpaceProblem, contact: &SpaceContact, point: &Vec3, axis: &Vec3
 }
 
 /// Returns the jumps (n, s, t) of all points, contact by contact.
-fn jumps(problem: &SpaceProblem, motion: &[SpaceVelocity]) -> Vec<[f64; 3]> {
+pub fn jumps(problem: &SpaceProblem, motion: &[SpaceVelocity]) -> Vec<[f64; 3]> {
     let of = |contact: &SpaceContact, point: &Vec3| {
         let at = |body: Option<usize>| body.map_or(Vec3::zeros(), |body| velocity_at(&motion[body], point));
         let apart = at(contact.plus) - at(contact.minus);

@@ -5,7 +5,9 @@
 //! they are a convex set. Its least factor is found by the solver of associated flow, which treats each slipping point as a contact
 //! without friction along (1, −μ d), and reduces the load of a known state.
 
+use crate::space::program::{Program, Side};
 use crate::space::settings::JOINTS;
+use crate::space::solve::run;
 use voussoir_core::law::FrictionCone;
 use voussoir_core::limit::{Counters, LimitQuestion};
 use voussoir_core::space::{PointSet, SpaceAnswer, SpaceContact, SpaceField, SpaceProblem, SpaceVelocity};
@@ -41,6 +43,9 @@ fn roles(problem: &SpaceProblem, jumps: &[[f64; 3]]) -> Vec<Vec<Role>> {
     problem.contacts.iter().map(|contact| contact.inner.points.iter().map(|_| role(contact)).collect()).collect()
 }
 
+/// The points of a contact that replaces others: contact and place of each.
+type Places = Vec<(usize, usize)>;
+
 /// Returns the points of a contact with a role, without areas.
 fn points(contact: &SpaceContact, keep: impl Fn(usize) -> bool) -> PointSet {
     let points: Vec<_> = contact.inner.points.iter().enumerate().filter(|(k, _)| keep(*k)).map(|(_, x)| *x).collect();
@@ -48,7 +53,7 @@ fn points(contact: &SpaceContact, keep: impl Fn(usize) -> bool) -> PointSet {
 }
 
 /// Returns the contacts that the roles leave, each with its points.
-fn replaced(problem: &SpaceProblem, roles: &[Vec<Role>]) -> Vec<(SpaceContact, Vec<(usize, usize)>)> {
+fn replaced(problem: &SpaceProblem, roles: &[Vec<Role>]) -> Vec<(SpaceContact, Places)> {
     let mut contacts = Vec::new();
     for (index, (contact, roles)) in problem.contacts.iter().zip(roles).enumerate() {
         let with =
@@ -81,6 +86,34 @@ pub struct Least {
     pub dual: Option<Vec<SpaceVelocity>>,
 }
 
+/// Returns the problem of the forces that fit a mechanism, with loads that fall from a factor; the roles of all points; and the points
+/// of each contact.
+fn reduced(problem: &SpaceProblem, factor: f64, jumps: &[[f64; 3]]) -> (SpaceProblem, Vec<Vec<Role>>, Vec<Places>) {
+    let roles = roles(problem, jumps);
+    let (contacts, places): (Vec<_>, Vec<_>) = replaced(problem, &roles).into_iter().unzip();
+    let wrenches = problem.fixed.iter().zip(&problem.varying);
+    let fixed = wrenches.map(|(w, p)| std::array::from_fn(|i| w[i] + factor * p[i])).collect();
+    let varying = problem.varying.iter().map(|p| p.map(|x| -x)).collect();
+    (SpaceProblem { contacts, fixed, varying, ..problem.clone() }, roles, places)
+}
+
+/// Returns a state of a mechanism with these jumps, at a factor below a given one or at this factor.
+pub fn known(
+    problem: &SpaceProblem,
+    factor: f64,
+    jumps: &[[f64; 3]],
+    counters: &mut Counters,
+) -> Option<(f64, SpaceField)> {
+    let (reduced, roles, places) = reduced(problem, factor, jumps);
+    let program = Program::new(&reduced, 0.0, Side::Inner);
+    let field = match run(&program, false, counters)?.lower {
+        Some(field) => field,
+        None => run(&program, true, counters)?.start?,
+    };
+    let forces = own_forces(problem, &roles, &places, &program.forces(&field.y));
+    Some((factor - field.lambda * program.unit, forces))
+}
+
 /// Returns the least state at or above `start` of a mechanism with these jumps, from a state at a factor.
 pub fn least(
     problem: &SpaceProblem,
@@ -89,12 +122,7 @@ pub fn least(
     jumps: &[[f64; 3]],
     counters: &mut Counters,
 ) -> Least {
-    let roles = roles(problem, jumps);
-    let (contacts, places): (Vec<_>, Vec<_>) = replaced(problem, &roles).into_iter().unzip();
-    let wrenches = problem.fixed.iter().zip(&problem.varying);
-    let fixed = wrenches.map(|(w, p)| std::array::from_fn(|i| w[i] + factor * p[i])).collect();
-    let varying = problem.varying.iter().map(|p| p.map(|x| -x)).collect();
-    let reduced = SpaceProblem { contacts, fixed, varying, ..problem.clone() };
+    let (reduced, roles, places) = reduced(problem, factor, jumps);
     let answer = solve(&reduced, LimitQuestion::Collapse { start: 0.0, max: factor - start });
     for (name, count) in answer.counters {
         *counters.entry(name).or_default() += count;
@@ -105,12 +133,7 @@ pub fn least(
 }
 
 /// Returns the forces of all points from the forces of the contacts that replace them.
-fn own_forces(
-    problem: &SpaceProblem,
-    roles: &[Vec<Role>],
-    places: &[Vec<(usize, usize)>],
-    forces: &SpaceField,
-) -> SpaceField {
+fn own_forces(problem: &SpaceProblem, roles: &[Vec<Role>], places: &[Places], forces: &SpaceField) -> SpaceField {
     let mut field: SpaceField = roles.iter().map(|roles| vec![[0.0; 3]; roles.len()]).collect();
     for (places, forces) in places.iter().zip(forces) {
         for ((contact, point), force) in places.iter().zip(forces) {
