@@ -270,7 +270,7 @@ impl Case<'_> {
 }
 
 /// Solves a program by the interior point method of this crate. `None` if memory is short.
-pub fn run(program: &Program, held: bool, counters: &mut Counters) -> Option<Evidence> {
+fn run(program: &Program, held: bool, counters: &mut Counters) -> Option<Evidence> {
     let mut method = InteriorPoint::new(program, held)?;
     let mut evidence = Evidence::default();
     let mut steps = 0;

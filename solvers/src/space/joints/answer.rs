@@ -134,10 +134,26 @@ impl<'a> Courses<'a> {
         };
         let from = if from.is_some() { "the associated forces" } else { "zero stress" };
         match self.reached(&joints, end) {
-            Ok(first) => self.states.push(lowest(&self.descent, &mut joints, first, &mut self.counters)),
+            Ok(first) => self.lower(&mut joints, first),
             Err(why) => self.failures.push(format!("elastic joints with k_t/k_n = {ratio}, from {from}: {why}")),
         }
         self.count(&joints);
+    }
+
+    /// Adds the lowest state that is reached from a state.
+    fn lower(&mut self, joints: &mut Joints, first: (Found, Dual)) {
+        let found = lowest(&self.descent, joints, first, &mut self.counters);
+        if self.is_later(&found) {
+            self.states.push(found);
+        } else {
+            self.failures.push("a mechanism has states down to the start of the stage".into());
+        }
+    }
+
+    /// Returns true if a state is above the start. Some mechanisms have states under the dead load alone, for example a block that turns on a
+    /// single point that carries.
+    fn is_later(&self, found: &Found) -> bool {
+        found.factor - self.program.start > JOINTS.differ * self.program.unit
     }
 
     /// Returns true if guesses are refined: the scene is small, and slip does not dilate.
@@ -199,6 +215,7 @@ impl<'a> Courses<'a> {
                 self.count(&joints);
                 self.reached(&joints, end).ok()
             });
+            let next = next.filter(|(found, _)| self.is_later(found));
             least = least.into_iter().chain(next).min_by(|a, b| a.0.factor.total_cmp(&b.0.factor));
         }
         let Some(first) = least else {
@@ -206,7 +223,7 @@ impl<'a> Courses<'a> {
             return;
         };
         let mut joints = self.joints(JOINTS.ratios[2]);
-        self.states.push(lowest(&self.descent, &mut joints, first, &mut self.counters));
+        self.lower(&mut joints, first);
         self.count(&joints);
     }
 

@@ -5,11 +5,9 @@
 //! they are a convex set. Its least factor is found by the solver of associated flow, which treats each slipping point as a contact
 //! without friction along (1, −μ d), and reduces the load of a known state.
 
-use crate::space::program::{Program, Side};
 use crate::space::settings::JOINTS;
-use crate::space::solve::run;
 use voussoir_core::law::FrictionCone;
-use voussoir_core::limit::{Counters, LimitQuestion};
+use voussoir_core::limit::{Counters, LimitQuestion, Status};
 use voussoir_core::space::{PointSet, SpaceAnswer, SpaceContact, SpaceField, SpaceProblem, SpaceVelocity};
 
 /// Solves a problem with associated flow.
@@ -97,21 +95,23 @@ fn reduced(problem: &SpaceProblem, factor: f64, jumps: &[[f64; 3]]) -> (SpacePro
     (SpaceProblem { contacts, fixed, varying, ..problem.clone() }, roles, places)
 }
 
-/// Returns a state of a mechanism with these jumps, at a factor below a given one or at this factor.
-pub fn known(
+/// Returns forces of a mechanism with these jumps that carry a factor.
+pub fn forces(
     problem: &SpaceProblem,
+    solve: Associated,
     factor: f64,
     jumps: &[[f64; 3]],
     counters: &mut Counters,
-) -> Option<(f64, SpaceField)> {
+) -> Option<SpaceField> {
     let (reduced, roles, places) = reduced(problem, factor, jumps);
-    let program = Program::new(&reduced, 0.0, Side::Inner);
-    let field = match run(&program, false, counters)?.lower {
-        Some(field) => field,
-        None => run(&program, true, counters)?.start?,
-    };
-    let forces = own_forces(problem, &roles, &places, &program.forces(&field.y));
-    Some((factor - field.lambda * program.unit, forces))
+    let answer = solve(&reduced, LimitQuestion::Admissible(0.0));
+    count(counters, &answer);
+    let field = answer.field.filter(|_| answer.status == Status::Stands)?;
+    Some(own_forces(problem, &roles, &places, &field))
+}
+
+fn count(counters: &mut Counters, answer: &SpaceAnswer) {
+    answer.counters.iter().for_each(|(name, count)| *counters.entry(name.clone()).or_default() += count);
 }
 
 /// Returns the least state at or above `start` of a mechanism with these jumps, from a state at a factor.
@@ -124,9 +124,7 @@ pub fn least(
 ) -> Least {
     let (reduced, roles, places) = reduced(problem, factor, jumps);
     let answer = solve(&reduced, LimitQuestion::Collapse { start: 0.0, max: factor - start });
-    for (name, count) in answer.counters {
-        *counters.entry(name).or_default() += count;
-    }
+    count(counters, &answer);
     let known = answer.field.filter(|_| answer.field_factor > 0.0);
     let state = known.map(|forces| (factor - answer.field_factor, own_forces(problem, &roles, &places, &forces)));
     Least { state, dual: answer.motion }

@@ -12,7 +12,7 @@
 //! their size. The forces may leave the cones. Those that fit the motion and do not are found by a program on cones (`least`).
 
 use super::descent::{Descent, Dual, Found, is_state, jumps, matrix, row};
-use super::least::known;
+use super::least::forces;
 use super::rigid::Guess;
 use crate::linear::null_space::null_space;
 use crate::space::settings::{DESCENT, JOINTS};
@@ -30,8 +30,9 @@ pub fn refined(descent: &Descent, guess: &Guess, counters: &mut Counters) -> Opt
         let unit = power(&problem.varying, &motion);
         motion.iter_mut().flatten().for_each(|v| *v /= unit);
         let jumps = jumps(problem, &motion);
-        let state = known(problem, parts.unknowns[parts.unknowns.len() - 1], &jumps, counters)?;
-        let (found, dual) = descent.of_mechanism((motion, &jumps), state, counters);
+        let factor = parts.unknowns.pop().filter(|factor| *factor > descent.start)?;
+        let field = forces(problem, descent.solve, factor, &jumps, counters)?;
+        let (found, dual) = descent.of_mechanism((motion, &jumps), (factor, field), counters);
         is_state(problem, &found).then_some((found, dual))
     })
 }
@@ -108,10 +109,11 @@ impl Parts {
         let power = kept.transpose() * &varying;
         let of_guess =
             guess.motion.iter().flat_map(|v| (0..6).map(|k| v[k] * if k < 3 { 1.0 } else { problem.length }));
-        let motion = DVector::from_iterator(6 * problem.bodies, of_guess);
-        let motion = &kept * (kept.transpose() * motion);
+        let of_guess = DVector::from_iterator(6 * problem.bodies, of_guess);
+        let motion = &kept * (kept.transpose() * &of_guess);
         let unit = varying.dot(&motion);
-        if power.norm() <= DESCENT.null * varying.norm() || unit == 0.0 {
+        // A motion with little power would be a state at nearly every factor within rounding.
+        if power.norm() <= DESCENT.null * varying.norm() || unit.is_nan() || unit < 0.5 * varying.dot(&of_guess) {
             return None;
         }
         let basis = &kept * null_space(&DMatrix::from_row_slice(1, power.len(), power.as_slice()), DESCENT.null)?;
@@ -123,13 +125,14 @@ impl Parts {
     fn balance(&mut self) -> Option<()> {
         let loads = self.fixed.amax() + self.varying.amax();
         let mut last = f64::INFINITY;
+        let size = self.motion.norm();
         for _ in 0..JOINTS.newton {
             let mut columns = self.columns();
             let forces = columns.iter().zip(&self.unknowns);
             let left = forces.fold(self.fixed.clone(), |left, (column, force)| left + column * *force);
             let error = left.amax() / loads;
             if error <= JOINTS.balanced || (error <= JOINTS.nearly && error > 0.5 * last) {
-                return self.is_possible().then_some(());
+                return (self.is_possible() && self.motion.norm() < 2.0 * size).then_some(());
             }
             if error.is_nan() || error > 0.5 * last {
                 return None;
@@ -149,8 +152,7 @@ impl Parts {
             let changes = forces.transpose() * &multipliers;
             let unknowns = self.unknowns.iter_mut().zip(changes.iter().zip(&scales));
             unknowns.for_each(|(unknown, (change, scale))| *unknown -= change * scale);
-            let size = self.motion.norm();
-            self.motion -= &self.basis * (turning.transpose() * multipliers) * size;
+            self.motion -= &self.basis * (turning.transpose() * multipliers) * self.motion.norm();
         }
         None
     }
@@ -193,5 +195,24 @@ impl Parts {
         let largest = rates.clone().chain(self.slipping.iter().map(|own| own.slip(&self.motion).0));
         let largest = largest.fold(0.0, f64::max);
         rates.fold(f64::INFINITY, f64::min) >= -DESCENT.proved * largest
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::space::joints::rigid::sequence;
+    use crate::space::solve;
+    use crate::space::tests::own_flow::groove;
+
+    /// A rigid program of a block in a groove leads to the state at μ / sin α.
+    #[test]
+    fn a_guess_becomes_a_state() {
+        let problem = groove(45.0, 0.5, 6.0);
+        let descent = Descent { problem: &problem, solve, start: 0.0 };
+        let normals = problem.contacts.iter().map(|contact| vec![1.0; contact.inner.points.len()]).collect();
+        let guesses = sequence(&problem, 0.0, normals);
+        let (found, _) = refined(&descent, guesses.last().unwrap(), &mut Counters::new()).unwrap();
+        assert!((found.factor - 0.5f64.sqrt()).abs() < 1e-10, "{}", found.factor);
     }
 }
