@@ -150,8 +150,8 @@ impl<'a> Courses<'a> {
         }
     }
 
-    /// Returns true if a state is above the start. Some mechanisms have states under the dead load alone, for example a block that turns on a
-    /// single point that carries.
+    /// Returns true if a state is above the start. Some mechanisms have states under the dead load alone, for example a block that turns
+    /// about a vertical axis.
     fn is_later(&self, found: &Found) -> bool {
         found.factor - self.program.start > JOINTS.differ * self.program.unit
     }
