@@ -4,7 +4,7 @@
 //! 6 × 6 block of the normal equations (`stiffness`). Its iterates are repaired to exact evidence (`evidence`):
 //! forces in equilibrium inside the cones, and mechanisms inside the dual cones. [`solve_by_clarabel`] is the second
 //! route and the fallback. [`solve_with_own_flow`] finds collapse states with the flow rules of the laws (`joints`), and
-//! [`least_with_own_flow`] also proves that a few blocks have no lower one (`branching`). The certificate of `voussoir_core::space` decides
+//! [`prove_least`] proves that a few blocks have no lower one (`branching`). The certificate of `voussoir_core::space` decides
 //! the status.
 
 mod branching;
@@ -23,9 +23,9 @@ mod stiffness;
 mod tests;
 mod uniqueness;
 
-pub use self::branching::answer as least_with_own_flow;
 #[cfg(test)]
 pub use self::branching::lower_bound;
+pub use self::branching::prove as prove_least;
 pub use self::joints::answer as solve_with_own_flow;
 pub use self::settlement::settle as settle_in_space;
 pub use self::solve::{solve, solve_by_clarabel};

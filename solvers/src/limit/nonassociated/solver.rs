@@ -12,7 +12,7 @@ use crate::limit::settings::SETTINGS;
 use crate::limit::settlement::settle;
 use crate::limit::systems::{LARGEST, Systems, greatest_shares};
 use crate::optimise::dense_simplex::Feasibility;
-use crate::space::{least_with_own_flow, settle_in_space, solve};
+use crate::space::{prove_least, settle_in_space, solve, solve_with_own_flow};
 use voussoir_core::law::FlowRule;
 use voussoir_core::limit::{
     BracketWork, LimitAnswer, LimitProblem, LimitQuestion, LimitSolver, LowerProof, LowerProofKind, NonAssociated,
@@ -290,7 +290,8 @@ impl LimitSolver for LimitNonassociated {
     }
 
     fn solve_space(&self, problem: &SpaceProblem, question: LimitQuestion) -> Option<SpaceAnswer> {
-        Some(least_with_own_flow(problem, question, solve, self.entries()))
+        let states = solve_with_own_flow(problem, question, solve);
+        Some(prove_least(problem, question, states, self.entries()))
     }
 
     fn settle_space(&self, problem: &SpaceProblem, openings: &SpaceField) -> SpaceSettled {

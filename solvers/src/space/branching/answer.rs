@@ -1,20 +1,12 @@
 //! The answer with a proved lower end.
 
 use super::search::{Bracket, lower_bound, misfit};
-use crate::space::joints;
 use crate::space::settings::BRANCHING;
 use voussoir_core::limit::{LimitQuestion, Status};
 use voussoir_core::space::{SpaceAnswer, SpaceProblem};
 
-/// Answers a question with the laws' own flow like the search of collapse states, and proves a lower end of the least load. The proof
-/// sweeps at most `most` matrix entries.
-pub fn answer(
-    problem: &SpaceProblem,
-    question: LimitQuestion,
-    solve: fn(&SpaceProblem, LimitQuestion) -> SpaceAnswer,
-    most: u64,
-) -> SpaceAnswer {
-    let mut answer = joints::answer(problem, question, solve);
+/// Adds a proved lower end of the least load to the answer of a search of collapse states. The proof sweeps at most `most` matrix entries.
+pub fn prove(problem: &SpaceProblem, question: LimitQuestion, mut answer: SpaceAnswer, most: u64) -> SpaceAnswer {
     let LimitQuestion::Collapse { start, .. } = question else { return answer };
     let Some(own) = answer.non_associated.as_mut().filter(|_| answer.status != Status::Stands) else { return answer };
     own.searched = Some(start);

@@ -20,6 +20,6 @@ mod points;
 mod search;
 mod statics;
 
-pub use self::answer::answer;
+pub use self::answer::prove;
 #[cfg(test)]
 pub use self::search::lower_bound;

@@ -261,7 +261,7 @@ impl<'a> Surroundings<'a> {
     /// Returns velocities if no points overlap, and the live load does work.
     fn possible(&self, motion: DVector<f64>) -> Option<Vec<SpaceVelocity>> {
         let overlap = self.one_sided.iter().map(|(_, row)| -row.dot(&motion)).fold(0.0, f64::max);
-        let velocities = self.velocities(&motion);
+        let velocities = velocities(self.problem, &motion);
         let works = power(&self.problem.varying, &velocities) > DESCENT.idle;
         (works && overlap <= DESCENT.proved * self.largest).then_some(velocities)
     }
@@ -270,12 +270,6 @@ impl<'a> Surroundings<'a> {
     fn moved(&self, step: &Direction, turn: f64) -> Option<Vec<SpaceVelocity>> {
         let length = (turn / step.turn).min(step.longest);
         self.possible(&self.motion + &step.direction * length)
-    }
-
-    fn velocities(&self, motion: &DVector<f64>) -> Vec<SpaceVelocity> {
-        let length = self.problem.length;
-        let of = |v: &[f64]| [v[0], v[1], v[2], v[3] / length, v[4] / length, v[5] / length];
-        motion.as_slice().chunks_exact(6).map(of).collect()
     }
 
     /// Returns the steepest common descent for some dual motions; `None` if no mechanism changes the directions of slip.
@@ -365,6 +359,13 @@ pub fn row(problem: &SpaceProblem, contact: &SpaceContact, point: &Vec3, axis: &
         }
     }
     row
+}
+
+/// Returns velocities from velocities and rotations times length of all bodies.
+pub fn velocities(problem: &SpaceProblem, motion: &DVector<f64>) -> Vec<SpaceVelocity> {
+    let length = problem.length;
+    let of = |v: &[f64]| [v[0], v[1], v[2], v[3] / length, v[4] / length, v[5] / length];
+    motion.as_slice().chunks_exact(6).map(of).collect()
 }
 
 /// Returns the jumps (n, s, t) of all points, contact by contact.

@@ -11,14 +11,14 @@
 //! Here r are the wrenches of unit forces at a point, and r·x its rates. Newton steps of least norm solve it, with forces relative to
 //! their size. The forces may leave the cones. Those that fit the motion and do not are found by a program on cones (`least`).
 
-use super::descent::{Descent, Dual, Found, is_state, jumps, matrix, row};
+use super::descent::{Descent, Dual, Found, is_state, jumps, matrix, row, velocities};
 use super::least::forces;
 use super::rigid::Guess;
 use crate::linear::null_space::null_space;
 use crate::space::settings::{DESCENT, JOINTS};
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::limit::Counters;
-use voussoir_core::space::{SpaceProblem, SpaceVelocity, Wrench, power};
+use voussoir_core::space::{SpaceProblem, Wrench, power};
 
 /// Returns a state near a guess, with its dual motion.
 pub fn refined(descent: &Descent, guess: &Guess, counters: &mut Counters) -> Option<(Found, Dual)> {
@@ -41,12 +41,6 @@ pub fn refined(descent: &Descent, guess: &Guess, counters: &mut Counters) -> Opt
 fn scaled(problem: &SpaceProblem, wrenches: &[Wrench]) -> DVector<f64> {
     let of = |w: &Wrench| [w[0], w[1], w[2], w[3] / problem.length, w[4] / problem.length, w[5] / problem.length];
     DVector::from_iterator(6 * problem.bodies, wrenches.iter().flat_map(of))
-}
-
-fn velocities(problem: &SpaceProblem, motion: &DVector<f64>) -> Vec<SpaceVelocity> {
-    let length = problem.length;
-    let of = |v: &[f64]| [v[0], v[1], v[2], v[3] / length, v[4] / length, v[5] / length];
-    motion.as_slice().chunks_exact(6).map(of).collect()
 }
 
 /// A slipping point: friction and rows n, s, t.

@@ -3,7 +3,7 @@
 use super::own_flow::{duct, groove, in_a_corner, under_a_block, without_dilatancy};
 use super::random::stack;
 use super::scenes::{COLLAPSE, certified};
-use crate::space::{least_with_own_flow, lower_bound, solve, solve_with_own_flow};
+use crate::space::{lower_bound, prove_least, solve, solve_with_own_flow};
 use voussoir_core::law::FrictionCone;
 use voussoir_core::limit::{Greatest, Status};
 use voussoir_core::random::Random;
@@ -82,7 +82,7 @@ fn the_answer_states_what_is_proved() {
         (&many, WORK, Greatest::Open),
         (&dilates, WORK, Greatest::Open),
     ] {
-        let answer = least_with_own_flow(problem, COLLAPSE, solve, work);
+        let answer = prove_least(problem, COLLAPSE, solve_with_own_flow(problem, COLLAPSE, solve), work);
         let verdict = certified(problem, &answer, COLLAPSE);
         let status = if greatest == Greatest::Open { Status::Open } else { Status::Collapse };
         assert_eq!((verdict.status, verdict.greatest), (status, greatest), "{:?} {:?}", answer.notes, verdict.bounds);
