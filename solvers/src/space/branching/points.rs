@@ -5,10 +5,10 @@ use crate::space::settings::BRANCHING;
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
 use voussoir_core::space::{SpaceContact, SpaceProblem};
 
-/// What a point does in a part of the search.
+/// The mode of a point in a part of the search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Mode {
-    /// Anything.
+    /// The part allows all modes.
     Undecided,
     /// It carries nothing.
     Open,

@@ -130,7 +130,7 @@ impl Search {
         }
     }
 
-    /// Divides a part by what a contact does: it rests, or it moves with one of its faces closed.
+    /// Divides a part by the modes of a contact: it rests, or it moves with one of its faces closed.
     fn divide_contact(&mut self, contact: usize, part: &Part) {
         let points = &self.points.points;
         let places: Vec<usize> = (0..points.len()).filter(|place| points[*place].contact == contact).collect();
@@ -179,7 +179,7 @@ impl Search {
         least(&self.points, modes, self.top, &mut self.work)
     }
 
-    /// Adds tangents at points whose friction is exceeded by a share. Returns false if there are none.
+    /// Adds tangents at points whose friction is exceeded by a share. Returns false if there is no such point.
     fn refine(&mut self, modes: &[Mode], forces: &[Force], excess: f64) -> bool {
         let points = self.points.points.iter_mut().zip(modes).zip(forces);
         let full = points.filter(|((_, mode), _)| mode.carries_all());
