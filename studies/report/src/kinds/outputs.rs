@@ -9,7 +9,7 @@ use crate::writers::results_json::add_cases;
 use crate::writers::results_text::{ResultsHead, ResultsText};
 use crate::writers::seismic::seismic_sentence;
 use crate::writers::table::results_table;
-use crate::writers::{tables, written};
+use crate::writers::{tables, use_fields, written};
 use std::borrow::Cow;
 use std::io;
 use voussoir_study::kind::RESULTS;
@@ -71,8 +71,9 @@ fn shown(
         cases,
         ..study.results_without_cases(&request.version, &gathered.totals, &gathered.own)
     };
-    // Meshes and moving loads show every case, other figures only the drawn cases.
-    let all = study.output.vtu || study.output.animation || study.output.figures == Drawn::All;
+    // Meshes, moving loads and some writers show every case, other figures only the drawn cases.
+    let named = use_fields(study.output.writers.as_deref().unwrap_or_default());
+    let all = named || study.output.vtu || study.output.animation || study.output.figures == Drawn::All;
     let whole = if all { ids } else { drawn(study.output.figures, &results).unwrap_or_default() };
     finished.each_of(&whole, &mut |few| {
         for case in few {

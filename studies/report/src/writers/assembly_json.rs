@@ -19,6 +19,10 @@ const SAME_PLACE: f64 = 1e-12;
 pub struct AssemblyJson;
 
 impl Writer for AssemblyJson {
+    fn uses_fields(&self) -> bool {
+        true
+    }
+
     fn files(&self, study: &StudyOutput, _options: &Json) -> Vec<(String, Vec<u8>)> {
         if !study.output.writers.iter().flatten().any(|tag| tag == "assembly_json") {
             return Vec::new();

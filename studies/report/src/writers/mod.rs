@@ -43,4 +43,4 @@ mod vtu_space;
 mod vtu_text;
 mod writer;
 
-pub use writer::{CaseTable, Writer, WriterEntry, tables, writers, written};
+pub use writer::{CaseTable, Writer, WriterEntry, tables, use_fields, writers, written};

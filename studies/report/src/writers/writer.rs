@@ -44,6 +44,12 @@ pub trait Writer: Send + Sync {
         Vec::new()
     }
 
+    /// Returns true if `files` use forces and motions of all cases, also of cases that are not drawn. This counts if the study names the
+    /// writer.
+    fn uses_fields(&self) -> bool {
+        false
+    }
+
     /// Returns a table of all cases, if the writer has one.
     fn table<'a>(&self, study: &StudyOutput<'a>, options: &Json) -> Option<Box<dyn CaseTable + 'a>> {
         let _ = (study, options);
@@ -70,6 +76,11 @@ pub fn writers() -> Vec<&'static WriterEntry> {
     let mut all: Vec<_> = voussoir_core::inventory::iter::<WriterEntry>.into_iter().collect();
     all.sort_by_key(|entry| entry.tag);
     all
+}
+
+/// Returns true if one of these writers uses forces and motions of all cases.
+pub fn use_fields(tags: &[String]) -> bool {
+    writers().into_iter().any(|entry| entry.writer.uses_fields() && tags.iter().any(|tag| tag == entry.tag))
 }
 
 /// Returns the writers of the study's `[output]` with their options: all, or the listed ones.
