@@ -25,7 +25,7 @@ pub struct Bracket {
 struct Part {
     /// No state of this part is below this factor.
     bound: f64,
-    /// The number of the part: older ones come first.
+    /// The number of the part: of equal bounds, newer ones come first.
     number: u64,
     modes: Vec<Mode>,
     /// The contacts that do not rest: parts in which they rest are searched elsewhere.
