@@ -24,7 +24,9 @@ fn act(sum: &mut [Vec3; 2], force: Vec3, arm: Vec3) {
 #[test]
 fn an_assembly_proves_its_load_factor() {
     let scene = "name = \"corner\"\n[scene]\nscene = \"masonry_wall\"\nblock = [2.0, 1.0, 0.5]\ncourses = 3\nblocks = 2\ncorner = { blocks = 2 }\n";
-    let written = Written::of(&format!("{scene}{REST}[output]\nfigures = false\nwriters = [\"results_csv\", \"assembly_json\"]\n"));
+    let written = Written::of(&format!(
+        "{scene}{REST}[output]\nfigures = false\nwriters = [\"results_csv\", \"assembly_json\"]\n"
+    ));
     let text = written.text("assemblies/case-0000.json");
     let file: Value = serde_json::from_str(&text).expect("JSON");
     let data = &file["data"];
