@@ -300,7 +300,7 @@ impl<'a> Check<'a> {
         if lower > factor {
             self.certificate.fail(format!("the lower bound {lower} is above the factor"));
         } else if own.searched.is_some() && lower <= claim.start && !self.closed(lower, factor) {
-            self.certificate.fail("no lower bound of the least load is proved");
+            self.certificate.fail("no lower end of the least load is proved");
         }
         Some([lower, factor])
     }

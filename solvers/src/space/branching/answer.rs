@@ -22,18 +22,17 @@ pub fn prove(problem: &SpaceProblem, question: LimitQuestion, mut answer: SpaceA
     answer.counters.insert("search_parts".into(), parts);
     own.searched = Some(lower);
     let why = if work >= most { "the search ended at its limit" } else { "rounding ended the search" };
-    let note = if answer.factor.is_none() {
-        format!("no collapse state with the laws' own flow is below {lower:.9} (proved)")
-    } else if known - lower <= 2.0 * BRANCHING.gap * known.abs() {
-        return answer;
-    } else if lower > start {
-        format!(
+    let proved = lower > start;
+    let note = match answer.factor {
+        Some(_) if known - lower <= 2.0 * BRANCHING.gap * known.abs() => return answer,
+        Some(_) if proved => format!(
             "the least load factor of the laws' own flow lies between {lower:.9} (proved) and {known:.9} (found): {why}"
-        )
-    } else {
-        format!(
+        ),
+        Some(_) => format!(
             "the least load factor of the laws' own flow is at most {known:.9} (found); no lower end is proved: {why}"
-        )
+        ),
+        None if proved => format!("no collapse state with the laws' own flow is below {lower:.9} (proved)"),
+        None => format!("no lower end of the least load is proved: {why}"),
     };
     answer.notes.push(note);
     answer

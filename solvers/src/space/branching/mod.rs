@@ -10,9 +10,10 @@
 //! - motions: closed points do not open, slips are within their sectors, the live load has positive power, and the dissipation is not
 //!   negative (`motions`). Two linear programs for each point narrow its sector to the directions of these motions.
 //!
-//! The part with the least bound is divided at the point whose force and slip fit least (`search`). The search ends if all parts
-//! have bounds above the known state, except for the gap that is accepted, or if the work is used up. The least bound is proved in
-//! both cases. Only joints without dilatancy are searched.
+//! The part with the least bound is divided (`search`): first by contacts, which rest or move with a vertex, an edge, all points or no
+//! point closed, then at the point whose force and slip fit least. The search ends if all parts have bounds above the known state, except
+//! for the gap that is accepted, or if the work is used up. The least bound is proved in both cases. Only joints without dilatancy are
+//! searched.
 
 mod answer;
 mod motions;

@@ -160,22 +160,8 @@ impl Cone {
             _ => Some(ratios.unwrap_or_default()),
         }
     }
-}
 
-/// Restricts the modes to those that some motion below a factor allows. Returns false if no motion does.
-pub fn restrict(points: &Points, modes: &mut [Mode], below: f64, work: &mut u64) -> bool {
-    let (rows, own) = rows(points, modes, below);
-    let Some(dictionary) = rows.dictionary(work) else { return true };
-    let mut cone = Cone { dictionary };
-    let possible = cone.can(0);
-    if possible {
-        modes.iter_mut().zip(own).for_each(|(mode, own)| *mode = cone.restricted(*mode, own));
-    }
-    *work += cone.dictionary.work();
-    possible
-}
-
-impl Cone {
+    /// Returns the modes of a point that the motions allow.
     fn restricted(&mut self, mode: Mode, own: Own) -> Mode {
         match (mode, own) {
             (Mode::Undecided, Own::Opening(opening)) if !self.can(opening) => Mode::Closed,
@@ -210,6 +196,19 @@ impl Cone {
             _ => Mode::Closed,
         }
     }
+}
+
+/// Restricts the modes to those that some motion below a factor allows. Returns false if no motion does.
+pub fn restrict(points: &Points, modes: &mut [Mode], below: f64, work: &mut u64) -> bool {
+    let (rows, own) = rows(points, modes, below);
+    let Some(dictionary) = rows.dictionary(work) else { return true };
+    let mut cone = Cone { dictionary };
+    let possible = cone.can(0);
+    if possible {
+        modes.iter_mut().zip(own).for_each(|(mode, own)| *mode = cone.restricted(*mode, own));
+    }
+    *work += cone.dictionary.work();
+    possible
 }
 
 /// Returns the jumps (n, s, t) of the loaded points in the motion below a factor that comes nearest to the flow of some forces: it has

@@ -69,9 +69,10 @@ pub fn lower_bound(problem: &SpaceProblem, start: f64, known: f64, most: u64) ->
     let program = Program::new(problem, start, Side::Inner);
     let points = Points::new(problem, &program);
     let top = (known - start) / program.unit * (1.0 - BRANCHING.gap);
-    let mut search = Search { points, top, closed: f64::INFINITY, work: 0, parts: 0, open: BinaryHeap::new() };
+    let open = BinaryHeap::new();
+    let mut search = Search { points, top, closed: f64::INFINITY, work: 0, parts: 0, pushed: 0, open };
     let modes = vec![Mode::Undecided; search.points.points.len()];
-    search.open.push(Part { bound: 0.0, number: 0, modes, moving: vec![false; problem.contacts.len()] });
+    search.push(0.0, modes, vec![false; problem.contacts.len()]);
     let lower = search.run(most);
     Bracket { lower: start + lower * program.unit, parts: search.parts, work: search.work }
 }
@@ -84,7 +85,9 @@ struct Search {
     /// The least bound of parts that cannot be divided.
     closed: f64,
     work: u64,
+    /// Numbers of the parts that were searched, and of all parts.
     parts: u64,
+    pushed: u64,
     open: BinaryHeap<Part>,
 }
 
@@ -111,50 +114,58 @@ impl Search {
             Statics::Undecided => (bound, vec![[1.0, 0.0, 0.0]; modes.len()]),
         };
         let Some(jumps) = nearest(&self.points, &modes, &forces, self.top, &mut self.work) else { return };
-        let number = self.parts * 16;
         let Some(place) = self.worst((&modes, &moving), &forces, &jumps) else {
             if self.refine(&modes, &forces, BRANCHING.outward) {
-                self.open.push(Part { bound, number, modes, moving });
+                self.push(bound, modes, moving);
             } else {
                 self.closed = self.closed.min(bound);
             }
             return;
         };
         if modes[place] == Mode::Undecided {
-            return self.divide_contact(self.points.points[place].contact, &Part { bound, number, modes, moving });
+            return self.divide_contact(self.points.points[place].contact, (bound, &modes, &moving));
         }
-        for (mode, k) in divided(modes[place]).into_iter().zip(0..) {
+        for mode in divided(modes[place]) {
             let mut modes = modes.clone();
             modes[place] = mode;
-            self.open.push(Part { bound, number: number + k, modes, moving: moving.clone() });
+            self.push(bound, modes, moving.clone());
         }
     }
 
+    fn push(&mut self, bound: f64, modes: Vec<Mode>, moving: Vec<bool>) {
+        self.pushed += 1;
+        self.open.push(Part { bound, number: self.pushed, modes, moving });
+    }
+
     /// Divides a part by the modes of a contact: it rests, or it moves with one of its faces closed.
-    fn divide_contact(&mut self, contact: usize, part: &Part) {
+    fn divide_contact(&mut self, contact: usize, (bound, known, moving): (f64, &[Mode], &[bool])) {
         let points = &self.points.points;
         let places: Vec<usize> = (0..points.len()).filter(|place| points[*place].contact == contact).collect();
-        let mut number = part.number;
-        let mut push = |mode: &dyn Fn(usize) -> Mode, moves: bool| {
-            let (mut modes, mut moving) = (part.modes.clone(), part.moving.clone());
-            places.iter().for_each(|place| modes[*place] = mode(*place));
-            moving[contact] = moves;
-            number += 1;
-            self.open.push(Part { bound: part.bound, number, modes, moving });
-        };
+        // Without friction a contact that rests has no more forces than one that slips.
         let rough = points[places[0]].friction > 0.0;
+        let mut parts: Vec<(Vec<Mode>, bool)> = Vec::new();
+        let mut add = |mode: &dyn Fn(usize) -> Mode, moves: bool| {
+            let mut modes = known.to_vec();
+            places.iter().for_each(|place| modes[*place] = mode(*place));
+            parts.push((modes, moves));
+        };
         if rough {
-            push(&|_| Mode::Sticks, false);
+            add(&|_| Mode::Sticks, false);
         }
         // A face that does not contain all points known to be closed is part of a greater one.
-        let closed: Vec<usize> = places.iter().copied().filter(|place| part.modes[*place] != Mode::Undecided).collect();
+        let closed: Vec<usize> = places.iter().copied().filter(|place| known[*place] != Mode::Undecided).collect();
         for face in self.points.faces[contact].iter().filter(|face| closed.iter().all(|place| face.contains(place))) {
-            let mode = |place: usize| match part.modes[place] {
+            let mode = |place: usize| match known[place] {
                 _ if !face.contains(&place) => Mode::Open,
                 Mode::Undecided => Mode::Closed,
-                known => known,
+                mode => mode,
             };
-            push(&mode, rough);
+            add(&mode, rough);
+        }
+        for (modes, moves) in parts {
+            let mut moving = moving.to_vec();
+            moving[contact] = moves;
+            self.push(bound, modes, moving);
         }
     }
 
@@ -186,7 +197,8 @@ impl Search {
         full.map(|((point, _), force)| point.refine(force, excess)).filter(|refined| *refined).count() > 0
     }
 
-    /// Returns the point to divide: that with most power left, or the widest loaded sector.
+    /// Returns the point to divide: a closed one of a contact that moves, then the point with the most power left, then the widest
+    /// loaded sector.
     fn worst(&self, (modes, moving): (&[Mode], &[bool]), forces: &[Force], jumps: &[[f64; 3]]) -> Option<usize> {
         let divisible = |place: &usize| match modes[*place] {
             Mode::Undecided => true,

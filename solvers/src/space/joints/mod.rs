@@ -5,7 +5,7 @@
 //! elastic deformation becomes a vanishing share of them; the forces become constant and the motion a mechanism. That end is a collapse
 //! state with the laws' own flow. Other courses start at guesses from programs with fictitious cohesion (`rigid`). If a course or a guess is
 //! only near a state, a state with the same parts of all points may exist (`refine`). A mechanism may have states at lower factors (`least`).
-//! If a stage has an end, smaller steps from zero stress decide if the structure stands there (`loading`).
+//! If a stage has an end, smaller steps from zero stress decide if joints carry the loads there (`loading`).
 
 mod answer;
 mod course;
