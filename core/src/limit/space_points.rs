@@ -57,12 +57,16 @@ fn area(a: &Vec3, b: &Vec3, c: &Vec3) -> f64 {
     (b - a).cross(&(c - a)).norm() / 2.0
 }
 
-/// Returns the vertices; the areas have the area of the polygon as sum and its centroid as mean.
+/// Returns the vertices; the areas have the area of the polygon as sum and its centroid as mean. They are means over the fans from all
+/// vertices, so that they do not depend on the first one.
 fn at_vertices(vertices: &[Vec3]) -> PointSet {
-    let mut set = PointSet { points: vertices.to_vec(), areas: vec![0.0; vertices.len()] };
-    for k in 2..vertices.len() {
-        let third = area(&vertices[0], &vertices[k - 1], &vertices[k]) / 3.0;
-        [0, k - 1, k].iter().for_each(|corner| set.areas[*corner] += third);
+    let count = vertices.len();
+    let mut set = PointSet { points: vertices.to_vec(), areas: vec![0.0; count] };
+    for (first, side) in (0..count).flat_map(|first| (1..count.max(2) - 1).map(move |side| (first, side))) {
+        let corners = [first, (first + side) % count, (first + side + 1) % count];
+        let [a, b, c] = corners.map(|corner| vertices[corner]);
+        let third = area(&a, &b, &c) / (3.0 * count as f64);
+        corners.iter().for_each(|corner| set.areas[*corner] += third);
     }
     set
 }

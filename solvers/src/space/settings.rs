@@ -154,7 +154,13 @@ pub struct JointSettings {
     /// Power of the first step from a rigid program.
     pub guessed: f64,
     /// Jumps, relative to the greatest, of points of a guess that neither slip nor open.
-    pub resting: [f64; 2],
+    pub resting: [f64; 3],
+    /// Power of a contact, relative to loads and motion, that counts as zero at the end of a course in standard position.
+    pub nearly_settled: f64,
+    /// Distance of the numbers of a scene in standard position.
+    pub grid: f64,
+    /// Relative size of a vector or a mean that gives no axis of the standard position.
+    pub none: f64,
     /// Greatest number of bodies of a scene with refined guesses: they decompose dense matrices.
     pub bodies: usize,
 }
@@ -196,7 +202,10 @@ pub const JOINTS: JointSettings = JointSettings {
     sticky: 100.0,
     few: 1e-3,
     guessed: 30.0,
-    resting: [1e-3, 1e-5],
+    resting: [1e-7, 1e-5, 1e-3],
+    nearly_settled: 1e-9,
+    grid: 1.0 / (1u64 << 33) as f64,
+    none: 1e-3,
     bodies: 100,
 };
 

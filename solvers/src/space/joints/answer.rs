@@ -7,6 +7,7 @@ use super::loading::{Loaded, load};
 use super::point::Spring;
 use super::refine::refined;
 use super::rigid::{Guess, mean, sequence};
+use super::standard::Standard;
 use super::step::Joints;
 use crate::space::program::{Program, Side};
 use crate::space::settings::JOINTS;
@@ -36,15 +37,13 @@ pub fn answer(problem: &SpaceProblem, question: LimitQuestion, solve: Associated
     if !searched(&associated) || problem.varying.iter().flatten().all(|load| *load == 0.0) {
         return associated;
     }
+    let descent = Descent { problem, solve, start };
     let program = Program::new(problem, start, Side::Inner);
+    let standard = Standard::new(problem).filter(|_| refines(problem));
+    let moved = standard.as_ref().map(|standard| Program::new(&standard.problem, start, Side::Inner));
     let carried = associated.status == Status::Unbounded || associated.field.is_some() && associated.field_factor > max;
-    let mut courses = Courses {
-        descent: Descent { problem, solve, start },
-        program: &program,
-        states: Vec::new(),
-        failures: Vec::new(),
-        counters: std::mem::take(&mut associated.counters),
-    };
+    let mut courses = Courses::new(descent, &program, None);
+    courses.counters = std::mem::take(&mut associated.counters);
     let verdict = carried.then(|| {
         let end = if max.is_finite() { (max - start) / program.unit } else { JOINTS.end };
         courses.verdict(end)
@@ -52,14 +51,14 @@ pub fn answer(problem: &SpaceProblem, question: LimitQuestion, solve: Associated
     if let Some(Verdict::Stands(field, note)) = verdict {
         return stands(max, field, note, SpaceAnswer { counters: courses.counters, ..associated });
     }
-    let known = associated.field.as_ref().filter(|_| associated.status == Status::Collapse);
-    courses.run(JOINTS.soft, None);
-    JOINTS.ratios.iter().for_each(|ratio| courses.run(*ratio, None));
-    if let Some(field) = known {
-        let lambda = (associated.field_factor - start) / program.unit;
-        JOINTS.ratios.iter().for_each(|ratio| courses.run(*ratio, Some((field, lambda))));
+    if let (Some(standard), Some(moved)) = (&standard, &moved) {
+        (courses.program, courses.standard) = (moved, Some(standard));
+        courses.search(&solve(&standard.problem, LimitQuestion::Collapse { start, max: f64::INFINITY }));
+        (courses.program, courses.standard) = (&program, None);
     }
-    courses.sequences(known);
+    if courses.states.is_empty() {
+        courses.search(&associated);
+    }
     let mut answer = courses.answer(associated);
     let open = matches!(verdict, Some(Verdict::Open(_))) || answer.factor.is_some_and(|factor| factor > max);
     match verdict {
@@ -101,7 +100,10 @@ enum Verdict {
 /// The courses of a problem with different stiffnesses.
 struct Courses<'a> {
     descent: Descent<'a>,
+    /// The scaled scene in which joints are loaded.
     program: &'a Program,
+    /// The standard position, if this is the scene in which joints are loaded.
+    standard: Option<&'a Standard>,
     /// The least state that each course leads to.
     states: Vec<Found>,
     /// The courses without a state, with the reason.
@@ -110,8 +112,40 @@ struct Courses<'a> {
 }
 
 impl<'a> Courses<'a> {
+    fn new(descent: Descent<'a>, program: &'a Program, standard: Option<&'a Standard>) -> Self {
+        Courses { descent, program, standard, states: Vec::new(), failures: Vec::new(), counters: Counters::new() }
+    }
+
+    /// Runs all courses and sequences. Some begin at the forces of the associated load.
+    fn search(&mut self, associated: &SpaceAnswer) {
+        self.run(JOINTS.soft, None);
+        JOINTS.ratios.iter().for_each(|ratio| self.run(*ratio, None));
+        let known = associated.field.as_ref().filter(|_| associated.status == Status::Collapse);
+        if let Some(field) = known {
+            let lambda = (associated.field_factor - self.program.start) / self.program.unit;
+            JOINTS.ratios.iter().for_each(|ratio| self.run(*ratio, Some((field, lambda))));
+        }
+        self.sequences(known);
+    }
+
+    /// Returns the scene in which joints are loaded.
+    fn scene(&self) -> &'a SpaceProblem {
+        self.standard.map_or(self.descent.problem, |standard| &standard.problem)
+    }
+
     fn joints(&self, ratio: f64) -> Joints<'a> {
-        Joints::new(self.program, springs(self.descent.problem, ratio))
+        let settled = if self.standard.is_some() { JOINTS.nearly_settled } else { JOINTS.settled };
+        let mut joints = Joints::new(self.program, springs(self.scene(), ratio));
+        joints.settled = settled;
+        joints
+    }
+
+    /// Returns a guess in the given position.
+    fn given(&self, guess: Guess) -> Guess {
+        match self.standard {
+            Some(standard) => standard.given(self.descent.problem, &guess),
+            None => guess,
+        }
     }
 
     fn factor(&self, lambda: f64) -> f64 {
@@ -142,12 +176,32 @@ impl<'a> Courses<'a> {
 
     /// Adds the lowest state that is reached from a state.
     fn lower(&mut self, joints: &mut Joints, first: (Found, Dual)) {
-        let found = lowest(&self.descent, joints, first, &mut self.counters);
+        let found = self.lowest(joints, first);
         if self.is_later(&found) {
             self.states.push(found);
         } else {
             self.failures.push("a mechanism has states down to the start of the stage".into());
         }
+    }
+
+    /// Returns the lowest state that is reached from a state: the least one of its mechanism, then of the mechanism of joints that are
+    /// loaded from there, and so on; at last those of mechanisms nearby.
+    fn lowest(&mut self, joints: &mut Joints, (mut lowest, mut dual): (Found, Dual)) -> Found {
+        for _ in 0..JOINTS.rounds {
+            let field = self.standard.map(|standard| standard.field(self.descent.problem, &lowest.field));
+            joints.press(field.as_ref().unwrap_or(&lowest.field));
+            let lambda = (lowest.factor - self.program.start) / self.program.unit;
+            let end @ End::Settled(_) = live_load(joints, lambda) else { break };
+            let Ok(next) = self.reached(joints, end) else { break };
+            let before = lowest.factor;
+            if next.0.factor <= before {
+                (lowest, dual) = next;
+            }
+            if lowest.factor >= before - JOINTS.differ * before.abs() {
+                break;
+            }
+        }
+        self.descent.descend(lowest, dual, &mut self.counters)
     }
 
     /// Returns true if a state is above the start. Some mechanisms have states under the dead load alone, for example a block that turns
@@ -156,21 +210,28 @@ impl<'a> Courses<'a> {
         found.factor - self.program.start > JOINTS.differ * self.program.unit
     }
 
-    /// Returns true if guesses are refined: the scene is small, and slip does not dilate.
-    fn refines(&self) -> bool {
-        let SpaceProblem { bodies, contacts, .. } = self.descent.problem;
-        *bodies <= JOINTS.bodies && contacts.iter().all(|contact| contact.law.dilatancy == 0.0)
+    /// Returns the end of a course in the given position.
+    fn guess(&self, state: &State) -> Guess {
+        let (field, motion) = (self.program.by_contacts(&state.forces), self.program.motion(&state.motion));
+        self.given(Guess { factor: self.factor(state.lambda), field, motion })
     }
 
     /// Returns the state at the end of a course or near it, or the reason why the course has no state.
     fn reached(&mut self, joints: &Joints, end: End) -> Result<(Found, Dual), String> {
         match end {
-            End::Settled(state) => Ok(found(&self.descent, joints, &state, &mut self.counters)),
-            End::Wanders([least, greatest], excess, State { lambda, forces, motion }) => {
-                let [factor, least, greatest] = [lambda, least, greatest].map(|lambda| self.factor(lambda));
-                let (field, motion) = (self.program.by_contacts(&forces), self.program.motion(&motion));
-                let guess = Guess { factor, field, motion };
-                let near = self.refines().then(|| refined(&self.descent, &guess, &mut self.counters)).flatten();
+            End::Settled(state) => match self.standard {
+                None => Ok(found(&self.descent, joints, &state, &mut self.counters)),
+                Some(_) => {
+                    let guess = self.guess(&state);
+                    let near = refined(&self.descent, &guess, &mut self.counters);
+                    near.ok_or_else(|| format!("no state was found near the factor {:.6}", guess.factor))
+                }
+            },
+            End::Wanders([least, greatest], excess, state) => {
+                let [least, greatest] = [least, greatest].map(|lambda| self.factor(lambda));
+                let guess = self.guess(&state);
+                let near =
+                    refines(self.descent.problem).then(|| refined(&self.descent, &guess, &mut self.counters)).flatten();
                 near.ok_or_else(|| {
                     format!(
                         "no state was reached; the last factors are between {least:.6} and {greatest:.6}, which is no bound, \
@@ -187,7 +248,7 @@ impl<'a> Courses<'a> {
     /// from great ones, with which hardly any joint slips.
     fn sequences(&mut self, associated: Option<&SpaceField>) {
         let mut joints = self.joints(JOINTS.ratios[2]);
-        if !self.refines() || dead_load(&mut joints).is_none() {
+        if !refines(self.descent.problem) || dead_load(&mut joints).is_none() {
             return;
         }
         let forces: Vec<[f64; 3]> = joints.contacts.iter().map(|contact| contact.force).collect();
@@ -206,8 +267,9 @@ impl<'a> Courses<'a> {
     /// Runs a sequence of rigid programs, and a course from each guess that is not near a state.
     fn sequence(&mut self, from: &str, normals: Vec<Vec<f64>>) {
         let mut least: Option<(Found, Dual)> = None;
-        for guess in sequence(self.descent.problem, self.program.start, normals) {
-            let next = refined(&self.descent, &guess, &mut self.counters).or_else(|| {
+        for guess in sequence(self.scene(), self.program.start, normals) {
+            let given = self.given(guess.clone());
+            let next = refined(&self.descent, &given, &mut self.counters).or_else(|| {
                 let mut joints = self.joints(JOINTS.ratios[2]);
                 joints.press(&guess.field);
                 let lambda = (guess.factor - self.program.start) / self.program.unit;
@@ -310,6 +372,11 @@ impl<'a> Courses<'a> {
     }
 }
 
+/// Returns true if guesses are refined: the scene is small, and slip does not dilate.
+fn refines(problem: &SpaceProblem) -> bool {
+    problem.bodies <= JOINTS.bodies && problem.contacts.iter().all(|contact| contact.law.dilatancy == 0.0)
+}
+
 /// Returns a note on the factors of the states of some courses, in increasing order, if they differ.
 fn spread(states: &[Found], courses: usize) -> Option<String> {
     let (least, greatest) = (states.first()?, states.last()?);
@@ -323,26 +390,6 @@ fn spread(states: &[Found], courses: usize) -> Option<String> {
              factors are from {least:.9} to {greatest:.9}{local}"
         )
     })
-}
-
-/// Returns the lowest state that is reached from a state: the least one of its mechanism, then of the mechanism of joints that are
-/// loaded from there, and so on; at last those of mechanisms nearby.
-fn lowest(descent: &Descent, joints: &mut Joints, first: (Found, Dual), counters: &mut Counters) -> Found {
-    let (mut lowest, mut dual) = first;
-    for _ in 0..JOINTS.rounds {
-        joints.press(&lowest.field);
-        let lambda = (lowest.factor - joints.program.start) / joints.program.unit;
-        let End::Settled(state) = live_load(joints, lambda) else { break };
-        let before = lowest.factor;
-        let next = found(descent, joints, &state, counters);
-        if next.0.factor <= before {
-            (lowest, dual) = next;
-        }
-        if lowest.factor >= before - JOINTS.differ * before.abs() {
-            break;
-        }
-    }
-    descent.descend(lowest, dual, counters)
 }
 
 /// Returns the least state of the mechanism of a state, with its dual motion.

@@ -167,7 +167,7 @@ pub fn settled(joints: &Joints, rate: &[f64], lambda: f64) -> bool {
         closing = closing.max(-opening);
         idle += (n * opening).abs() + (spring.friction * n * slip + s * v[1] + t * v[2]).abs();
     }
-    closing <= JOINTS.settled * largest && idle <= JOINTS.settled * largest * joints.loads(lambda)
+    closing <= joints.settled * largest && idle <= joints.settled * largest * joints.loads(lambda)
 }
 
 /// Returns the end of a course without a state.

@@ -38,6 +38,7 @@ pub struct Found {
 pub type Dual = Option<Vec<SpaceVelocity>>;
 
 /// The search of lower states.
+#[derive(Clone, Copy)]
 pub struct Descent<'a> {
     /// The problem.
     pub problem: &'a SpaceProblem,

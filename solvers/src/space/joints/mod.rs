@@ -15,6 +15,7 @@ mod loading;
 mod point;
 mod refine;
 mod rigid;
+mod standard;
 mod step;
 
 pub use self::answer::answer;

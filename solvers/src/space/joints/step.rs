@@ -44,6 +44,8 @@ pub struct Joints<'a> {
     pub contacts: Vec<Contact>,
     /// Power of the live load per factor in a small step from the dead load; set by the first course.
     pub compliance: Option<f64>,
+    /// Power of a contact, relative to loads and motion, that counts as zero at the end of a course.
+    pub settled: f64,
     /// Newton iterations done.
     pub iterations: u64,
     moves: Vec<[Block; 2]>,
@@ -63,7 +65,17 @@ impl<'a> Joints<'a> {
     pub fn new(program: &'a Program, springs: Vec<Spring>) -> Self {
         let contacts = vec![Contact::default(); springs.len()];
         let moves = program.members.iter().map(Member::moves).collect();
-        Joints { program, springs, contacts, compliance: None, iterations: 0, moves, analysis: Analysis::default() }
+        let settled = JOINTS.settled;
+        Joints {
+            program,
+            springs,
+            contacts,
+            compliance: None,
+            settled,
+            iterations: 0,
+            moves,
+            analysis: Analysis::default(),
+        }
     }
 
     /// Puts forces \[N\] on all points, contact by contact, with closed gaps.

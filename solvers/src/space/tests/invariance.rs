@@ -1,6 +1,7 @@
 //! Answers do not depend on units, place, rotation, mirror image and numbering.
 
 use super::closed_forms::wall;
+use super::own_flow::{found, without_dilatancy};
 use super::scenes::{Scene, collapse};
 use voussoir_core::nalgebra::Rotation3;
 use voussoir_core::space::{SpaceContact, SpaceProblem, Vec3};
@@ -9,14 +10,14 @@ use voussoir_core::space::{SpaceContact, SpaceProblem, Vec3};
 const INVARIANT: f64 = 1e-10;
 
 /// Returns a pier of a wall with one block that stands apart, so that nothing is symmetric.
-fn scene() -> Scene {
+pub fn scene() -> Scene {
     let mut scene = wall(3, 4, 0.45);
     scene.bodies[2].0 *= 1.7;
     scene.bodies[4].1.x += 0.3;
     scene
 }
 
-fn direction() -> Vec3 {
+pub fn direction() -> Vec3 {
     Vec3::new(0.3, 0.9, 0.1)
 }
 
@@ -65,27 +66,25 @@ fn rotated_shifted_and_mirrored_scenes_have_the_same_factor() {
     same(&problem, &mapped(&problem, mirror, mirror, true), "mirror");
 }
 
-/// Units of length and force keep the factor.
-#[test]
-fn units_do_not_change_the_factor() {
-    let problem = scene().problem(&direction());
-    for (length, force) in [(1e3, 1.0), (1.0, 1e6), (1e-3, 1e-4)] {
-        let mut image = problem.clone();
-        let sets = image.contacts.iter_mut().flat_map(|contact| [&mut contact.inner, &mut contact.outer]);
-        sets.flat_map(|set| &mut set.points).for_each(|x| *x *= length);
-        image.length *= length;
-        for wrench in image.fixed.iter_mut().chain(&mut image.varying) {
-            wrench.iter_mut().for_each(|x| *x *= force);
-            wrench[3..].iter_mut().for_each(|x| *x *= length);
+/// Returns the problem in other units of length and force.
+pub fn in_units(problem: &SpaceProblem, [length, force]: [f64; 2]) -> SpaceProblem {
+    let mut image = problem.clone();
+    for contact in &mut image.contacts {
+        for set in [&mut contact.inner, &mut contact.outer] {
+            set.points.iter_mut().for_each(|x| *x *= length);
+            set.areas.iter_mut().for_each(|area| *area *= length * length);
         }
-        same(&problem, &image, "units");
     }
+    image.length *= length;
+    for wrench in image.fixed.iter_mut().chain(&mut image.varying) {
+        wrench.iter_mut().for_each(|x| *x *= force);
+        wrench[3..].iter_mut().for_each(|x| *x *= length);
+    }
+    image
 }
 
-/// The order of bodies, contacts and points, and the side that is called plus, keep the factor.
-#[test]
-fn numbering_does_not_change_the_factor() {
-    let problem = scene().problem(&direction());
+/// Returns the problem with another order of bodies, contacts and points; some contacts have another side as plus.
+pub fn renumbered(problem: &SpaceProblem) -> SpaceProblem {
     let mut image = problem.clone();
     let count = image.bodies;
     let renamed = |body: Option<usize>| body.map(|body| count - 1 - body);
@@ -95,11 +94,49 @@ fn numbering_does_not_change_the_factor() {
     for (k, contact) in image.contacts.iter_mut().enumerate() {
         let SpaceContact { minus, plus, inner, outer, frame, .. } = contact;
         (*minus, *plus) = (renamed(*minus), renamed(*plus));
-        [inner, outer].into_iter().for_each(|set| set.points.rotate_left(k % 3));
+        for set in [inner, outer] {
+            set.points.rotate_left(k % 3);
+            set.areas.rotate_left(k % 3);
+        }
         if k % 2 == 0 {
             (*minus, *plus) = (*plus, *minus);
             *frame = [-frame[0], frame[2], frame[1]];
         }
     }
-    same(&problem, &image, "numbering");
+    image
+}
+
+/// Units of length and force keep the factor.
+#[test]
+fn units_do_not_change_the_factor() {
+    let problem = scene().problem(&direction());
+    for units in [[1e3, 1.0], [1.0, 1e6], [1e-3, 1e-4]] {
+        same(&problem, &in_units(&problem, units), "units");
+    }
+}
+
+/// The order of bodies, contacts and points, and the side that is called plus, keep the factor.
+#[test]
+fn numbering_does_not_change_the_factor() {
+    let problem = scene().problem(&direction());
+    same(&problem, &renumbered(&problem), "numbering");
+}
+
+/// Images of a wall that falls over have the same state with slip that does not open the joints: the courses run in one position.
+#[test]
+fn images_have_the_same_state() {
+    let problem = without_dilatancy(&scene(), &direction());
+    let factor = |problem: &SpaceProblem| found(problem).0;
+    let own = factor(&problem);
+    let turn = Rotation3::from_euler_angles(0.0, 0.0, 2.3);
+    let mirror = |x: &Vec3| Vec3::new(-x.x, x.y, x.z);
+    for image in [
+        mapped(&problem, |x| turn * x, |x| turn * x, false),
+        mapped(&problem, mirror, mirror, true),
+        in_units(&problem, [0.01, 1e3]),
+        renumbered(&problem),
+    ] {
+        let other = factor(&image);
+        assert!((own - other).abs() <= INVARIANT * own, "{own} and {other}");
+    }
 }

@@ -2,7 +2,7 @@
 
 mod branching;
 mod closed_forms;
-mod invariance;
+pub mod invariance;
 pub mod own_flow;
 pub mod random;
 mod scenes;

@@ -19,7 +19,7 @@ pub fn without_dilatancy(scene: &Scene, direction: &Vec3) -> SpaceProblem {
 }
 
 /// Returns the certified collapse factor and the associated one.
-fn found(problem: &SpaceProblem) -> (f64, Option<f64>) {
+pub fn found(problem: &SpaceProblem) -> (f64, Option<f64>) {
     let answer = solve_with_own_flow(problem, COLLAPSE, solve);
     let verdict = certified(problem, &answer, COLLAPSE);
     assert_eq!(verdict.status, Status::Collapse, "{:?} {:?}", answer.notes, verdict.certificate);
