@@ -196,6 +196,31 @@ fn forged_results_in_space_are_found() {
     forge(&|case| case["field"][0]["force"] = serde_json::json!([1.0, 0.0]));
 }
 
+/// A search for the least load that ends at its limit has two proved ends. A stored end that is nearer is not confirmed.
+#[test]
+fn forged_least_loads_in_space_are_found() {
+    let text = include_str!("../../../docs/data/space/slab_at_wall.toml");
+    let text = text.replace("\"limit_least\"", "\"limit_least\"\nsearch_limit = 0.02");
+    let (study, results) = written::results(&text);
+    assert_eq!(written::findings(&study, &results), Vec::<String>::new());
+    let case = &results["cases"][0];
+    assert_eq!((case["status"].as_str(), case["greatest"].as_str()), (Some("collapse"), Some("bracketed")));
+    let [lower, upper] = [0, 1].map(|end| case["bounds"][end].as_f64().expect("a bound"));
+    assert_close(upper, 0.6 * (1.0 + 1.0 / 1.36), 1e-9);
+    assert!(lower > 0.5 && lower < 0.99 * upper, "{lower}");
+    let forge = |change: &dyn Fn(&mut Value)| {
+        let mut forged = results.clone();
+        change(&mut forged["cases"][0]);
+        assert!(!written::findings(&study, &forged).is_empty(), "a forged result passes");
+    };
+    forge(&|case| case["bounds"][0] = (upper - 1e-6).into());
+    forge(&|case| case["bounds"][0] = (lower + 0.01).into());
+    forge(&|case| case["greatest"] = "proved_optimal".into());
+    forge(&|case| case["load_factor"] = (upper - 0.01).into());
+    forge(&|case| case["bounds"][1] = (upper - 0.01).into());
+    forge(&|case| case["motion"][1]["velocity"][0] = 0.3.into());
+}
+
 /// A law without dilatancy is solved with associated flow, which the result states.
 #[test]
 fn friction_without_dilatancy_is_read_as_associated() {

@@ -18,6 +18,7 @@ use crate::linear::null_space::null_space;
 use crate::space::settings::{DESCENT, JOINTS};
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::limit::Counters;
+use voussoir_core::linear::least_norm;
 use voussoir_core::space::{SpaceContact, SpaceField, SpaceProblem, Vec3, Wrench, power};
 
 /// Returns a state near a guess, with its dual motion.
@@ -55,17 +56,6 @@ pub fn refined(descent: &Descent, guess: &Guess, counters: &mut Counters) -> Opt
 fn scaled(problem: &SpaceProblem, wrenches: &[Wrench]) -> DVector<f64> {
     let of = |w: &Wrench| [w[0], w[1], w[2], w[3] / problem.length, w[4] / problem.length, w[5] / problem.length];
     DVector::from_iterator(6 * problem.bodies, wrenches.iter().flat_map(of))
-}
-
-/// Returns the shortest x with A x = b, without the equations that others imply.
-fn least_norm(a: &DMatrix<f64>, mut b: DVector<f64>) -> Option<DVector<f64>> {
-    let decomposed = a.transpose().col_piv_qr();
-    let r = decomposed.r();
-    let few = f64::EPSILON * a.nrows() as f64 * r[(0, 0)].abs();
-    let rank = (0..r.nrows().min(r.ncols())).take_while(|k| r[(*k, *k)].abs() > few).count();
-    decomposed.p().permute_rows(&mut b);
-    let first = r.view((0, 0), (rank, rank)).transpose().solve_lower_triangular(&b.rows(0, rank))?;
-    Some(decomposed.q().columns(0, rank) * first)
 }
 
 /// The motion of a point.
@@ -204,7 +194,7 @@ impl Parts {
                     if column < forces.ncols() { (&forces, column) } else { (&turning, column - forces.ncols()) };
                 own[(row, column)]
             });
-            let change = least_norm(&both, left)?;
+            let change = least_norm(&both, &left);
             let (changes, turned) = change.as_slice().split_at(forces.ncols());
             let changed = unknowns.iter_mut().zip(changes.iter().zip(&scales));
             changed.for_each(|(unknown, (change, scale))| *unknown -= change * scale);

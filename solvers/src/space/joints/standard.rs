@@ -264,7 +264,7 @@ mod tests {
     /// Images of a scene have the same numbers in standard position, to the last bit.
     #[test]
     fn images_have_one_standard_position() {
-        let problem = scene().problem(&direction());
+        let problem = scene(3, 4).problem(&direction());
         let own = Standard::new(&problem).unwrap().problem;
         let turn = Rotation3::from_euler_angles(0.4, -1.1, 2.3);
         let mirror = |x: &Vec3| Vec3::new(x.x, -x.y, x.z);
@@ -288,7 +288,7 @@ mod tests {
     /// Forces and motions that are moved back balance and do the same work.
     #[test]
     fn forces_and_motions_move_back() {
-        let problem = renumbered(&scene().problem(&direction()));
+        let problem = renumbered(&scene(3, 4).problem(&direction()));
         let standard = Standard::new(&problem).unwrap();
         let given: SpaceField = problem
             .contacts

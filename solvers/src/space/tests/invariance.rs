@@ -10,8 +10,8 @@ use voussoir_core::space::{SpaceContact, SpaceProblem, Vec3};
 const INVARIANT: f64 = 1e-10;
 
 /// Returns a pier of a wall with one block that stands apart, so that nothing is symmetric.
-pub fn scene() -> Scene {
-    let mut scene = wall(3, 4, 0.45);
+pub fn scene(bricks: usize, courses: usize) -> Scene {
+    let mut scene = wall(bricks, courses, 0.45);
     scene.bodies[2].0 *= 1.7;
     scene.bodies[4].1.x += 0.3;
     scene
@@ -57,7 +57,7 @@ fn same(problem: &SpaceProblem, image: &SpaceProblem, case: &str) {
 /// Rotations, shifts and mirror images keep the factor.
 #[test]
 fn rotated_shifted_and_mirrored_scenes_have_the_same_factor() {
-    let problem = scene().problem(&direction());
+    let problem = scene(3, 4).problem(&direction());
     let turn = Rotation3::from_euler_angles(0.4, -1.1, 2.3);
     same(&problem, &mapped(&problem, |x| turn * x, |x| turn * x, false), "rotation");
     let shift = Vec3::new(3.0, -7.0, 5.0);
@@ -109,7 +109,7 @@ pub fn renumbered(problem: &SpaceProblem) -> SpaceProblem {
 /// Units of length and force keep the factor.
 #[test]
 fn units_do_not_change_the_factor() {
-    let problem = scene().problem(&direction());
+    let problem = scene(3, 4).problem(&direction());
     for units in [[1e3, 1.0], [1.0, 1e6], [1e-3, 1e-4]] {
         same(&problem, &in_units(&problem, units), "units");
     }
@@ -118,25 +118,21 @@ fn units_do_not_change_the_factor() {
 /// The order of bodies, contacts and points, and the side that is called plus, keep the factor.
 #[test]
 fn numbering_does_not_change_the_factor() {
-    let problem = scene().problem(&direction());
+    let problem = scene(3, 4).problem(&direction());
     same(&problem, &renumbered(&problem), "numbering");
 }
 
-/// Images of a wall that falls over have the same state with slip that does not open the joints: the courses run in one position.
+/// Images of a wall have the same state with slip that does not open the joints: the courses run in one position.
 #[test]
 fn images_have_the_same_state() {
-    let problem = without_dilatancy(&scene(), &direction());
-    let factor = |problem: &SpaceProblem| found(problem).0;
-    let own = factor(&problem);
+    let problem = without_dilatancy(&scene(2, 3), &direction());
+    let own = found(&problem).0;
     let turn = Rotation3::from_euler_angles(0.0, 0.0, 2.3);
+    let turned = mapped(&problem, |x| turn * x, |x| turn * x, false);
     let mirror = |x: &Vec3| Vec3::new(-x.x, x.y, x.z);
-    for image in [
-        mapped(&problem, |x| turn * x, |x| turn * x, false),
-        mapped(&problem, mirror, mirror, true),
-        in_units(&problem, [0.01, 1e3]),
-        renumbered(&problem),
-    ] {
-        let other = factor(&image);
+    let mirrored = mapped(&problem, mirror, mirror, true);
+    for image in [renumbered(&turned), in_units(&mirrored, [0.01, 1e3])] {
+        let other = found(&image).0;
         assert!((own - other).abs() <= INVARIANT * own, "{own} and {other}");
     }
 }
