@@ -65,3 +65,15 @@ pub fn add_product(out: &mut [f64], rows: usize, a: &[f64], x: &[f64]) {
         with_vectors!('a, add_columns(out: &'a mut [f64], rows: usize, a: &'a [f64], x: &'a [f64]) -> ());
     }
 }
+
+/// Returns the greatest absolute value; NaN does not count.
+pub fn largest(values: &[f64]) -> f64 {
+    // `f64::max` takes several instructions, because either number may be NaN.
+    let greater = |a: f64, b: f64| if b > a { b } else { a };
+    let (eights, rest) = values.as_chunks::<8>();
+    let mut lanes = [0.0; 8];
+    for eight in eights {
+        (0..8).for_each(|i| lanes[i] = greater(lanes[i], eight[i].abs()));
+    }
+    lanes.into_iter().chain(rest.iter().map(|v| v.abs())).fold(0.0, greater)
+}

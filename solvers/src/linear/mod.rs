@@ -25,19 +25,9 @@ pub(crate) mod null_space;
 mod tests;
 pub(crate) mod updated;
 
+pub(crate) use voussoir_core::linear::vectors::largest;
+
 /// Returns a · b.
 pub(crate) fn inner(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-/// Returns the greatest absolute value; NaN does not count.
-pub(crate) fn largest(values: &[f64]) -> f64 {
-    // `f64::max` takes several instructions, because either number may be NaN.
-    let greater = |a: f64, b: f64| if b > a { b } else { a };
-    let (eights, rest) = values.as_chunks::<8>();
-    let mut lanes = [0.0; 8];
-    for eight in eights {
-        (0..8).for_each(|i| lanes[i] = greater(lanes[i], eight[i].abs()));
-    }
-    lanes.into_iter().chain(rest.iter().map(|v| v.abs())).fold(0.0, greater)
 }

@@ -13,6 +13,7 @@ use super::increment::{Allowed, first_opening, passed};
 use super::none_rises::RateProblem;
 use super::point_modes::{ACTIVE, ModeCone, point_modes};
 use super::rate_equations::RateEquations;
+use crate::linear::vectors::largest;
 use crate::path::{FarkasVector, LoadStep, LoadStepEnd, ModeTree, PathProblem, PathState, RateClaim, Witness, Yielded};
 use std::sync::Arc;
 
@@ -39,6 +40,8 @@ pub(super) struct Link {
     pub(super) openings: Vec<f64>,
     /// The history of laws after the state.
     pub(super) history: History,
+    /// Greatest gap or displacement \[m\], and greatest force \[N\].
+    sizes: [f64; 2],
 }
 
 /// A chain of states.
@@ -56,7 +59,7 @@ pub struct PathChain {
 /// Returns the greatest size of gaps and displacements.
 pub(super) fn deformation(state: &PathState) -> f64 {
     let moves = state.motion.iter().flat_map(|u| [u[0], u[1]]);
-    state.gap.as_flattened().iter().copied().chain(moves).fold(0.0, |a: f64, v| a.max(v.abs()))
+    moves.fold(largest(state.gap.as_flattened()), |a: f64, v| a.max(v.abs()))
 }
 
 pub(super) fn greatest_force(state: &PathState) -> f64 {
@@ -113,7 +116,8 @@ impl PathChain {
         };
         let openings = contacts.iter().map(first_opening).collect();
         let history = History::untouched(&structure);
-        PathChain { structure, finite, links: vec![Link { state, openings, history }], drift: 0.0, broken: None }
+        let sizes = [deformation(&state), 0.0];
+        PathChain { structure, finite, links: vec![Link { state, openings, history, sizes }], drift: 0.0, broken: None }
     }
 
     /// Adds the next state of the path.
@@ -169,20 +173,20 @@ impl PathChain {
         self.check_factors(&last.state, &state)?;
         self.check_supports(&state)?;
         self.check_displacement(&state)?;
-        let size = deformation(&state).max(deformation(&last.state));
+        let sizes = [deformation(&state), greatest_force(&state)];
+        let [size, force] = [0, 1].map(|i| sizes[i].max(last.sizes[i]));
         let rounding = if self.finite { 512.0 * f64::EPSILON * problem.length } else { 0.0 };
-        let force = greatest_force(&state).max(greatest_force(&last.state));
         let allowed = Allowed { slack: ACTIVE * force, opening: CLOSED * size + rounding };
         let mut openings = Vec::with_capacity(last.openings.len());
-        let mut drift = 0.0f64;
+        let (mut drift, mut active) = (0.0f64, Vec::new());
         for (index, contact) in problem.contacts.iter().enumerate() {
-            let forces = [last.state.force[index], state.force[index]];
-            let gaps = [last.state.gap[index], state.gap[index]];
             if contact.law.response().is_some() {
                 openings.push(0.0);
                 continue;
             }
-            let passed = passed(contact, forces, gaps, last.openings[index], allowed);
+            let forces = [last.state.force[index], state.force[index]];
+            let gaps = [last.state.gap[index], state.gap[index]];
+            let passed = passed(&mut active, contact, [forces, gaps], last.openings[index], allowed);
             let off = passed.outside - rounding;
             if off.is_nan() || self.drift + off.max(0.0) > DRIFT * size {
                 return Err(format!("the gap of contact point {index} does not flow as its law says"));
@@ -197,7 +201,7 @@ impl PathChain {
         if self.finite {
             self.check_midway(&last.state, &state)?;
         }
-        Ok((Link { state, openings, history }, drift))
+        Ok((Link { state, openings, history, sizes }, drift))
     }
 
     /// Checks that only the factor of the state's own load step changes; earlier steps have reached their ends.
@@ -342,18 +346,20 @@ impl PathChain {
     /// # Errors
     /// Names the first part of the last witness that is wrong.
     pub fn check_none_rises(&self, state: &PathState, witnesses: &[&Witness]) -> Result<(), String> {
+        let of_state = witnesses.iter().filter(|witness| is_same(&witness.state, state));
+        let trees = of_state.filter_map(|witness| match &witness.claim {
+            RateClaim::NoneRises(tree) => Some(tree),
+            _ => None,
+        });
+        let trees: Vec<&ModeTree> = trees.collect();
+        if trees.is_empty() {
+            return Err("no witness that no rate raises the load".into());
+        }
         let (_, equations, modes) = self.at(state)?;
         let rates = RateProblem { equations: &equations, modes: &modes };
-        let mut found = Err("no witness that no rate raises the load".to_string());
-        for witness in witnesses.iter().filter(|witness| is_same(&witness.state, state)) {
-            if let RateClaim::NoneRises(tree) = &witness.claim {
-                found = rates.check_none_rises(tree).map(|_| ());
-            }
-            if found.is_ok() {
-                break;
-            }
-        }
-        found
+        trees
+            .into_iter()
+            .fold(Err(String::new()), |found, tree| found.or_else(|_| rates.check_none_rises(tree).map(|_| ())))
     }
 
     /// Returns true if the last state is at the end of the last load step and no increment moves a factor away from its

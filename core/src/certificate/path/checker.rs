@@ -5,6 +5,7 @@ use super::energy::EnergyBalance;
 use super::response::law_residual;
 use super::structure::path_structure;
 use crate::law::{Facet, FacetMode};
+use crate::linear::vectors::largest;
 use crate::model::{Assembly, Stage};
 use crate::path::{LawStep, PathObserver, PathProblem, PathState, PointLaw};
 use std::collections::BTreeMap;
@@ -123,8 +124,8 @@ impl PathChecker {
         let forces: f64 = state.force.iter().map(|f| (f[0] * f[0] + f[1] * f[1]).sqrt()).sum();
         // If all blocks have come apart, the forces are rounding errors of earlier forces.
         self.greatest = self.greatest.max(loads + forces);
-        let gaps = state.gap.iter().flatten().fold(0.0, |a: f64, g| a.max(g.abs()));
-        let moves = state.motion.iter().fold(gaps, |a: f64, u| a.max(u[0].abs()).max(u[1].abs()));
+        let moves =
+            state.motion.iter().fold(largest(state.gap.as_flattened()), |a: f64, u| a.max(u[0].abs()).max(u[1].abs()));
         let scale = Scale {
             force: (loads + forces).max(NOTHING * self.greatest).max(1e-300),
             deformation: moves.max(1e-300),
@@ -182,9 +183,12 @@ impl PathChecker {
 
     /// Checks contact points with facets, and bonded points.
     fn check_points(&mut self, problem: &PathProblem, state: &PathState, scale: &Scale) {
-        let largest = state.force.iter().flatten().fold(0.0, |a: f64, f| a.max(f.abs())).max(1e-300);
-        let [mut bonded, mut strength, mut penetration, mut complementarity] = [None; 4];
-        let note = |worst: &mut Option<f64>, value: f64| worsen(worst.get_or_insert(0.0), value);
+        let largest = largest(state.force.as_flattened()).max(1e-300);
+        let [mut bonded, mut strength, mut penetration, mut complementarity] = [(false, 0.0); 4];
+        let note = |worst: &mut (bool, f64), value: f64| {
+            worst.0 = true;
+            worsen(&mut worst.1, value);
+        };
         // Most contact points have the same law as the point before.
         let (mut last, mut asks): (&[Facet], Asks) = (&[], Asks::of(&[]));
         for ((contact, force), gap) in problem.contacts.iter().zip(&state.force).zip(&state.gap) {
@@ -213,8 +217,10 @@ impl PathChecker {
                 note(&mut penetration, -gap[0] - scale.rounding);
             }
             if asks.complementarity {
-                let open = ((gap[0] - scale.rounding) / scale.deformation).max(0.0);
-                note(&mut complementarity, (force[0] / largest).max(0.0).min(open));
+                let (pressed, open) = (force[0].max(0.0), (gap[0] - scale.rounding).max(0.0));
+                let both =
+                    if pressed > 0.0 && open > 0.0 { (pressed / largest).min(open / scale.deformation) } else { 0.0 };
+                note(&mut complementarity, both);
             }
         }
         for (name, worst, scale) in [
@@ -223,8 +229,8 @@ impl PathChecker {
             ("path_penetration", penetration, scale.deformation),
             ("path_complementarity", complementarity, 1.0),
         ] {
-            if let Some(worst) = worst {
-                self.note(name, worst / scale);
+            if worst.0 {
+                self.note(name, worst.1 / scale);
             }
         }
     }

@@ -54,6 +54,7 @@ impl<'a> Displaced<'a> {
     }
 
     /// Returns the displacement of a point of a body by its rigid motion and by its deformation \[m\].
+    #[inline(always)]
     fn parts(&self, body: usize, slot: Option<usize>, point: Vec2) -> [Vec2; 2] {
         let [x, y, theta] = self.state.motion[body];
         let arm = point - self.problem.bodies[body].pole;

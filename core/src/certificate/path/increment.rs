@@ -34,33 +34,34 @@ pub(super) fn first_opening(contact: &Contact) -> f64 {
     if contact.law.facets().is_some() { contact.gap.max(0.0) } else { 0.0 }
 }
 
-/// Checks the increment of one contact point from forces and gaps at both ends.
+/// Checks the increment of one contact point from forces and gaps at both ends. `active` is memory for its active facets.
 pub(super) fn passed(
+    active: &mut Vec<usize>,
     contact: &Contact,
-    forces: [[f64; 2]; 2],
-    gaps: [[f64; 2]; 2],
+    [forces, gaps]: [[[f64; 2]; 2]; 2],
     opening: f64,
     allowed: Allowed,
 ) -> Passed {
     let moved = [0, 1].map(|i| gaps[1][i] - gaps[0][i]);
     let stuck = Passed { opening, outside: length(moved) };
     let PointLaw::Facets(facets) = &contact.law else { return stuck };
-    let active = active_facets(contact, facets, &forces, allowed.slack);
+    active.clear();
+    active_facets(active, (contact, facets), &forces, allowed.slack);
     let open = opening > allowed.opening;
     if active.is_empty() && !open {
         return stuck;
     }
-    if is_apex(facets, &active) {
+    if is_apex(facets, active) {
         let opening = opening + moved[0] - dilatancy(facets) * moved[1].abs();
         let free = Passed { opening: opening.max(0.0), outside: (-opening).max(0.0) };
-        return if open { free } else { better(free, flowing(facets, &active, moved, stuck)) };
+        return if open { free } else { better(free, flowing(facets, active, moved, stuck)) };
     }
     let facet = active.iter().copied().find(|f| facets[*f].mode == FacetMode::Opening);
     match (open, facet) {
         // An open point carries the strength of its opening facet.
         (true, None) => Passed { opening, outside: f64::INFINITY },
-        (true, Some(facet)) => reopened(facets, &active, facet, moved, opening),
-        (false, _) => better(stuck, flowing(facets, &active, moved, stuck)),
+        (true, Some(facet)) => reopened(facets, active, facet, moved, opening),
+        (false, _) => better(stuck, flowing(facets, active, moved, stuck)),
     }
 }
 

@@ -54,15 +54,20 @@ pub(super) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 
-/// Returns the slack of a facet at a contact force, divided by the length of its normal \[N\].
-fn slack(contact: &Contact, facet: &Facet, force: [f64; 2]) -> f64 {
-    (facet.bound * contact.area - dot(facet.normal, force)) / length(facet.normal)
-}
-
-/// Returns the indices of the facets whose slack is at most `tolerance` \[N\] at all of these forces.
-pub(super) fn active_facets(contact: &Contact, facets: &[Facet], forces: &[[f64; 2]], tolerance: f64) -> Vec<usize> {
-    let is_active = |facet: &Facet| forces.iter().all(|force| slack(contact, facet, *force) <= tolerance);
-    (0..facets.len()).filter(|f| is_active(&facets[*f])).collect()
+/// Adds the indices of the facets whose slack, divided by the length of their normal, is at most `tolerance` \[N\] at all of
+/// these forces.
+pub(super) fn active_facets(
+    active: &mut Vec<usize>,
+    (contact, facets): (&Contact, &[Facet]),
+    forces: &[[f64; 2]],
+    tolerance: f64,
+) {
+    for (index, facet) in facets.iter().enumerate() {
+        let least = facet.bound * contact.area - tolerance * length(facet.normal);
+        if forces.iter().all(|force| dot(facet.normal, *force) >= least) {
+            active.push(index);
+        }
+    }
 }
 
 /// Returns true if the active facets meet in the apex of dry friction: opening, and slip in both senses, without strength.
@@ -85,7 +90,8 @@ pub(super) fn point_modes(contact: &Contact, force: [f64; 2], open: bool, tolera
         PointLaw::Bonded => vec![ModeCone { mode: PointMode::Stick, force: PLANE.into(), gap: Vec::new() }],
         PointLaw::Response(_) => Vec::new(),
         PointLaw::Facets(facets) => {
-            let active = active_facets(contact, facets, &[force], tolerance);
+            let mut active = Vec::new();
+            active_facets(&mut active, (contact, facets), &[force], tolerance);
             if open { open_modes(facets, &active) } else { closed_modes(facets, &active) }
         }
     }

@@ -122,6 +122,7 @@ impl RateEquations {
                 column.equilibrium.extend([0, 1, 2].map(|k| (3 * side.body + k, row[k])));
             }
             let (Some(slot), Some(matrix)) = (side.slot, &problem.bodies[side.body].flexibility) else { continue };
+            column.gap.reserve(2 * on_body[side.body].len() + 1);
             for &(other, at, sense) in &on_body[side.body] {
                 let Some(at) = at else { continue };
                 let moved = [0, 1]

@@ -1,79 +1,44 @@
-//! Data of a state for its record: the deformation of the blocks (gaps, energy stored in blocks and joints),
-//! displacements of loaded points, and reactions of held blocks.
+//! Data of a state for its record: displacements of loaded points, reactions of held blocks, and the elastic energy.
 //!
-//! Elastic energy of a block in equilibrium: ½ Σ f·u over its contact and load points (Clapeyron); the work of gravity
-//! on the elastic displacements vanishes, since their mean does.
+//! Elastic energy of blocks and joints (Clapeyron): half of the loads times the displacements of their points, plus contact forces
+//! times gaps, minus reactions of moved supports times their motions. The work of gravity on the elastic displacements vanishes,
+//! since their mean does.
 
-use crate::linear::dense::add_product;
-use crate::linear::inner;
 use crate::path::energy::WorkState;
+use std::cell::LazyCell;
 use voussoir_core::model::geometry::{Vec2, turned};
-use voussoir_core::path::{Attachment, Contact, PathProblem, PathState};
+use voussoir_core::path::{PathProblem, PathState};
 
-/// The deformation of the blocks of a state by their forces.
-pub struct Deformation {
-    /// Displacements (x, y) of every body's points relative to its rigid motion \[m\]; empty for a rigid body.
-    points: Vec<Vec<f64>>,
-    /// Elastic energy of blocks and joints \[J\].
-    pub stored: f64,
-}
-
-impl Deformation {
-    /// Computes the deformation from the contact forces and loads of a state.
-    pub fn new(problem: &PathProblem, state: &PathState) -> Self {
-        let of_joint = |(contact, f): (&Contact, &[f64; 2])| {
-            0.5 * (contact.compliance[0] * f[0] * f[0] + contact.compliance[1] * f[1] * f[1])
-        };
-        let mut stored: f64 = problem.contacts.iter().zip(&state.force).map(of_joint).sum();
-        let mut forces: Vec<f64> = Vec::new();
-        let bodies = problem.bodies.iter().zip(problem.forces_on_points(state, false));
-        let points = bodies.map(|(body, on_points)| {
-            let Some(flexibility) = &body.flexibility else { return Vec::new() };
-            forces.clear();
-            on_points.iter().for_each(|f| forces.extend([f.x, f.y]));
-            let mut moved = vec![0.0; forces.len()];
-            add_product(&mut moved, flexibility, &forces);
-            stored += 0.5 * inner(&forces, &moved);
-            moved
-        });
-        Deformation { points: points.collect(), stored }
-    }
-
-    /// Returns the displacement of a point of a body relative to its rigid motion.
-    fn at(&self, body: usize, slot: Option<usize>) -> Vec2 {
-        let Some(own) = slot.and_then(|slot| self.points[body].get(2 * slot..2 * slot + 2)) else {
-            return Vec2::zeros();
-        };
-        Vec2::new(own[0], own[1])
-    }
-
-    /// Returns the gaps of all contact points \[m\].
-    pub fn gaps(&self, problem: &PathProblem, state: &PathState) -> Vec<[f64; 2]> {
-        let place = |side: Attachment, point: Vec2| {
-            problem.rigid_displacement(&state.motion, side.body, point, false) + self.at(side.body, side.slot)
-        };
-        let gap = |(contact, force): (&Contact, &[f64; 2])| {
-            let apart = place(contact.plus, contact.position) - place(contact.minus, contact.position);
-            let [n, t] = contact.compliance;
-            [contact.gap + apart.dot(&contact.normal) + n * force[0], apart.dot(&contact.tangent) + t * force[1]]
-        };
-        problem.contacts.iter().zip(&state.force).map(gap).collect()
-    }
-}
-
-/// Returns the data of a state, with its deformation, for the work of a step.
-pub fn work_state(problem: &PathProblem, state: &PathState, deformation: &Deformation) -> WorkState {
+/// Returns the data of a state for the work of a step, and the elastic energy of blocks and joints \[J\].
+pub fn work_state(problem: &PathProblem, state: &PathState) -> (WorkState, f64) {
+    let forces = LazyCell::new(|| problem.forces_on_points(state, false));
     let place = |&(body, slot, point, _): &(usize, Option<usize>, Vec2, Vec2)| {
-        problem.rigid_displacement(&state.motion, body, point, false) + deformation.at(body, slot)
+        let rigid = problem.rigid_displacement(&state.motion, body, point, false);
+        let Some((slot, flexibility)) = slot.zip(problem.bodies[body].flexibility.as_ref()) else { return rigid };
+        let by = |i: usize| {
+            let entries = flexibility.column(2 * slot + i);
+            forces[body].iter().enumerate().map(|(k, f)| entries[2 * k] * f.x + entries[2 * k + 1] * f.y).sum()
+        };
+        rigid + Vec2::new(by(0), by(1))
     };
     let displacements = problem.load_steps.iter().map(|step| step.loading.forces.iter().map(place).collect());
+    let displacements: Vec<Vec<Vec2>> = displacements.collect();
     let factors = problem.applied(state.load_step, state.factor);
     // Only settlements do work on reactions.
     let settles = problem.load_steps.iter().any(|step| !step.loading.settlements.is_empty());
     let at_rest = || vec![[0.0; 3]; problem.bodies.len()];
     let unbalanced = if settles { unbalanced(problem, state, &factors) } else { at_rest() };
-    let displacements = displacements.collect();
-    WorkState { factors, displacements, motion: state.motion.clone(), unbalanced }
+    let points = problem.contacts.iter().zip(state.force.iter().zip(&state.gap));
+    let by_gaps: f64 = points.map(|(contact, (f, gap))| f[0] * (gap[0] - contact.gap) + f[1] * gap[1]).sum();
+    let reactions = unbalanced.as_flattened().iter().zip(state.motion.as_flattened());
+    let mut twice = by_gaps - reactions.map(|(reaction, moved)| reaction * moved).sum::<f64>();
+    for ((step, factor), places) in problem.load_steps.iter().zip(&factors).zip(&displacements) {
+        let pushed = step.loading.forces.iter().zip(places).map(|(force, place)| force.3.dot(place));
+        let weights = problem.bodies.iter().zip(&state.motion);
+        let lifted = weights.map(|(body, q)| body.mass * step.loading.acceleration.dot(&Vec2::new(q[0], q[1])));
+        twice += factor * (pushed.sum::<f64>() + lifted.sum::<f64>());
+    }
+    (WorkState { factors, displacements, motion: state.motion.clone(), unbalanced }, 0.5 * twice)
 }
 
 /// Returns the unbalanced loads and contact forces of every body about its pole.

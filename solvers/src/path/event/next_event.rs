@@ -91,6 +91,9 @@ pub fn advance(trace: &mut Trace, direction: &Direction, step: f64, sense: f64, 
     for (x, rate) in trace.state.x.iter_mut().zip(&direction.x) {
         *x += step * rate;
     }
+    for (gap, rate) in trace.state.gaps.as_flattened_mut().iter_mut().zip(direction.gaps.as_flattened()) {
+        *gap += step * rate;
+    }
     trace.state.factor += sense * step * direction.factor;
     trace.state.sense = direction.factor;
     let size = largest(&direction.x[..2 * trace.system.contacts]);

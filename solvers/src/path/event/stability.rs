@@ -2,7 +2,7 @@
 //!
 //! With small displacements K is the stiffness that connects the bodies with the modes of the contact points held. If
 //! no point slides with non-associated flow, K is GᵀC⁻¹G, which is positive semidefinite: the state is stable unless
-//! some motion has no stiffness. If slip is not associated, K is not symmetric, and its second-order work is examined
+//! some motion has no stiffness. In a chain of joints each motion has stiffness if two points of each joint stick. If slip is not associated, K is not symmetric, and its second-order work is examined
 //! ([`stability`](crate::path::stability)). Points that slide, or are about to, may continue or stick: positive with
 //! all of them free is sufficient, negative with all of them held is instability, otherwise nothing is proved.
 
@@ -99,6 +99,10 @@ fn is_stiff(motions: usize, respond: impl Fn(&DMatrix<f64>) -> Option<DMatrix<f6
 pub fn stage_stability(trace: &Trace, load: &Load) -> StageStability {
     let stage = trace.problem.load_steps[trace.state.load_step].stage;
     let (free, held) = (modes(trace, released), modes(trace, |_, _| ContactMode::Stick));
+    if trace.associated && trace.factors.chain.as_ref().is_some_and(|chain| chain.is_stiff(&free)) {
+        let stable = Some(true);
+        return StageStability { stage, under_load: stable, under_control: stable, sufficient_only: false };
+    }
     let same = free == held;
     let mut free = HeldModes::new(trace, free);
     let positive = |found: &Option<HeldModes>| found.as_ref().map(HeldModes::positive);

@@ -1,6 +1,6 @@
 //! The data of a path: the problem in its units, the present state, the factorisation for many events, and the records.
 
-use super::energy::{Deformation, work_state};
+use super::energy::work_state;
 use super::joint_chain::{JointChain, Question, by_joint_chain};
 use super::piece::factorisation::FactorisedModes;
 use super::piece::point::Point;
@@ -20,6 +20,8 @@ use voussoir_core::path::{
 pub struct State {
     /// All unknowns.
     pub x: Vec<f64>,
+    /// Gaps of all contact points.
+    pub gaps: Vec<[f64; 2]>,
     /// Contact points.
     pub points: Vec<Point>,
     /// The load step in force and its factor.
@@ -39,6 +41,7 @@ impl State {
     pub fn at_rest(system: &System, points: Vec<Point>, load_step: usize) -> State {
         State {
             x: vec![0.0; system.size()],
+            gaps: system.gap.iter().map(|gap| [*gap, 0.0]).collect(),
             points,
             load_step,
             factor: 0.0,
@@ -220,17 +223,12 @@ impl<'a> Trace<'a> {
 
     /// Returns the present state in physical units, with the energies of the last record.
     pub fn present(&self) -> PathState {
-        self.deformed().0
-    }
-
-    /// Returns the present state with the deformation of the blocks.
-    fn deformed(&self) -> (PathState, Deformation) {
-        let motion = self.motion();
-        let state = &self.state;
-        let mut present = PathState {
+        let (motion, state, units) = (self.motion(), &self.state, self.system.units);
+        PathState {
             load_step: state.load_step,
             factor: state.factor,
-            force: (0..self.system.contacts).map(|c| state.force(c).map(|f| f * self.system.units.force)).collect(),
+            force: (0..self.system.contacts).map(|c| state.force(c).map(|f| f * units.force)).collect(),
+            gap: state.gaps.iter().map(|[n, t]| [n * units.displacement, t * units.displacement]).collect(),
             stored: self.log.last.as_ref().map_or(0.0, |(_, stored)| *stored),
             dissipated: state.energy.dissipated,
             work: state.energy.work,
@@ -238,10 +236,7 @@ impl<'a> Trace<'a> {
             motion,
             stable_under_load: state.stable_under_load,
             ..PathState::default()
-        };
-        let deformation = Deformation::new(self.problem, &present);
-        present.gap = deformation.gaps(self.problem, &present);
-        (present, deformation)
+        }
     }
 
     /// Returns the energy stored by the tensile strength of open points \[J\].
@@ -258,9 +253,9 @@ impl<'a> Trace<'a> {
 
     /// Updates the energy balance and calls the observer. Returns true if the path continues.
     pub fn record(&mut self) -> bool {
-        let (mut state, deformation) = self.deformed();
-        let now = work_state(self.problem, &state, &deformation);
-        let stored = deformation.stored + self.stored_by_opening();
+        let mut state = self.present();
+        let (now, elastic) = work_state(self.problem, &state);
+        let stored = elastic + self.stored_by_opening();
         if let Some((before, _)) = &self.log.last {
             let loadings: Vec<&Loading> = self.problem.load_steps.iter().map(|step| &step.loading).collect();
             self.state.energy.add_work(self.problem, &loadings, before, &now);

@@ -14,7 +14,6 @@
 use super::piece::point::Point;
 use crate::contact::facet::{dilatancy, dot, multipliers};
 use crate::contact::mode::ContactMode;
-use crate::linear::null_space::null_space;
 use crate::optimise::dense_simplex::Feasibility;
 use crate::path::system::{Load, System};
 use crate::rate::mechanism::mechanisms;
@@ -36,8 +35,23 @@ pub fn unique(system: &System, points: &[Point], load: &Load, x: &[f64], gaps: &
     }
     let size = gaps.iter().flatten().fold(0.0, |a: f64, g| a.max(g.abs()));
     let space = |flows: &dyn Fn(usize) -> Option<Vec<[f64; 2]>>| {
-        let rows: Vec<Vec<f64>> = (0..points.len()).flat_map(|c| constraints(system, c, flows(c))).collect();
-        null_space(&DMatrix::from_fn(rows.len(), freedoms, |i, j| rows[i][j]), SETTINGS.admissible)
+        // Two points without flow hold two bodies together: further points between them constrain nothing.
+        let mut held: Vec<([usize; 2], usize)> = Vec::new();
+        let mut rows: Vec<Vec<f64>> = Vec::new();
+        for c in 0..points.len() {
+            let columns = system.kinematics.row(2 * c);
+            let own = [columns.first(), columns.last()].map(|entry| entry.map_or(usize::MAX, |entry| entry.0));
+            let stuck = held.iter().position(|(pair, _)| *pair == own).unwrap_or_else(|| {
+                held.push((own, 0));
+                held.len() - 1
+            });
+            if held[stuck].1 < 2 {
+                let flows = flows(c);
+                held[stuck].1 += usize::from(flows.as_ref().is_some_and(Vec::is_empty));
+                rows.extend(constraints(system, c, flows));
+            }
+        }
+        null_space(&DMatrix::from_fn(rows.len().max(freedoms), freedoms, |i, j| rows.get(i).map_or(0.0, |row| row[j])))
     };
     let possible = |c: usize| {
         let Some(facets) = &system.facets[c] else { return Some(Vec::new()) };
@@ -74,16 +88,30 @@ pub fn unique(system: &System, points: &[Point], load: &Load, x: &[f64], gaps: &
         };
         Some(flows.into_iter().filter(at_work).map(|(f, _)| facets[f].flow).collect())
     };
-    let all = space(&possible)?;
+    let all = space(&possible);
     if all.ncols() == 1 {
         return Some(true);
     }
-    if space(&working)?.ncols() > 1 {
+    if space(&working).ncols() > 1 {
         return Some(false);
     }
     let power: Vec<f64> = load.wrench.iter().flatten().copied().collect();
     let own: f64 = power.iter().zip(&x[2 * system.contacts..]).map(|(p, q)| p * q).sum();
     by_signs(system, points, &all, &power.iter().map(|p| p * own.signum()).collect::<Vec<_>>())
+}
+
+/// Returns vectors that span the x with A x = 0, as columns, by a decomposition with pivots. A has no more columns than rows.
+fn null_space(matrix: &DMatrix<f64>) -> DMatrix<f64> {
+    let (n, qr) = (matrix.ncols(), matrix.clone().col_piv_qr());
+    let r = qr.r();
+    let rank = (0..n).take_while(|i| r[(*i, *i)].abs() > SETTINGS.admissible * r[(0, 0)].abs()).count();
+    let mut null = DMatrix::zeros(n, n - rank);
+    null.view_mut((rank, 0), (n - rank, n - rank)).fill_with_identity();
+    let mut dependent = -r.view((0, rank), (rank, n - rank)).clone_owned();
+    let _ = r.view((0, 0), (rank, rank)).solve_upper_triangular_mut(&mut dependent);
+    null.view_mut((0, 0), (rank, n - rank)).copy_from(&dependent);
+    qr.p().inv_permute_rows(&mut null);
+    null
 }
 
 /// Returns true if only one mechanism N y has a power of 1.

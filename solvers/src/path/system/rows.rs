@@ -17,6 +17,7 @@ pub fn flexibility_rows(problem: &PathProblem) -> Vec<Vec<(usize, f64)>> {
         let Some(matrix) = &body.flexibility else { continue };
         for &(a, slot_a, sign_a) in points {
             let (ca, sa) = (&problem.contacts[a], 2 * slot_a);
+            (0..2).for_each(|i| rows[2 * a + i].reserve(2 * points.len() + 1));
             for &(b, slot_b, sign_b) in points {
                 let (cb, sb) = (&problem.contacts[b], 2 * slot_b);
                 let at = |i: usize, j: usize| matrix[(sa + i, sb + j)];

@@ -83,6 +83,11 @@ impl JointChain {
         self.factors.all.len()
     }
 
+    /// Returns true if two points of each joint stick in given modes, so that each motion deforms a joint.
+    pub fn is_stiff(&self, modes: &[ContactMode]) -> bool {
+        self.factors.all.iter().all(|factor| !factor.joint.is_weak(modes))
+    }
+
     /// Returns the number of factorisations of all joints.
     pub fn factorisations(&self) -> u64 {
         self.updates.factorisations

@@ -38,10 +38,11 @@ fn ordered(system: &System, sections: &Sections) -> Option<Vec<(usize, bool)>> {
     let mut beside: Vec<Vec<usize>> = vec![Vec::new(); sections.all.len()];
     for (e, section) in sections.all.iter().enumerate() {
         let rows = section.places.iter().flat_map(|p| [2 * p.contact, 2 * p.contact + 1]);
-        let felt = rows.flat_map(|row| system.flexibility.row(row)).map(|entry| sections.of[entry.0 / 2]);
-        beside[e].extend(felt.filter(|other| *other != e));
-        beside[e].sort_unstable();
-        beside[e].dedup();
+        for other in rows.flat_map(|row| system.flexibility.row(row)).map(|entry| sections.of[entry.0 / 2]) {
+            if other != e && !beside[e].contains(&other) {
+                beside[e].push(other);
+            }
+        }
         if beside[e].len() > 2 {
             return None;
         }
@@ -183,11 +184,12 @@ impl Joint {
             let row = &block.as_slice()[block.nrows() * (2 * p + i)..][..block.nrows()];
             Some(dot(row, &of(e)[..row.len()]))
         };
-        [0, 1].map(|i| {
+        let component = |i: usize| {
             let twist: f64 = (0..3).map(|j| self.by_twist[(2 * p + i, j)] * of(e)[m + j]).sum();
             let beside = row(1, i, e.wrapping_sub(1)).unwrap_or(0.0) + row(2, i, e + 1).unwrap_or(0.0);
             row(0, i, e).unwrap_or(0.0) + twist + beside
-        })
+        };
+        [component(0), component(1)]
     }
 
     /// Returns a component of the resultant of its forces.
