@@ -179,14 +179,15 @@ impl PathChain {
         let allowed = Allowed { slack: ACTIVE * force, opening: CLOSED * size + rounding };
         let mut openings = Vec::with_capacity(last.openings.len());
         let (mut drift, mut active) = (0.0f64, Vec::new());
-        for (index, contact) in problem.contacts.iter().enumerate() {
+        let [forces, gaps] = [last.state.force.iter().zip(&state.force), last.state.gap.iter().zip(&state.gap)];
+        let points = problem.contacts.iter().zip(forces.zip(gaps)).zip(&last.openings).enumerate();
+        for (index, ((contact, (forces, gaps)), opening)) in points {
             if contact.law.response().is_some() {
                 openings.push(0.0);
                 continue;
             }
-            let forces = [last.state.force[index], state.force[index]];
-            let gaps = [last.state.gap[index], state.gap[index]];
-            let passed = passed(&mut active, contact, [forces, gaps], last.openings[index], allowed);
+            let ends = [[*forces.0, *forces.1], [*gaps.0, *gaps.1]];
+            let passed = passed(&mut active, contact, ends, *opening, allowed);
             let off = passed.outside - rounding;
             if off.is_nan() || self.drift + off.max(0.0) > DRIFT * size {
                 return Err(format!("the gap of contact point {index} does not flow as its law says"));

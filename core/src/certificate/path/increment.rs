@@ -86,6 +86,12 @@ fn flowing(facets: &[Facet], active: &[usize], moved: [f64; 2], stuck: Passed) -
 /// The increment of an open point on its opening facet.
 fn reopened(facets: &[Facet], active: &[usize], facet: usize, moved: [f64; 2], opening: f64) -> Passed {
     let [d, back] = [facets[facet].flow.map(|d| -d), facets[facet].flow];
+    if active.len() == 1 {
+        // Its flows in both senses are a line.
+        let opened = dot(moved, d) / dot(d, d);
+        let (off, after) = (length([moved[0] - opened * d[0], moved[1] - opened * d[1]]), opening + opened);
+        return Passed { opening: after.max(0.0), outside: off.max(-after) };
+    }
     let others = active.iter().filter(|f| **f != facet).map(|f| facets[*f].flow.map(|d| -d));
     let off = outside(moved, [d, back].into_iter().chain(others));
     let after = opening + opened_by(facets, active, facet, moved);

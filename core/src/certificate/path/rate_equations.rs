@@ -91,7 +91,7 @@ impl RateEquations {
         }
         for (body, contacts) in on_body.iter().enumerate() {
             for k in 0..3 {
-                let mut column = Column::default();
+                let mut column = Column { equilibrium: Vec::new(), gap: Vec::with_capacity(2 * contacts.len()) };
                 for &(contact, _, sign) in contacts.iter().filter(|_| !self.held[body]) {
                     let rows = problem.kinematics(&problem.contacts[contact], sign > 0.0);
                     column.gap.extend([0, 1].map(|i| (2 * contact + i, rows[i][k])));

@@ -1,6 +1,5 @@
 //! A step along a direction: the distance to the next events, and their changes.
 
-use super::piece::point::Point;
 use super::piece::rates::Direction;
 use super::trace::Trace;
 use crate::contact::facet::{dot, slack};
@@ -72,18 +71,13 @@ fn irreversible(trace: &Trace, c: usize, gap: [f64; 2], opening: f64) -> [f64; 2
 /// Moves a step along a direction and records the events at its end.
 pub fn advance(trace: &mut Trace, direction: &Direction, step: f64, sense: f64, hits: &[(usize, usize)]) {
     let unit = trace.system.units.energy();
-    let opening = |(c, point): (usize, &Point)| match point.mode {
-        ContactMode::Stick if !point.open() => 0.0,
-        _ => opening_rate(trace, c, direction.gaps[c]),
-    };
-    let openings: Vec<f64> = trace.state.points.iter().enumerate().map(opening).collect();
     let mut dissipated = trace.state.energy.dissipated;
     for (c, point) in trace.state.points.iter().enumerate() {
         if matches!(point.mode, ContactMode::Stick | ContactMode::Open) {
             continue;
         }
         let mean = [0, 1].map(|i| trace.state.x[2 * c + i] + 0.5 * step * direction.x[2 * c + i]);
-        let flow = irreversible(trace, c, direction.gaps[c], openings[c]);
+        let flow = irreversible(trace, c, direction.gaps[c], opening_rate(trace, c, direction.gaps[c]));
         dissipated -= dot(mean, flow) * step * unit;
     }
     trace.state.energy.dissipated = dissipated;
@@ -97,29 +91,29 @@ pub fn advance(trace: &mut Trace, direction: &Direction, step: f64, sense: f64, 
     trace.state.factor += sense * step * direction.factor;
     trace.state.sense = direction.factor;
     let size = largest(&direction.x[..2 * trace.system.contacts]);
-    for (c, opening_rate) in openings.into_iter().enumerate() {
-        let rate = [direction.x[2 * c], direction.x[2 * c + 1]];
-        stepped(trace, c, rate, step * opening_rate, before, size);
+    for c in 0..trace.system.contacts {
+        stepped(trace, direction, c, (step, before), size);
     }
     arrive(trace, hits);
 }
 
 /// Applies a step to a contact point: its opening, the facets that it leaves, and the events recorded at the factor
 /// `before` the step. `size`: greatest rate of force.
-pub fn stepped(trace: &mut Trace, c: usize, rate: [f64; 2], opening: f64, before: f64, size: f64) {
-    let Some(facets) = &trace.system.facets[c] else { return };
-    let was_open = trace.state.points[c].open();
-    let was_hit = trace.state.points[c].arrived_from.take().is_some();
+fn stepped(trace: &mut Trace, direction: &Direction, c: usize, (step, before): (f64, f64), size: f64) {
     let point = &mut trace.state.points[c];
-    if !was_open && point.mode == ContactMode::Stick && point.active.is_empty() {
+    let (was_open, was_hit) = (point.open(), point.arrived_from.take().is_some());
+    let flows = was_open || point.mode != ContactMode::Stick;
+    if !flows && point.active.is_empty() {
         return;
     }
-    let flows = point.mode != ContactMode::Stick;
-    point.opening = if was_open || flows { (point.opening + opening).max(0.0) } else { 0.0 };
+    let opening = if flows { step * opening_rate(trace, c, direction.gaps[c]) } else { 0.0 };
+    let Some(facets) = &trace.system.facets[c] else { return };
+    let point = &mut trace.state.points[c];
+    point.opening = if flows { (point.opening + opening).max(0.0) } else { 0.0 };
     let mut happened = begun(point.mode, facets, was_hit, !was_open && point.open());
     // Facets that this direction leaves become inactive.
     if !(point.open() && point.apex) {
-        let force = [trace.state.x[2 * c], trace.state.x[2 * c + 1]];
+        let [force, rate] = [&trace.state.x, &direction.x].map(|x| [x[2 * c], x[2 * c + 1]]);
         let had = point.active.len();
         point.active.retain(|f| {
             let facet = &facets[*f];

@@ -57,7 +57,8 @@ pub fn closing(
             let shares = || section.shares.iter().enumerate().filter(|s| *s.1 != 0.0);
             for j in 0..size {
                 let v = to_origin * by(column(j));
-                shares().for_each(|(k, share)| (0..3).for_each(|i| matrix[(3 * k + i, j)] += share * v[i]));
+                let sums = &mut matrix.as_mut_slice()[size * j..size * (j + 1)];
+                shares().for_each(|(k, share)| (0..3).for_each(|i| sums[3 * k + i] += share * v[i]));
             }
             let constant = to_origin * (constant + before);
             shares().for_each(|(k, share)| (0..3).for_each(|i| right[3 * k + i] -= share * constant[i]));
