@@ -160,18 +160,10 @@ pub fn add_outer(target: &mut DMatrix<f64>, a: &DMatrix<f64>, b: &DMatrix<f64>) 
 
 #[inline(always)]
 fn add_dyads<S: Simd>(simd: S, target: &mut DMatrix<f64>, a: &DMatrix<f64>, b: &DMatrix<f64>) {
-    let (height, rows) = (target.nrows(), a.nrows());
-    let mut factors = vec![0.0; a.ncols()];
-    for (j, column) in target.as_mut_slice().chunks_exact_mut(height).enumerate() {
-        factors.iter_mut().enumerate().for_each(|(i, f)| *f = b[(j, i)]);
-        match factors.as_slice() {
-            [0.0] | [0.0, 0.0] => {}
-            [f] => add_one(simd, column, a.as_slice(), *f),
-            [f, g] => {
-                let (a, b) = a.as_slice().split_at(height);
-                column.iter_mut().zip(a.iter().zip(b)).for_each(|(t, (a, b))| *t += a * f + b * g);
-            }
-            _ => add_columns(simd, column, rows, a.as_slice(), &factors),
+    let (height, width) = target.shape();
+    for (a, b) in a.as_slice().chunks_exact(a.nrows()).zip(b.as_slice().chunks_exact(width)) {
+        for (column, f) in target.as_mut_slice().chunks_exact_mut(height).zip(b).filter(|(_, f)| **f != 0.0) {
+            add_one(simd, column, a, *f);
         }
     }
 }

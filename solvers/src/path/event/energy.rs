@@ -5,25 +5,28 @@
 //! since their mean does.
 
 use crate::path::energy::WorkState;
-use std::cell::LazyCell;
 use voussoir_core::model::geometry::{Vec2, turned};
 use voussoir_core::path::{PathProblem, PathState};
 
 /// Returns the data of a state for the work of a step, and the elastic energy of blocks and joints \[J\].
 pub fn work_state(problem: &PathProblem, state: &PathState) -> (WorkState, f64) {
-    let forces = LazyCell::new(|| problem.forces_on_points(state, false));
+    let factors = problem.applied(state.load_step, state.factor);
     let place = |&(body, slot, point, _): &(usize, Option<usize>, Vec2, Vec2)| {
-        let rigid = problem.rigid_displacement(&state.motion, body, point, false);
-        let Some((slot, flexibility)) = slot.zip(problem.bodies[body].flexibility.as_ref()) else { return rigid };
-        let by = |i: usize| {
-            let entries = flexibility.column(2 * slot + i);
-            forces[body].iter().enumerate().map(|(k, f)| entries[2 * k] * f.x + entries[2 * k + 1] * f.y).sum()
-        };
-        rigid + Vec2::new(by(0), by(1))
+        let mut place = problem.rigid_displacement(&state.motion, body, point, false);
+        let Some((slot, flexibility)) = slot.zip(problem.bodies[body].flexibility.as_ref()) else { return place };
+        for (contact, f) in problem.contacts.iter().zip(&state.force) {
+            for (side, sense) in [(contact.plus, 1.0), (contact.minus, -1.0)] {
+                if let (true, Some(at)) = (side.body == body, side.slot) {
+                    let force = (contact.normal * f[0] + contact.tangent * f[1]) * sense;
+                    place += flexibility.fixed_view::<2, 2>(2 * slot, 2 * at) * force;
+                }
+            }
+        }
+        let loads = problem.load_steps.iter().zip(&factors);
+        loads.fold(place, |place, (step, factor)| place + problem.deformation(&step.loading, body, slot) * *factor)
     };
     let displacements = problem.load_steps.iter().map(|step| step.loading.forces.iter().map(place).collect());
     let displacements: Vec<Vec<Vec2>> = displacements.collect();
-    let factors = problem.applied(state.load_step, state.factor);
     // Only settlements do work on reactions.
     let settles = problem.load_steps.iter().any(|step| !step.loading.settlements.is_empty());
     let at_rest = || vec![[0.0; 3]; problem.bodies.len()];

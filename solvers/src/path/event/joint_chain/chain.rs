@@ -6,7 +6,7 @@ use super::rates::ChainRates;
 use super::redundants::{MOST_WEAK, Open, closing};
 use super::sections::Sections;
 use crate::contact::mode::{ContactMode, parts};
-use crate::linear::dense::add_product;
+use crate::linear::dense::{add_outer, add_product};
 use crate::path::event::piece::rates::Rates;
 use crate::path::system::{Load, System};
 use crate::settings::SETTINGS;
@@ -222,13 +222,9 @@ impl JointChain {
     /// `kept`.
     fn respond(&mut self, e: usize, first: usize, left: &DMatrix<f64>, kept: &[f64]) {
         let window = self.factors.respond(e, first, left.nrows());
-        for (response, columns) in self.columns.responses[window.first..].iter_mut().zip(&window.columns) {
-            let height = response.nrows();
-            let lefts = left.as_slice().chunks_exact(left.nrows());
-            for (response, left) in response.as_mut_slice().chunks_exact_mut(height).zip(lefts) {
-                add_product(response, columns, left);
-            }
-        }
+        let responses = self.columns.responses[window.first..].iter_mut().zip(&window.columns);
+        let rows = left.transpose();
+        responses.for_each(|(response, columns)| add_outer(response, columns, &rows));
         if let (Some(rates), false) = (&mut self.rates, kept.is_empty()) {
             let own = rates.own[window.first..].iter_mut().zip(&window.columns);
             own.for_each(|(own, columns)| add_product(own, columns, kept));
