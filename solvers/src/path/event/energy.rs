@@ -1,8 +1,8 @@
 //! Data of a state for its record: displacements of loaded points, reactions of held blocks, and the elastic energy.
 //!
-//! Elastic energy of blocks and joints (Clapeyron): half of the loads times the displacements of their points, plus contact forces
-//! times gaps, minus reactions of moved supports times their motions. The work of gravity on the elastic displacements vanishes,
-//! since their mean does.
+//! Elastic energy of blocks and joints (Clapeyron): E = ½ (Σ F·u + Σ r·(g − g_0) + Σ R·q) with loads F, displacements u of their
+//! points, contact forces r, gaps g, reactions R of held blocks and their motions q. The work of gravity on the elastic
+//! displacements vanishes, since their mean does.
 
 use crate::path::energy::WorkState;
 use voussoir_core::model::geometry::{Vec2, turned};

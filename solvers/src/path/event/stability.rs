@@ -2,7 +2,8 @@
 //!
 //! With small displacements K is the stiffness that connects the bodies with the modes of the contact points held. If
 //! no point slides with non-associated flow, K is GᵀC⁻¹G, which is positive semidefinite: the state is stable unless
-//! some motion has no stiffness. In a chain of joints each motion has stiffness if two points of each joint stick. If slip is not associated, K is not symmetric, and its second-order work is examined
+//! some motion has no stiffness. In a chain of joints every motion has stiffness if two points of each joint stick. If
+//! slip is not associated, K is not symmetric, and its second-order work is examined
 //! ([`stability`](crate::path::stability)). Points that slide, or are about to, may continue or stick: positive with
 //! all of them free is sufficient, negative with all of them held is instability, otherwise nothing is proved.
 
