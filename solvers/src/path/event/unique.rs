@@ -176,3 +176,21 @@ fn constraints(system: &System, c: usize, flows: Option<Vec<[f64; 2]>>) -> Vec<V
     }
     vec![row([-first[1] / length(*first), first[0] / length(*first)])]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Vectors of the null space have no image, and their number completes the rank.
+    #[test]
+    fn null_spaces_complete_the_rank() {
+        let mut random = Random::from_state(5);
+        let mut matrix = |rows, columns| DMatrix::from_fn(rows, columns, |_, _| random.signed());
+        for (rows, columns, rank) in [(6, 4, 2), (4, 4, 4), (5, 3, 0), (9, 7, 6)] {
+            let product = matrix(rows, rank) * matrix(rank, columns);
+            let null = null_space(&product);
+            assert_eq!(null.ncols(), columns - rank);
+            assert!((product * null).iter().all(|x| x.abs() < 1e-13));
+        }
+    }
+}
