@@ -2,11 +2,11 @@
 //! (`path`: from event to event, and steps by Newton's method), of limit analysis in space (`space`) and of one point of a law
 //! (`point`).
 //!
-//! They use four folders that do not depend on assemblies: `optimise` (dense simplex, complementarity problems, cutting planes, line
-//! search), `linear` (sparse rows, factorisations that follow changes of few rows), `contact` (modes, yield polygon and
-//! return map of one contact point) and `rate` (the rate problem over the active set, for both path solvers). Solvers
-//! do not depend on laws: limit analysis reads strengths of a joint ([`voussoir_core::law::JointStrength`]); paths read
-//! facets, or tractions as functions of gaps.
+//! They use four folders that do not depend on assemblies: `optimise` (dense simplex, complementarity problems, cutting
+//! planes), `linear` (sparse rows, factorisations that follow changes of few rows), `contact` (modes and yield polygon of
+//! one contact point) and `rate` (the rate problem over the active set, for both path solvers). Solvers do not depend on
+//! laws: limit analysis reads strengths of a joint ([`voussoir_core::law::JointStrength`]); paths read facets, or
+//! tractions as functions of gaps.
 #![forbid(unsafe_code)]
 
 mod contact;

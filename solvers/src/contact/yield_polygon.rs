@@ -1,4 +1,4 @@
-//! The yield polygon of a law, its return map and the modes of a step.
+//! The yield polygon of a law and the modes of a step.
 //!
 //! With Δg = g − s, s the irreversible gap at the last converged state, facets a·r ≤ b A and flow d, the law of a step
 //! is Δg = −Σ γ d, 0 ≤ γ ⟂ b A − a·r ≥ 0: the return of z = r − ρ Δg to the polygon along ρ d. The return gives the
@@ -93,16 +93,6 @@ impl YieldPolygon {
         let pair = |p: &[usize; 2]| p.contains(&i) && p.contains(&j);
         let own = self.corners.iter().find(|(_, pairs)| pairs.iter().any(pair));
         own.or_else(|| self.corners.iter().find(|c| c.0 == [0.0; 2])).map(|corner| self.mode_at(corner))
-    }
-
-    /// Returns the force r to which z = r − ρ Δg returns.
-    pub fn return_map(&self, z: [f64; 2], rho: [f64; 2], area: f64) -> [f64; 2] {
-        let mode = self.mode(ContactMode::Stick, z, rho, area, 0.0);
-        match mode {
-            ContactMode::Stick => z,
-            ContactMode::Facet(i) => self.return_to_facet(i as usize, z, rho, area).0,
-            ContactMode::Corner(..) | ContactMode::Open => self.corner(mode).map_or(z, |r| r.map(|x| x * area)),
-        }
     }
 
     /// Returns the projection of z onto a facet along ρ d, and its multiplier times ρ.

@@ -3,4 +3,3 @@
 pub mod cutting_planes;
 pub(crate) mod dense_simplex;
 pub(crate) mod lcp;
-pub(crate) mod line_search;

@@ -104,7 +104,7 @@ fn a_proved_limit_point_is_listed_if_the_way_on_is_open() {
 }
 
 /// Many points at the limit of their mode are decided: under the dead load 47 points are at this limit before any live
-/// load, and the line search finds their rate. The wall slides on its ground at λ = μ.
+/// load, and a search for their rate is decided. The wall slides on its ground at λ = μ.
 #[test]
 fn many_points_at_the_verge_of_a_change_are_decided() {
     let exponent: f64 = -0.263_854_514_873_449_8;
@@ -125,10 +125,10 @@ fn many_points_at_the_verge_of_a_change_are_decided() {
     }
 }
 
-/// The line search saves cut-backs: with finite displacements the modes of these steps do not settle with full
-/// iterations.
+/// With finite displacements the modes of these steps settle slowly. Newton's method needs no line search for them: steps
+/// are cut only for their energy.
 #[test]
-fn the_line_search_saves_cut_backs() {
+fn slow_modes_cost_no_cut_backs() {
     let strengths = (
         Law::Strengths,
         -1.073_508_420_946_689_9,
@@ -157,9 +157,7 @@ fn the_line_search_saves_cut_backs() {
         let study = scene_of(numbers).study("newton_path\"\nkinematics = \"finite", None);
         let result = answered(&study);
         assert_close(certified(&result, Status::Collapse), factor, 1e-4);
-        // Steps are cut only for their energy.
         assert!(result.counters["cutbacks"] <= 20, "{:?}", result.counters);
-        assert!(result.counters["line_searched_steps"] > 0, "{:?}", result.counters);
         // The history of slip needs many steps; each needs few iterations.
         assert!(result.counters["newton_iterations"] <= 6 * result.counters["steps"], "{:?}", result.counters);
     }

@@ -1,7 +1,6 @@
 //! Limits that differ between small and finite displacements, and between laws with and without a history. They are chosen once,
 //! when the system of a step is built.
 
-use crate::optimise::line_search::LineSearch;
 use crate::path::system::Units;
 use crate::settings::SETTINGS;
 use voussoir_core::path::PathProblem;
@@ -9,8 +8,6 @@ use voussoir_core::path::PathProblem;
 /// Limits of the iterations of Newton's method.
 #[derive(Debug, Clone)]
 pub struct Iterations {
-    /// Rule that shortens all iterations.
-    pub search: Option<LineSearch>,
     /// Greatest number of iterations of Newton's method.
     pub iterations: u64,
     /// Greatest number of iterations with equations without a solution: the solution of the shifted equations, which
@@ -60,7 +57,7 @@ impl Limits {
             nearby: finite && chain && !remembers,
             // The strength of a block that may yield bounds the load, and so do displaced positions.
             carries_any_load: !yields && !finite,
-            newton: Iterations { search: None, iterations: 30, unsolved: 10, cycle: u32::MAX, one_step: u64::MAX },
+            newton: Iterations { iterations: 30, unsolved: 10, cycle: u32::MAX, one_step: u64::MAX },
             rounding: 0.0,
             branch: f64::INFINITY,
             place: 0.0,
@@ -79,11 +76,7 @@ impl Limits {
             (limits.weak, limits.mechanism) = (SETTINGS.small, 1e-3);
         }
         if bonds {
-            // Between the pieces of a law whole iterations may cycle. A softening law converges soon or not at all:
-            // shorter steps cost less than more iterations.
-            let nothing = SETTINGS.admissible;
-            limits.newton.search =
-                Some(LineSearch { decrease: 0.3, halvings: 4, memory: 1, nothing, merits: Vec::new() });
+            // A softening law converges soon or not at all: shorter steps cost less than more iterations.
             (limits.newton.iterations, limits.branch) = (25, SETTINGS.half);
             limits.rounding = limits.rounding.max(400.0 * f64::EPSILON);
             // Softening bonds need a smaller energy error in each step.

@@ -11,9 +11,9 @@ use crate::path::newton::quantities::control_row::{control_row, control_value};
 use crate::path::newton::quantities::inelastic::block_error;
 use crate::path::newton::quantities::response::traction_error;
 use crate::path::newton::solve::iteration::{
-    LinearisedAt, first_state, gap_error, largest_unknown, relative_residual, rotation_bound, unbalanced_share,
+    LinearisedAt, advanced, first_state, gap_error, largest_unknown, relative_residual, rotation_bound,
+    unbalanced_share,
 };
-use crate::path::newton::solve::line_search::advanced;
 use crate::path::newton::solve::linearised::residual_of;
 use crate::path::newton::solve::nearby::{Accuracy, solve};
 use crate::settings::SETTINGS;

@@ -1,12 +1,10 @@
 //! Newton's method on the contact modes of a step.
 
-use super::line_search::{advanced, searched};
 use super::linearised::residual_of;
 use super::nearby::{Accuracy, solve};
-use super::tangent::wanted_modes;
+use super::tangent::{apply_step, wanted_modes};
 use crate::contact::mode::ContactMode;
 use crate::contact::yield_polygon::YieldPolygon;
-use crate::optimise::line_search::LineSearch;
 use crate::path::newton::model::control::Control;
 use crate::path::newton::model::derivatives::Gradient;
 use crate::path::newton::model::equations::Equations;
@@ -25,8 +23,6 @@ const MAX_WRONG_MODES: usize = 200;
 
 /// Greatest number of changing points that may be in a cycle.
 const MAX_CYCLING_POINTS: usize = 4;
-/// Greatest number of iterations with a line search.
-const MAX_SEARCHED_ITERATIONS: u64 = 30;
 
 /// Newton's method from a guess. All modes may change at once `patience` times without a decrease of their number.
 /// Returns the result and the number of iterations.
@@ -36,18 +32,15 @@ pub fn iterate(
     guess: State,
     control: &Control,
     patience: u32,
-    search: Option<LineSearch>,
 ) -> Result<(State, u64), String> {
-    let mut search = system.limits.newton.search.clone().or(search);
     let (mut state, mut gradient) = first_state(system, start, guess, control)?;
     system.report.residuals.clear();
     let rounding = system.limits.rounding;
     let Iterations { unsolved: most_unsolved, iterations, cycle, .. } = system.limits.newton;
     let mut changes = ModeChanges::new(patience, cycle);
     let (mut unsolved, mut last_norm, mut whole) = (0, f64::INFINITY, true);
-    let mut linearised = LinearisedAt::of(start, system.limits.nearby && search.is_none());
-    let most = if search.is_some() { iterations.min(MAX_SEARCHED_ITERATIONS) } else { iterations };
-    for iteration in 0..most {
+    let mut linearised = LinearisedAt::of(start, system.limits.nearby);
+    for iteration in 0..iterations {
         let mut residual = residual_of(system, start, &state, &gradient);
         let last = residual.len() - 1;
         residual[last] = control_value(system, start, &state, control);
@@ -80,16 +73,11 @@ pub fn iterate(
             return Err("the modes of the contact points leave no equilibrium".into());
         };
         let share = rotation_bound(system, &step);
-        (state, gradient, whole) = match &mut search {
-            Some(search) => searched(system, start, (&state, &gradient), control, (&step[..], share), search)?,
-            None => {
-                let (state, gradient) = advanced(system, start, &state, &step, share)?;
-                (state, gradient, !linearised.lags)
-            }
-        };
+        (state, gradient) = advanced(system, start, &state, &step, share)?;
+        whole = !linearised.lags;
         let (wanted, holds) = wanted_modes(system, start, &state);
         changes.update(&state, wanted, holds);
-        if search.is_none() && changes.hopeless() {
+        if changes.hopeless() {
             return Err("the modes of contact points keep changing".into());
         }
         changes.take(&mut state);
@@ -166,6 +154,23 @@ pub fn first_state(
     state.gap = gradient.gap.clone();
     update_tractions(system, start, &mut state)?;
     Ok((state, gradient))
+}
+
+/// Returns the state moved by a share of a step, with its blocks, gaps and tractions.
+pub fn advanced(
+    system: &mut StepSystem,
+    start: &State,
+    state: &State,
+    step: &[f64],
+    share: f64,
+) -> Result<(State, Rc<Gradient>), String> {
+    let mut next = state.clone();
+    apply_step(system, &mut next, step, share);
+    update_blocks(system, &mut next)?;
+    let gradient = system.gradient(&next);
+    next.gap = gradient.gap.clone();
+    update_tractions(system, start, &mut next)?;
+    Ok((next, gradient))
 }
 
 /// Returns the greatest rotation of a body from one state to another.

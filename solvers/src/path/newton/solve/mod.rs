@@ -2,7 +2,6 @@
 
 pub mod iteration;
 pub mod limit_point_test;
-pub mod line_search;
 pub mod linearised;
 pub mod nearby;
 pub mod second_order;

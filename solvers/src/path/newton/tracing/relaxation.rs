@@ -63,7 +63,7 @@ fn descent(system: &mut StepSystem, from: &State, work: &SecondOrderWork, sense:
     let mut last_moved = f64::INFINITY;
     for _ in 0..MAX_STEPS {
         system.loads.damping = Some(Damping { rate, from: anchor.clone() });
-        let found = iterate(system, &state, state.clone(), &control, 8, None);
+        let found = iterate(system, &state, state.clone(), &control, 8);
         system.count("relaxation_steps", 1);
         let Ok((mut next, iterations)) = found else {
             failures += 1;
@@ -105,7 +105,7 @@ fn descent(system: &mut StepSystem, from: &State, work: &SecondOrderWork, sense:
 /// Returns the stable equilibrium next to a state of a descent; its last step has `moved` this far with a damping of
 /// `rate`.
 fn settled(system: &mut StepSystem, state: &State, control: &Control, moved: f64, rate: f64) -> Option<State> {
-    let (next, _) = iterate(system, state, state.clone(), control, 8, None).ok()?;
+    let (next, _) = iterate(system, state, state.clone(), control, 8).ok()?;
     let work = second_order_work(system, &next).filter(|work| work.negative == 0 || work.turned == 0)?;
     // By the equation of the damped step, the remaining distance is about κ / k times the step.
     let left = moved * (1.0 + rate / work.curvature.abs().max(1e-12));
