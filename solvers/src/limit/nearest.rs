@@ -7,15 +7,7 @@ use voussoir_core::linear::{Entries, SparseLdlt};
 /// Returns the solution of J z = h nearest to `start`, and its greatest residual.
 pub fn nearest(rows: &[SparseRow], right: &[f64], start: Vec<f64>) -> Option<(Vec<f64>, f64)> {
     let (n, m) = (start.len(), rows.len());
-    let mut entries: Entries = (0..n).map(|j| (j, j, 1.0)).collect();
-    for (i, row) in rows.iter().enumerate() {
-        entries.push((n + i, n + i, -SETTINGS.shift));
-        for &(j, v) in row {
-            entries.push((n + i, j, v));
-            entries.push((j, n + i, v));
-        }
-    }
-    let factorised = SparseLdlt::new(n + m, n, &entries)?;
+    let factorised = SparseLdlt::new(n + m, n, &saddle(n, rows.iter(), [1.0, SETTINGS.shift]))?;
     let mut z = start;
     let mut best: Option<(Vec<f64>, f64)> = None;
     for _ in 0..12 {
@@ -34,6 +26,19 @@ pub fn nearest(rows: &[SparseRow], right: &[f64], start: Vec<f64>) -> Option<(Ve
         (0..n).for_each(|j| z[j] -= step[j]);
     }
     best
+}
+
+/// Returns \[a I, Jᵀ; J, −b I\] with n columns in J.
+pub fn saddle<'r>(n: usize, rows: impl Iterator<Item = &'r SparseRow>, [a, b]: [f64; 2]) -> Entries {
+    let mut entries: Entries = (0..n).map(|j| (j, j, a)).collect();
+    for (i, row) in rows.enumerate() {
+        entries.push((n + i, n + i, -b));
+        for &(j, v) in row {
+            entries.push((n + i, j, v));
+            entries.push((j, n + i, v));
+        }
+    }
+    entries
 }
 
 #[cfg(test)]

@@ -44,17 +44,8 @@ pub struct Solved {
     pub corrections: u64,
 }
 
-/// Searches for forces inside all bounds in equilibrium with the fixed load.
-pub fn stands(program: &Program) -> Solved {
-    run(program, true, false)
-}
-
 /// Finds the greatest θ. With `held`, only if the fixed load is carried.
 pub fn solve(program: &Program, held: bool) -> Solved {
-    run(program, held, true)
-}
-
-fn run(program: &Program, held: bool, greatest: bool) -> Solved {
     let mut solved = Solved { stands: None, solution: None, iterations: 0, factorisations: 0, corrections: 0 };
     let Some(directions) = Directions::new(program) else { return solved };
     let mut method = Method {
@@ -71,7 +62,7 @@ fn run(program: &Program, held: bool, greatest: bool) -> Solved {
     if held && carried {
         solved.stands = Some(program.joint_forces(&method.state.x));
     }
-    if carried && greatest {
+    if carried {
         solved.solution = method.greatest();
     }
     solved.iterations = method.iterations;

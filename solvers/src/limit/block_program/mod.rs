@@ -21,6 +21,6 @@ mod stiffness;
 mod tests;
 mod wanted;
 
-pub use self::interior_point::{Solved, solve, stands};
+pub use self::interior_point::{Solved, solve};
 pub use self::program::{Loads, Program};
 pub use self::solution::Solution;

@@ -5,7 +5,6 @@ use super::polish::{balanced, polish};
 use super::system::{Loads, System};
 use super::tangents::by_tangents;
 use crate::limit::block_program::{self, Program, Solution, Solved};
-use crate::limit::chain::ChainEngine;
 use crate::limit::equilibrium::{field_error, field_violation};
 use crate::limit::settings::SETTINGS;
 use voussoir_core::limit::{
@@ -125,13 +124,6 @@ impl<'a> ConicEngine<'a> {
 
     /// Returns the greatest share θ ≤ 1 of `loads` by the block program; `None` if its field does not carry them.
     fn share_by_blocks(&mut self, loads: &Wrenches, strengths: bool) -> Option<Equilibrium> {
-        if strengths {
-            let held = block_program::Loads { fixed: Some(loads), varying: loads, cap: f64::INFINITY, strengths };
-            let stands = self.by_blocks(held, block_program::stands)?.stands;
-            if let Some(field) = stands.filter(|field| self.carries(loads, field)) {
-                return Some(Equilibrium::Field(field));
-            }
-        }
         let share = block_program::Loads { fixed: None, varying: loads, cap: 1.0, strengths };
         let solution = self.by_blocks(share, |program| block_program::solve(program, false))?.solution?;
         if solution.factor >= 1.0 - 1e-10 {
@@ -188,28 +180,11 @@ impl<'a> ConicEngine<'a> {
         GreatestFactor::Collapse { factor, field: system.forces(&pair.x), motion, unique: Some(unique) }
     }
 
-    /// Finds the greatest factor by exchanges of single rows in terms of the redundants, if few joints close the bodies
-    /// to rings. Next to a hinge of N voussoirs slacks are 1/N² of the load, so an interior point does not show which
-    /// of them carry.
-    fn by_redundants(&mut self, (fixed, varying, cap): (&Wrenches, &Wrenches, f64)) -> Option<GreatestFactor> {
-        let mut engine = ChainEngine::new(self.problem)?;
-        let greatest = engine.greatest(fixed, varying, cap);
-        engine.counters().iter().for_each(|(name, by)| self.count(name, *by));
-        let right = match &greatest {
-            GreatestFactor::Failed(_) => false,
-            GreatestFactor::Collapse { factor, field, .. } => {
-                field_error(self.problem, &combined(fixed, varying, *factor), field) <= SETTINGS.admissible
-            }
-            GreatestFactor::Capped(_) | GreatestFactor::Unbounded(_) => true,
-        };
-        right.then_some(greatest)
-    }
-
     /// Finds the greatest factor with tangents of the stress blocks, starting from the earlier result without them.
     fn by_tangents(&mut self, question: (&Wrenches, &Wrenches, f64), tried: &Tried) -> Option<GreatestFactor> {
         let start = tried.best.as_ref().map(|best| &best.1).or(tried.unsettled.as_ref());
         let (GreatestFactor::Collapse { field, .. } | GreatestFactor::Capped(field)) = start? else { return None };
-        let solved = by_tangents(self.problem, question, field, SETTINGS.admissible);
+        let solved = by_tangents(self.problem, question, field);
         solved.iter().for_each(|solved| self.counted(solved));
         Some(greatest_of(solved.into_iter().last()?.solution?, question.1))
     }
@@ -304,9 +279,6 @@ impl Engine for ConicEngine<'_> {
         let mut tried = Tried::default();
         let force = force_scale(self.problem, fixed, varying);
         let question = (fixed, varying, cap);
-        if linear && let Some(greatest) = self.by_redundants(question) {
-            return greatest;
-        }
         self.attempt(question, force, &mut tried);
         // If only strengths limit the load, as in flat arches of strong stone, the load is of their size. In the
         // unit of the fixed loads its number would be too great for the interior point method.
@@ -316,7 +288,7 @@ impl Engine for ConicEngine<'_> {
         }
         if !linear
             && tried.best.is_none()
-            && let Some(greatest) = self.by_redundants(question).or_else(|| self.by_tangents(question, &tried))
+            && let Some(greatest) = self.by_tangents(question, &tried)
         {
             return greatest;
         }

@@ -38,9 +38,8 @@ impl EnvelopeEngine {
         EnvelopeEngine { relaxed, facets, envelopes, work: Counters::new() }
     }
 
-    /// Adds a row to each envelope that a field exceeds by more than the share `most` of its greatest force. Returns
-    /// true if rows were added.
-    fn cut(&mut self, field: &[JointForce], most: f64) -> bool {
+    /// Adds a row to each envelope that a field exceeds. Returns true if rows were added.
+    fn cut(&mut self, field: &[JointForce]) -> bool {
         let size = |force: &JointForce| force.normal[0].abs().max(force.normal[1].abs()).max(force.shear.abs());
         let unit = field.iter().map(size).fold(0.0, f64::max);
         let mut any = false;
@@ -49,7 +48,7 @@ impl EnvelopeEngine {
             if let Some(row) = envelope.deepest_row([n_0, n_1, shear]) {
                 let [a, b, c] = row.normal;
                 let length = (a * a + b * b + c * c).sqrt();
-                if a * n_0 + b * n_1 + c * shear - row.bound > most * unit * length {
+                if a * n_0 + b * n_1 + c * shear - row.bound > SETTINGS.admissible * unit * length {
                     self.relaxed.joints[*joint].strength.rows.push(row);
                     any = true;
                 }
@@ -75,7 +74,6 @@ impl EnvelopeEngine {
     /// Asks the question until its field is within all envelopes. `field` returns the field of an answer, if it has one.
     fn until_within<A>(
         &mut self,
-        most: f64,
         ask: impl Fn(&mut ConicEngine<'_>) -> A,
         field: impl Fn(&A) -> Option<&[JointForce]>,
     ) -> Option<A> {
@@ -86,7 +84,7 @@ impl EnvelopeEngine {
                 *self.work.entry(name).or_default() += by;
             }
             *self.work.entry("envelope_programs".into()).or_default() += 1;
-            let beyond = field(&answer).is_some_and(|field| self.cut(field, most));
+            let beyond = field(&answer).is_some_and(|field| self.cut(field));
             if !beyond {
                 return Some(answer);
             }
@@ -95,7 +93,7 @@ impl EnvelopeEngine {
     }
 
     fn equilibrium(&mut self, ask: impl Fn(&mut ConicEngine<'_>) -> Equilibrium) -> Equilibrium {
-        let found = self.until_within(SETTINGS.admissible, ask, |answer| match answer {
+        let found = self.until_within(ask, |answer| match answer {
             Equilibrium::Field(field) => Some(field.as_slice()),
             Equilibrium::Motion(_) | Equilibrium::Failed(_) => None,
         });
@@ -116,7 +114,7 @@ impl Engine for EnvelopeEngine {
 
     fn greatest(&mut self, fixed: &Wrenches, varying: &Wrenches, cap: f64) -> GreatestFactor {
         let ask = |engine: &mut ConicEngine<'_>| engine.greatest(fixed, varying, cap);
-        let found = self.until_within(SETTINGS.admissible, ask, |answer| match answer {
+        let found = self.until_within(ask, |answer| match answer {
             GreatestFactor::Collapse { field, .. } | GreatestFactor::Capped(field) => Some(field.as_slice()),
             GreatestFactor::Unbounded(_) | GreatestFactor::Failed(_) => None,
         });
@@ -142,7 +140,7 @@ impl Engine for EnvelopeEngine {
 
     fn extreme(&mut self, loads: &Wrenches, joint: usize, form: [f64; 3]) -> Extreme {
         let ask = |engine: &mut ConicEngine<'_>| engine.extreme_field(loads, joint, form);
-        let found = self.until_within(SETTINGS.admissible, ask, |answer| match answer {
+        let found = self.until_within(ask, |answer| match answer {
             Extreme::Finite(field) => Some(field.as_slice()),
             Extreme::Ray(_) | Extreme::Failed => None,
         });

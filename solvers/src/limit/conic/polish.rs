@@ -8,7 +8,7 @@
 
 use super::interior_point::Pair;
 use super::system::System;
-use crate::limit::nearest::nearest;
+use crate::limit::nearest;
 use crate::limit::settings::SETTINGS;
 use voussoir_core::limit::SparseRow;
 use voussoir_core::linear::{Entries, SparseLdlt};
@@ -65,7 +65,7 @@ pub fn polish(system: &System, approximate: &Pair) -> Option<Polished> {
 /// Returns the interior point moved the shortest way to equilibrium, for use if the polish does not converge. Its
 /// slacks are its own and its motion is that of the conic solver; the certificate checks it.
 pub fn balanced(system: &System, approximate: &Pair) -> Option<Pair> {
-    let (x, _) = nearest(&system.equations, &system.right, approximate.x.clone())?;
+    let (x, _) = nearest::nearest(&system.equations, &system.right, approximate.x.clone())?;
     Some(Pair { x, ..approximate.clone() })
 }
 
@@ -235,16 +235,7 @@ fn gradients(system: &System, active: &[Item], x: &[f64]) -> Vec<SparseRow> {
 
 /// Returns \[δ I, Jᵀ; J, −δ I\] with J the equations and the gradients.
 fn saddle(system: &System, gradients: &[SparseRow], delta: f64) -> Entries {
-    let n = system.variables;
-    let mut entries: Entries = (0..n).map(|j| (j, j, delta)).collect();
-    for (i, row) in system.equations.iter().chain(gradients).enumerate() {
-        entries.push((n + i, n + i, -delta));
-        for &(j, v) in row {
-            entries.push((n + i, j, v));
-            entries.push((j, n + i, v));
-        }
-    }
-    entries
+    nearest::saddle(system.variables, system.equations.iter().chain(gradients), [delta, delta])
 }
 
 /// Returns true if other multipliers (q, y) satisfy Eᵀ q + Σ y_i ∇c_i = e_θ with the same support. Inverse iteration

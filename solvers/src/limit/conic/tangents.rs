@@ -42,12 +42,11 @@ fn pressed(force: &JointForce) -> f64 {
 }
 
 /// Solves the sequence of programs and returns all of them. The solution of the last one is removed if its forces
-/// exceed the strengths by more than `most` of the loads.
+/// exceed the strengths.
 pub fn by_tangents(
     problem: &LimitProblem,
     (fixed, varying, cap): (&Wrenches, &Wrenches, f64),
     start: &[JointForce],
-    most: f64,
 ) -> Vec<Solved> {
     let mut touched: Vec<f64> = start.iter().map(pressed).collect();
     let (mut all, mut least) = (Vec::new(), f64::INFINITY);
@@ -67,7 +66,7 @@ pub fn by_tangents(
                 *touched = pressed(force);
             }
         }
-        solved.solution = (error <= most).then_some(solution);
+        solved.solution = (error <= SETTINGS.admissible).then_some(solution);
         let done = solved.solution.is_some() || error > SETTINGS.diverged * least;
         least = least.min(error);
         all.push(solved);
