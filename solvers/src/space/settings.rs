@@ -147,8 +147,8 @@ pub struct JointSettings {
     pub iterations: u64,
     /// Number of rigid programs of a sequence.
     pub programs: usize,
-    /// Normal force of all points of the first program of a second sequence, relative to their mean.
-    pub sticky: f64,
+    /// Normal forces of all points of the first program of two sequences, relative to their mean under the dead load.
+    pub sticky: [f64; 2],
     /// Cohesion and tensile strength of each point of these programs, relative to the mean normal force. Few joints then move.
     pub few: f64,
     /// Power of the first step from a rigid program.
@@ -198,8 +198,8 @@ pub const JOINTS: JointSettings = JointSettings {
     longest: 16,
     reported: 20,
     iterations: 1000,
-    programs: 4,
-    sticky: 100.0,
+    programs: 6,
+    sticky: [100.0, 10.0],
     few: 1e-3,
     guessed: 30.0,
     resting: [1e-7, 1e-5, 1e-3],

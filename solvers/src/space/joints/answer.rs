@@ -54,9 +54,7 @@ pub fn answer(problem: &SpaceProblem, question: LimitQuestion, solve: Associated
     if let (Some(standard), Some(moved)) = (&standard, &moved) {
         (courses.program, courses.standard) = (moved, Some(standard));
         courses.search(&solve(&standard.problem, LimitQuestion::Collapse { start, max: f64::INFINITY }));
-        (courses.program, courses.standard) = (&program, None);
-    }
-    if courses.states.is_empty() {
+    } else {
         courses.search(&associated);
     }
     let mut answer = courses.answer(associated);
@@ -245,7 +243,7 @@ impl<'a> Courses<'a> {
     }
 
     /// Runs sequences of rigid programs from the normal forces of the associated load, from those of elastic joints under dead load, and
-    /// from great ones, with which hardly any joint slips.
+    /// from equal ones that are great, so that hardly any joint slips.
     fn sequences(&mut self, associated: Option<&SpaceField>) {
         let mut joints = self.joints(JOINTS.ratios[2]);
         if !refines(self.descent.problem) || dead_load(&mut joints).is_none() {
@@ -257,11 +255,14 @@ impl<'a> Courses<'a> {
             field.iter().map(|forces| forces.iter().map(|force| force[0].max(0.0)).collect()).collect()
         };
         let dead = pressed(&self.program.by_contacts(&forces));
-        let great = JOINTS.sticky * mean(&dead);
-        let sticky = dead.iter().map(|normals| vec![great; normals.len()]).collect();
-        let associated = associated.map(|field| ("the associated forces", pressed(field)));
-        let starts = associated.into_iter().chain([("the dead load", dead), ("great normal forces", sticky)]);
-        starts.for_each(|(from, normals)| self.sequence(from, normals));
+        let mean = mean(&dead);
+        let great = JOINTS.sticky.map(|share| {
+            let equal = dead.iter().map(|normals| vec![share * mean; normals.len()]).collect();
+            (format!("normal forces of {share} times their mean"), equal)
+        });
+        let associated = associated.map(|field| ("the associated forces".into(), pressed(field)));
+        let starts = associated.into_iter().chain([("the dead load".into(), dead)]).chain(great);
+        starts.for_each(|(from, normals)| self.sequence(&from, normals));
     }
 
     /// Runs a sequence of rigid programs, and a course from each guess that is not near a state.
