@@ -56,4 +56,14 @@ mod tests {
         let (_, worst) = nearest(&[row.clone(), row], &[2.0, 3.0], vec![0.0; 2]).expect("a best attempt");
         assert!(worst > 0.4, "{worst}");
     }
+
+    /// The matrix with its transposed rows is symmetric, with the shift of both diagonals.
+    #[test]
+    fn the_saddle_matrix_is_symmetric() {
+        let rows: [SparseRow; 2] = [vec![(0, 1.0), (2, -3.0)], vec![(1, 2.0)]];
+        let entries = saddle(3, rows.iter(), [0.5, 1e-3]);
+        let at = |i, j| entries.iter().filter(|entry| (entry.0, entry.1) == (i, j)).map(|entry| entry.2).sum::<f64>();
+        assert!((0..5).all(|i| (0..5).all(|j| at(i, j) == at(j, i))));
+        assert_eq!((at(0, 0), at(3, 2), at(4, 1), at(3, 3)), (0.5, -3.0, 2.0, -1e-3));
+    }
 }

@@ -18,7 +18,7 @@ const fn exhibit(study: &'static str, figure: &'static str, alternative: &'stati
 }
 
 /// Headings and their studies. Studies of more than ten seconds have stored figures.
-const EXHIBITS: [(&str, &[Exhibit]); 6] = [
+const EXHIBITS: [(&str, &[Exhibit]); 7] = [
     (
         "Bridges",
         &[
@@ -49,6 +49,23 @@ const EXHIBITS: [(&str, &[Exhibit]); 6] = [
             exhibit("flow_rule_rings", "figures/flow_rule_rings.svg", "Ratios of loads over friction"),
             exhibit("flow_rule_walls", "figures/flow_rule_walls.svg", "Ratios of loads of three walls"),
             exhibit("flow_rule_map", "figures/flow_rule_map.svg", "Map over friction and height of a block"),
+        ],
+    ),
+    (
+        "Space",
+        &[
+            exhibit("space_dome", "case-0000-mechanism.svg", "Mechanism of a dome that is pushed"),
+            exhibit(
+                "space_flow_rule_wall",
+                "figures/space_flow_rule_wall.svg",
+                "Ratios of loads of a wall with a pier",
+            ),
+            exhibit(
+                "space_flow_rule_barrel",
+                "figures/space_flow_rule_barrel.svg",
+                "Ratios of loads of a barrel vault",
+            ),
+            exhibit("space_flow_rule_dome", "figures/space_flow_rule_dome.svg", "Ratios of loads of a dome"),
         ],
     ),
     (

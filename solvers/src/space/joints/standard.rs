@@ -95,7 +95,7 @@ impl Standard {
         self.problem.contacts.iter().zip(&self.contacts).map(of).collect()
     }
 
-    /// Returns the components of the tangents in standard position along those of the given contact, for forces on its plus body.
+    /// Returns the components of both tangents in standard position along the given tangents, for forces on the given plus body.
     fn tangents(&self, problem: &SpaceProblem, contact: &SpaceContact, place: &Place) -> [[f64; 2]; 2] {
         let sign = if place.exchanged { -1.0 } else { 1.0 };
         let own = [1, 2].map(|k| self.position.back(&contact.frame[k]) * sign);
@@ -222,7 +222,7 @@ fn axes(problem: &SpaceProblem, centre: &Vec3, length: f64) -> [Vec3; 3] {
     let of =
         |contact: &SpaceContact| -> Vec<Vec3> { contact.inner.points.iter().map(|x| (x - centre) / length).collect() };
     let points: Vec<Vec<Vec3>> = problem.contacts.iter().map(of).collect();
-    // The centre of the contact points of each body stands for the place of its loads.
+    // The centre of the contact points of a body is taken as the place of its loads.
     let mut middles = vec![(Vec3::zeros(), 0.0f64); problem.bodies];
     for (contact, points) in problem.contacts.iter().zip(&points) {
         for body in [contact.plus, contact.minus].into_iter().flatten() {
