@@ -65,6 +65,7 @@ const EXHIBITS: [(&str, &[Exhibit]); 7] = [
                 "figures/space_flow_rule_barrel.svg",
                 "Ratios of loads of a barrel vault",
             ),
+            exhibit("space_flow_rule_vault", "figures/space_flow_rule_vault.svg", "Ratios of loads of a groin vault"),
             exhibit("space_flow_rule_dome", "figures/space_flow_rule_dome.svg", "Ratios of loads of a dome"),
         ],
     ),

@@ -196,6 +196,21 @@ fn forged_results_in_space_are_found() {
     forge(&|case| case["field"][0]["force"] = serde_json::json!([1.0, 0.0]));
 }
 
+/// A web of a groin vault slides out along its axis at μ / sin θ, with the angle θ of the joints on its springers from the crown. With
+/// associated flow it jams at a load that is half as large again.
+#[test]
+fn a_web_of_a_groin_vault_slides_out() {
+    let vault = "scene = \"cross_vault\"\nspans = [6.0, 6.0]\nrise = 1.8\nthickness = 0.4\nvoussoirs = 9\nstrips = 2\n\
+                 springers = 2";
+    let text = pushed(vault, 0.5, [1.0, 0.0, 0.0]);
+    let own = text.replace("coulomb_associated", "coulomb") + "[solver]\nsolver = \"limit_sequential\"\n";
+    let result = answered(&own);
+    let radius: f64 = (3.0f64.powi(2) + 1.8f64.powi(2)) / 3.6;
+    let angle = (3.0 / radius).asin() * 5.0 / 9.0;
+    assert_close(result.load_factor.expect("a factor"), 0.5 / angle.sin(), 1e-10);
+    assert_close(result.non_associated.associated_load_factor.expect("a bound"), 1.348740350, 1e-7);
+}
+
 /// A search for the least load that ends at its limit has two proved ends. A stored end that is nearer is not confirmed.
 #[test]
 fn forged_least_loads_in_space_are_found() {
