@@ -42,7 +42,7 @@ pub fn answer(problem: &SpaceProblem, question: LimitQuestion, solve: Associated
     let standard = Standard::new(problem).filter(|_| refines(problem));
     let moved = standard.as_ref().map(|standard| Program::new(&standard.problem, start, Side::Inner));
     let carried = associated.status == Status::Unbounded || associated.field.is_some() && associated.field_factor > max;
-    let mut courses = Courses::new(descent, &program, None);
+    let mut courses = Courses::new(descent, &program);
     courses.counters = std::mem::take(&mut associated.counters);
     let verdict = carried.then(|| {
         let end = if max.is_finite() { (max - start) / program.unit } else { JOINTS.end };
@@ -110,8 +110,15 @@ struct Courses<'a> {
 }
 
 impl<'a> Courses<'a> {
-    fn new(descent: Descent<'a>, program: &'a Program, standard: Option<&'a Standard>) -> Self {
-        Courses { descent, program, standard, states: Vec::new(), failures: Vec::new(), counters: Counters::new() }
+    fn new(descent: Descent<'a>, program: &'a Program) -> Self {
+        Courses {
+            descent,
+            program,
+            standard: None,
+            states: Vec::new(),
+            failures: Vec::new(),
+            counters: Counters::new(),
+        }
     }
 
     /// Runs all courses and sequences. Some begin at the forces of the associated load.
@@ -132,9 +139,10 @@ impl<'a> Courses<'a> {
     }
 
     fn joints(&self, ratio: f64) -> Joints<'a> {
-        let settled = if self.standard.is_some() { JOINTS.nearly_settled } else { JOINTS.settled };
         let mut joints = Joints::new(self.program, springs(self.scene(), ratio));
-        joints.settled = settled;
+        if self.standard.is_some() {
+            joints.settled = JOINTS.nearly_settled;
+        }
         joints
     }
 

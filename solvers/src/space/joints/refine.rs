@@ -9,7 +9,8 @@
 //! ```
 //!
 //! Here r are the wrenches of unit forces at a point, and r·x its rates. Newton steps of least norm solve it, with forces relative to
-//! their size. The forces may leave the cones. Those that fit the motion and do not are found by a program on cones (`least`).
+//! their size. A shear force beyond friction then gets the limit of friction as its size, a tensile force vanishes, and the steps go
+//! on. If this does not end, a program on cones looks for admissible forces that fit the motion (`least`).
 
 use super::descent::{Descent, Dual, Found, is_state, jumps, matrix, row, velocities};
 use super::least::forces;
@@ -43,10 +44,8 @@ pub fn refined(descent: &Descent, guess: &Guess, counters: &mut Counters) -> Opt
         motion.iter_mut().flatten().for_each(|v| *v /= unit);
         let jumps = jumps(problem, &motion);
         let known =
-            own.or_else(|| Some(parts.factor).zip(forces(problem, descent.solve, parts.factor, &jumps, counters)))?;
-        if known.0 <= descent.start {
-            return None;
-        }
+            own.or_else(|| Some(parts.factor).zip(forces(problem, descent.solve, parts.factor, &jumps, counters)));
+        let known = known.filter(|(factor, _)| *factor > descent.start)?;
         let (found, dual) = descent.of_mechanism((motion, &jumps), known, counters);
         is_state(problem, &found).then_some((found, dual))
     })
