@@ -222,7 +222,7 @@ fn axes(problem: &SpaceProblem, centre: &Vec3, length: f64) -> [Vec3; 3] {
     let of =
         |contact: &SpaceContact| -> Vec<Vec3> { contact.inner.points.iter().map(|x| (x - centre) / length).collect() };
     let points: Vec<Vec<Vec3>> = problem.contacts.iter().map(of).collect();
-    // The centre of the contact points of a body is taken as the place of its loads.
+    // The place of the loads of a body is the centre of its contact points.
     let mut middles = vec![(Vec3::zeros(), 0.0f64); problem.bodies];
     for (contact, points) in problem.contacts.iter().zip(&points) {
         for body in [contact.plus, contact.minus].into_iter().flatten() {
