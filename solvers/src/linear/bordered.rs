@@ -9,10 +9,10 @@
 //! ```
 //!
 //! w spans the null space of K: the rate along the path. It exists also at limit points, where K without the column of
-//! λ is singular, if x_k moves along the path. The held unknown is the one with the greatest entry in the control row,
-//! which is a tangent of the path (local parametrisation: Rheinboldt 1980, SIAM J. Numer. Anal. 17, 221-237). Two
-//! solutions and a quotient amplify rounding errors; refinement with all rows, the control row included, removes them
-//! (Govaerts 1991, SIAM J. Matrix Anal. Appl. 12, 469-483).
+//! λ is singular, if x_k moves along the path. If |w_k| is small compared with the greatest |w|, the unknown that moves
+//! most is held instead (local parametrisation: Rheinboldt 1980, SIAM J. Numer. Anal. 17, 221-237). Two solutions and a
+//! quotient amplify rounding errors; refinement with all rows, the control row included, removes them (Govaerts 1991,
+//! SIAM J. Matrix Anal. Appl. 12, 469-483).
 
 use super::factorised::{Factorised, row_error};
 use super::inner;
@@ -60,7 +60,7 @@ impl<E: Factorised> BorderedFactors<E> {
     pub fn new(
         contacts: usize,
         control: &[f64],
-        factorise: impl FnOnce(Vec<(usize, f64)>) -> Option<E>,
+        mut factorise: impl FnMut(Vec<(usize, f64)>) -> Option<E>,
     ) -> Option<Self> {
         let size = control.len();
         let last = size - 1;
@@ -69,10 +69,20 @@ impl<E: Factorised> BorderedFactors<E> {
             return Some(BorderedFactors { equations, last: Last::Control(few) });
         }
         let end: Vec<f64> = (0..size).map(|i| f64::from(u8::from(i == last))).collect();
-        let held = 2 * contacts + greatest(&control[2 * contacts..]);
-        let equations = factorise(vec![(held, 1.0)])?;
-        let w = equations.apply(&end)?;
-        Some(BorderedFactors { equations, last: Last::Unknown(w) })
+        let mut held = 2 * contacts + greatest(&control[2 * contacts..]);
+        for again in [true, false] {
+            let equations = factorise(vec![(held, 1.0)])?;
+            if let Some(w) = equations.apply(&end) {
+                let most = 2 * contacts + greatest(&w[2 * contacts..]);
+                if !again || w[held].abs() >= SETTINGS.fine * w[most].abs() {
+                    return Some(BorderedFactors { equations, last: Last::Unknown(w) });
+                }
+                held = most;
+            } else {
+                held = last;
+            }
+        }
+        None
     }
 
     /// Returns the equations; their last row replaces the control.

@@ -80,7 +80,7 @@ pub struct LastFactors {
 }
 
 impl LastFactors {
-    /// Removes all factors, for another load.
+    /// Removes all factors, for another load or after they have failed.
     pub fn forget(&mut self) {
         self.held.clear();
     }

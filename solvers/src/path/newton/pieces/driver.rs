@@ -3,6 +3,7 @@
 use super::advance::{Advance, StepEnd, Watched, advance, chord, state_at};
 use super::begin::begin;
 use super::corner::corner;
+use super::corrector::correct;
 use super::end::end_of_range;
 use super::loading_set::{LoadingRate, bond_rate, loading_rate};
 use super::monitors::{Monitor, What};
@@ -13,6 +14,7 @@ use super::ray::ray;
 use super::switch::{NextPiece, after_event, is_admissible};
 use crate::contact::mode::ContactMode;
 use crate::linear::inner;
+use crate::path::newton::model::control::Control;
 use crate::path::newton::model::state::{State, Tangent, moved};
 use crate::path::newton::quantities::ahead::{facing_ahead, length_ahead};
 use crate::path::newton::quantities::events::events;
@@ -92,6 +94,8 @@ struct Cluster {
     arrival: Option<(Vec<ContactMode>, Piece, bool)>,
     /// Number of pieces of almost zero length.
     pieces: u32,
+    /// Length of the last step across a corner, relative to the first step, if the path has hardly moved since then.
+    across: Option<f64>,
 }
 
 /// Follows a load step with the strategy, up to a factor or the end of the path.
@@ -256,10 +260,12 @@ impl<'d> Run<'d> {
 
     /// Makes a short step from a corner, approximately along a piece, by Newton's method on the laws themselves: modes
     /// and branches may change in it. The next corner may follow at once, where points that slip and blocks that yield
-    /// decide about each other. A turn is passed by a short step. `None` if there is no such step.
+    /// decide about each other; steps then grow by a factor of four, but a turn is passed by a short one. `None` if
+    /// there is no such step.
     fn across(&mut self, tracer: &mut Tracer, facing: &State, piece: &Piece) -> Option<Ending> {
         let here = tracer.state.clone();
-        let (share, next, rate) = CORNER_STEPS.into_iter().find_map(|share| {
+        let grown = self.cluster.across.map(|share| (4.0 * share).min(1.0));
+        let (share, next, rate) = grown.into_iter().chain(CORNER_STEPS).find_map(|share| {
             let control = piece.control(share * self.length.first);
             let guess = moved(facing, &piece.tangent, share * self.length.first);
             let (next, _) = solve_step(&mut tracer.system, &here, guess, &control).ok()?;
@@ -276,7 +282,7 @@ impl<'d> Run<'d> {
         self.piece = Piece::new(&tracer.system, &next, &rate)?;
         self.length.next = share * self.length.first;
         self.rises = self.goes_up(tracer, &self.piece.tangent.clone());
-        self.cluster = Cluster::default();
+        self.cluster = Cluster { across: Some(share), ..Cluster::default() };
         if was != self.rises
             && let Some(ending) = self.at_turn(tracer, was)
         {
@@ -367,7 +373,12 @@ impl<'d> Run<'d> {
     }
 
     /// Accepts the state at the target.
-    fn arrive(&mut self, tracer: &mut Tracer, end: StepEnd) -> Option<LoadStepEnding> {
+    fn arrive(&mut self, tracer: &mut Tracer, mut end: StepEnd) -> Option<LoadStepEnding> {
+        let control = Control::Factor(self.range.target);
+        let start = tracer.state.clone();
+        if let Some(state) = correct(&mut tracer.system, &start, end.state.clone(), &control) {
+            end.state = state;
+        }
         match self.take(tracer, end) {
             Ok(()) => Some(LoadStepEnding::Reached),
             Err(ending) => ending,

@@ -10,6 +10,7 @@ use crate::path::newton::model::state::{State, Tangent};
 use crate::path::newton::model::system::StepSystem;
 use crate::path::newton::quantities::ahead::{facing_ahead, length_ahead};
 use crate::path::newton::quantities::inelastic::plastic_power;
+use crate::path::newton::solve::nearby::Accuracy;
 use crate::path::newton::solve::tangent::tangent_of_modes;
 use crate::settings::SETTINGS;
 
@@ -171,7 +172,7 @@ fn dissipating_rate(system: &mut StepSystem, state: &State, arrival: &Piece) -> 
 /// Returns the rate with the tangents of a state, of size 1.
 fn rate_of(system: &mut StepSystem, state: &State, row: &[f64]) -> Option<Unit> {
     let equations = system.equations(state);
-    let rate = tangent_of_modes(system, state, &equations, row)?;
+    let rate = tangent_of_modes(system, state, &equations, row, Accuracy::Rounding)?;
     Unit::of(system, &rate)
 }
 

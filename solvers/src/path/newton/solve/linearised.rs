@@ -100,16 +100,16 @@ pub fn kept<'s>(
     all_kept(system).filter(same).find(|kept| serves(&kept.held))
 }
 
-/// Returns the factorised linear equations of the modes. If modes alone determine them, factors of the same modes and
-/// equations are reused.
+/// Returns the factorised linear equations of the modes, and true if they were kept: if modes alone determine them,
+/// factors of the same modes and equations are reused.
 pub fn factorised(
     system: &mut StepSystem,
     state: &State,
     equations: &Rc<Equations>,
     row: &[f64],
-) -> Option<Rc<BorderedFactors<ModeEquations>>> {
+) -> Option<(Rc<BorderedFactors<ModeEquations>>, bool)> {
     if let Some(kept) = kept(system, state, equations, |held| held.serves(row)) {
-        return Some(kept.held.clone());
+        return Some((kept.held.clone(), true));
     }
     let (damping, directions) = (damping(system), directions(system));
     system.count("factorisations", 1);
@@ -132,7 +132,7 @@ pub fn factorised(
             responses: RefCell::default(),
         });
     }
-    Some(held)
+    Some((held, false))
 }
 
 /// Returns the equations of a chain of elastic bodies in the modes of a state.
@@ -195,7 +195,14 @@ pub fn solve_linear(
     row: &[f64],
     right: &[f64],
 ) -> Option<(Vec<f64>, bool)> {
-    let held = factorised(system, state, equations, row)?;
+    let (held, again) = factorised(system, state, equations, row)?;
+    let found = BorderedSystem::new(held, row).and_then(|bordered| refined(&bordered, right));
+    if found.as_ref().is_some_and(|(_, solved)| *solved) || !again {
+        return found;
+    }
+    // With another held unknown the control may be better conditioned.
+    system.cache.factors.forget();
+    let (held, _) = factorised(system, state, equations, row)?;
     refined(&BorderedSystem::new(held, row)?, right)
 }
 

@@ -8,7 +8,7 @@
 //! B: the factorised equations; A: the equations to solve; D: the difference A − B in the rows i of points with other
 //! modes. If the residual does not decrease fast enough, the factors are too different.
 
-use super::linearised::{all_kept, chain_rows, solve_linear};
+use super::linearised::{all_kept, chain_rows, factorised, solve_linear};
 use crate::linear::bordered::BorderedSystem;
 use crate::linear::chain::{ChainFactors, ChainRows};
 use crate::linear::factorised::Factorised;
@@ -47,8 +47,10 @@ struct Nearby<'k> {
 pub enum Accuracy {
     /// Sufficient for Newton's method and for signs of rates.
     Rough,
-    /// To rounding.
+    /// To rounding, with any nearby factors.
     Fine,
+    /// To rounding, with factors of the state itself if its second-order work is needed later.
+    Rounding,
 }
 
 /// Solves the modes' linear equations, with nearby factors if there are any, and returns true if they are solved.
@@ -59,6 +61,9 @@ pub fn solve(
     (control, right): (&[f64], &[f64]),
     accuracy: Accuracy,
 ) -> Option<(Vec<f64>, bool)> {
+    if accuracy == Accuracy::Rounding && system.limits.nearby {
+        factorised(system, state, equations, control)?;
+    }
     let left = if accuracy == Accuracy::Rough { SETTINGS.admissible } else { SETTINGS.ulps() };
     let found = solve_nearby(system, state, equations, (control, right), left);
     found.map(|x| (x, true)).or_else(|| solve_linear(system, state, equations, control, right))
@@ -170,7 +175,6 @@ impl<'k> Nearby<'k> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::linearised::factorised;
     use super::*;
     use crate::contact::mode::ContactMode;
     use crate::path::newton::model::loads::StagedLoads;

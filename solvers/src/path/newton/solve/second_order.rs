@@ -33,7 +33,7 @@ fn held_factor(system: &mut StepSystem, state: &State) -> Option<BorderedSystem<
     row[system.size() - 1] = 1.0;
     let held = match kept(system, state, &equations, |held| held.borders(&row)) {
         Some(kept) => kept.held.clone(),
-        None => factorised(system, state, &equations, &row)?,
+        None => factorised(system, state, &equations, &row)?.0,
     };
     BorderedSystem::new(held, &row)
 }

@@ -81,9 +81,18 @@ pub fn wanted_modes(system: &mut StepSystem, start: &State, state: &State) -> (V
 
 /// Returns the tangent of a converged state with its modes held, per unit of the control's gradient.
 pub fn tangent_at(system: &mut StepSystem, state: &State, control: &Control) -> Option<Tangent> {
+    tangent(system, state, control, Accuracy::Rounding)
+}
+
+/// Returns the same tangent, with any nearby factors.
+pub fn tangent_nearby(system: &mut StepSystem, state: &State, control: &Control) -> Option<Tangent> {
+    tangent(system, state, control, Accuracy::Fine)
+}
+
+fn tangent(system: &mut StepSystem, state: &State, control: &Control, accuracy: Accuracy) -> Option<Tangent> {
     let equations = system.equations(state);
     let row = control_row(system, control);
-    tangent_of_modes(system, state, &equations, &row)
+    tangent_of_modes(system, state, &equations, &row, accuracy)
 }
 
 /// Returns the right-hand side of a rate per unit of the last row.
@@ -99,9 +108,10 @@ pub fn tangent_of_modes(
     state: &State,
     equations: &Rc<Equations>,
     row: &[f64],
+    accuracy: Accuracy,
 ) -> Option<Tangent> {
     let right = per_row(system);
-    let (x, _) = solve(system, state, equations, (row, &right), Accuracy::Fine).filter(|(_, solved)| *solved)?;
+    let (x, _) = solve(system, state, equations, (row, &right), accuracy).filter(|(_, solved)| *solved)?;
     Some(tangent_from(system, &x, state, equations))
 }
 
