@@ -135,6 +135,17 @@ mod tests {
         (set.areas.iter().sum(), set.points.iter().zip(&set.areas).map(|(point, area)| point * *area).sum())
     }
 
+    /// The areas of vertices do not depend on the first vertex and on the sense.
+    #[test]
+    fn areas_of_vertices_do_not_depend_on_their_order() {
+        let vertices = quadrilateral();
+        let own = at_vertices(&vertices).areas;
+        let turned: Vec<Vec3> = [2, 1, 0, 3].map(|k| vertices[k]).to_vec();
+        for (area, vertex) in at_vertices(&turned).areas.iter().zip([2, 1, 0, 3]) {
+            assert!((area - own[vertex]).abs() < 1e-14);
+        }
+    }
+
     /// All sets have the area and the first moment of the polygon, however fine they are.
     #[test]
     fn a_constant_traction_has_the_same_resultant() {

@@ -39,23 +39,25 @@ pub fn answer(problem: &SpaceProblem, question: LimitQuestion, solve: Associated
     }
     let descent = Descent { problem, solve, start };
     let program = Program::new(problem, start, Side::Inner);
-    let standard = Standard::new(problem).filter(|_| refines(problem));
-    let moved = standard.as_ref().map(|standard| Program::new(&standard.problem, start, Side::Inner));
     let carried = associated.status == Status::Unbounded || associated.field.is_some() && associated.field_factor > max;
-    let mut courses = Courses::new(descent, &program);
-    courses.counters = std::mem::take(&mut associated.counters);
+    let counters = std::mem::take(&mut associated.counters);
+    let mut loaded = Courses::new(descent, (&program, None), counters);
     let verdict = carried.then(|| {
         let end = if max.is_finite() { (max - start) / program.unit } else { JOINTS.end };
-        courses.verdict(end)
+        loaded.verdict(end)
     });
+    let counters = loaded.counters;
     if let Some(Verdict::Stands(field, note)) = verdict {
-        return stands(max, field, note, SpaceAnswer { counters: courses.counters, ..associated });
+        return stands(max, field, note, SpaceAnswer { counters, ..associated });
     }
-    if let (Some(standard), Some(moved)) = (&standard, &moved) {
-        (courses.program, courses.standard) = (moved, Some(standard));
-        courses.search(&solve(&standard.problem, LimitQuestion::Collapse { start, max: f64::INFINITY }));
-    } else {
-        courses.search(&associated);
+    let standard = refines(problem).then(|| Standard::new(problem)).flatten();
+    let moved = standard.as_ref().map(|standard| Program::new(&standard.problem, start, Side::Inner));
+    let mut courses = Courses::new(descent, (moved.as_ref().unwrap_or(&program), standard.as_ref()), counters);
+    match &standard {
+        Some(Standard { problem, .. }) => {
+            courses.search(&solve(problem, LimitQuestion::Collapse { start, max: f64::INFINITY }));
+        }
+        None => courses.search(&associated),
     }
     let mut answer = courses.answer(associated);
     let open = matches!(verdict, Some(Verdict::Open(_))) || answer.factor.is_some_and(|factor| factor > max);
@@ -110,15 +112,8 @@ struct Courses<'a> {
 }
 
 impl<'a> Courses<'a> {
-    fn new(descent: Descent<'a>, program: &'a Program) -> Self {
-        Courses {
-            descent,
-            program,
-            standard: None,
-            states: Vec::new(),
-            failures: Vec::new(),
-            counters: Counters::new(),
-        }
+    fn new(descent: Descent<'a>, (program, standard): (&'a Program, Option<&'a Standard>), counters: Counters) -> Self {
+        Courses { descent, program, standard, states: Vec::new(), failures: Vec::new(), counters }
     }
 
     /// Runs all courses and sequences. Some begin at the forces of the associated load.
@@ -130,7 +125,9 @@ impl<'a> Courses<'a> {
             let lambda = (associated.field_factor - self.program.start) / self.program.unit;
             JOINTS.ratios.iter().for_each(|ratio| self.run(*ratio, Some((field, lambda))));
         }
-        self.sequences(known);
+        if let Some(standard) = self.standard {
+            self.sequences(standard, known);
+        }
     }
 
     /// Returns the scene in which joints are loaded.
@@ -139,19 +136,8 @@ impl<'a> Courses<'a> {
     }
 
     fn joints(&self, ratio: f64) -> Joints<'a> {
-        let mut joints = Joints::new(self.program, springs(self.scene(), ratio));
-        if self.standard.is_some() {
-            joints.settled = JOINTS.nearly_settled;
-        }
-        joints
-    }
-
-    /// Returns a guess in the given position.
-    fn given(&self, guess: Guess) -> Guess {
-        match self.standard {
-            Some(standard) => standard.given(self.descent.problem, &guess),
-            None => guess,
-        }
+        let settled = if self.standard.is_some() { JOINTS.nearly_settled } else { JOINTS.settled };
+        Joints::new(self.program, springs(self.scene(), ratio), settled)
     }
 
     fn factor(&self, lambda: f64) -> f64 {
@@ -216,29 +202,26 @@ impl<'a> Courses<'a> {
         found.factor - self.program.start > JOINTS.differ * self.program.unit
     }
 
-    /// Returns the end of a course in the given position.
-    fn guess(&self, state: &State) -> Guess {
+    /// Returns the state near the end of a course in standard position.
+    fn near(&mut self, state: &State) -> Option<(Found, Dual)> {
         let (field, motion) = (self.program.by_contacts(&state.forces), self.program.motion(&state.motion));
-        self.given(Guess { factor: self.factor(state.lambda), field, motion })
+        let guess = Guess { factor: self.factor(state.lambda), field, motion };
+        refined(&self.descent, &self.standard?.given(self.descent.problem, &guess), &mut self.counters)
     }
 
     /// Returns the state at the end of a course or near it, or the reason why the course has no state.
     fn reached(&mut self, joints: &Joints, end: End) -> Result<(Found, Dual), String> {
         match end {
-            End::Settled(state) => match self.standard {
-                None => Ok(found(&self.descent, joints, &state, &mut self.counters)),
-                Some(_) => {
-                    let guess = self.guess(&state);
-                    let near = refined(&self.descent, &guess, &mut self.counters);
-                    near.ok_or_else(|| format!("no state was found near the factor {:.6}", guess.factor))
-                }
-            },
+            End::Settled(state) if self.standard.is_none() => {
+                Ok(found(&self.descent, joints, &state, &mut self.counters))
+            }
+            End::Settled(state) => {
+                let factor = self.factor(state.lambda);
+                self.near(&state).ok_or_else(|| format!("no state was found near the factor {factor:.6}"))
+            }
             End::Wanders([least, greatest], excess, state) => {
                 let [least, greatest] = [least, greatest].map(|lambda| self.factor(lambda));
-                let guess = self.guess(&state);
-                let near =
-                    refines(self.descent.problem).then(|| refined(&self.descent, &guess, &mut self.counters)).flatten();
-                near.ok_or_else(|| {
+                self.near(&state).ok_or_else(|| {
                     format!(
                         "no state was reached; the last factors are between {least:.6} and {greatest:.6}, which is no bound, \
                          with shear forces up to {excess:.1e} of the loads beyond friction"
@@ -252,9 +235,9 @@ impl<'a> Courses<'a> {
 
     /// Runs sequences of rigid programs from the normal forces of the associated load, from those of elastic joints under dead load, and
     /// from equal ones that are great, so that hardly any joint slips.
-    fn sequences(&mut self, associated: Option<&SpaceField>) {
+    fn sequences(&mut self, standard: &Standard, associated: Option<&SpaceField>) {
         let mut joints = self.joints(JOINTS.ratios[2]);
-        if !refines(self.descent.problem) || dead_load(&mut joints).is_none() {
+        if dead_load(&mut joints).is_none() {
             return;
         }
         let forces: Vec<[f64; 3]> = joints.contacts.iter().map(|contact| contact.force).collect();
@@ -270,14 +253,14 @@ impl<'a> Courses<'a> {
         });
         let associated = associated.map(|field| ("the associated forces".into(), pressed(field)));
         let starts = associated.into_iter().chain([("the dead load".into(), dead)]).chain(great);
-        starts.for_each(|(from, normals)| self.sequence(&from, normals));
+        starts.for_each(|(from, normals)| self.sequence(standard, &from, normals));
     }
 
     /// Runs a sequence of rigid programs, and a course from each guess that is not near a state.
-    fn sequence(&mut self, from: &str, normals: Vec<Vec<f64>>) {
+    fn sequence(&mut self, standard: &Standard, from: &str, normals: Vec<Vec<f64>>) {
         let mut least: Option<(Found, Dual)> = None;
-        for guess in sequence(self.scene(), self.program.start, normals) {
-            let given = self.given(guess.clone());
+        for guess in sequence(&standard.problem, self.program.start, normals) {
+            let given = standard.given(self.descent.problem, &guess);
             let next = refined(&self.descent, &given, &mut self.counters).or_else(|| {
                 let mut joints = self.joints(JOINTS.ratios[2]);
                 joints.press(&guess.field);

@@ -32,7 +32,7 @@ pub fn refined(descent: &Descent, guess: &Guess, counters: &mut Counters) -> Opt
         let mut own = None;
         for _ in 0..JOINTS.rounds {
             if parts.unload() {
-                own = Some(parts.factor).zip(Some(parts.field(problem)));
+                own = Some((parts.factor, parts.field(problem)));
                 break;
             }
             if parts.balance().is_none() {

@@ -12,7 +12,6 @@ use voussoir_core::law::FrictionCone;
 use voussoir_core::space::{PointSet, SpaceContact, SpaceField, SpaceProblem, SpaceVelocity};
 
 /// Approximate forces and mechanism.
-#[derive(Clone)]
 pub struct Guess {
     /// Load factor.
     pub factor: f64,

@@ -285,7 +285,7 @@ mod tests {
         }
     }
 
-    /// Forces and motions that are moved back balance and do the same work.
+    /// Forces that are moved to the standard position and back are the same, and a motion that is moved back does the same work.
     #[test]
     fn forces_and_motions_move_back() {
         let problem = renumbered(&scene(3, 4).problem(&direction()));

@@ -61,11 +61,10 @@ struct Trial {
 }
 
 impl<'a> Joints<'a> {
-    /// Creates joints without stress.
-    pub fn new(program: &'a Program, springs: Vec<Spring>) -> Self {
+    /// Creates joints without stress; `settled` is the power that counts as zero.
+    pub fn new(program: &'a Program, springs: Vec<Spring>, settled: f64) -> Self {
         let contacts = vec![Contact::default(); springs.len()];
         let moves = program.members.iter().map(Member::moves).collect();
-        let settled = JOINTS.settled;
         Joints {
             program,
             springs,
