@@ -274,7 +274,9 @@ fn family(family: Family, seeds: impl Iterator<Item = u64>) -> Tally {
 /// One small scene of each family has the same answer in all forms and with all strategies.
 #[test]
 fn families_of_some() {
-    for (of, seed) in Family::ALL.into_iter().zip([1, 1, 1, 1, 1]) {
+    // In the settled arch two branches differ by little of the displacements that they have in common.
+    let settled_arch = (Family::Settlements, 38);
+    for (of, seed) in Family::ALL.map(|family| (family, 1)).into_iter().chain([settled_arch]) {
         let tally = family(of, std::iter::once(seed));
         assert_eq!((tally.disagree, tally.crashes), (0, 0), "{tally:?}");
     }

@@ -44,7 +44,7 @@ pub fn leave_unstable(tracer: &mut Tracer, state: &State, work: &SecondOrderWork
     tracer.record.notes.push(format!(
         "at factor {} the structure {what}: damped descent sets free {released:.6e} J{}",
         state.factor,
-        if twins { "; the mirrored branch has the same energy" } else { "" }
+        if twins { "; the mirrored branch has the same energy, and can carry another load" } else { "" }
     ));
     tracer.record.events.extend(events(&tracer.system, tracer.in_force.load_step, &tracer.state, &before));
     tracer.record.energy.dissipated += released + dissipated;
