@@ -7,8 +7,9 @@
 //!
 //! Source of the modes: Alart and Curnier (1991).
 
-use super::facet::{dilatancy, dot, norm};
+use super::facet::{dilatancy, dot, norm, slack};
 use super::mode::ContactMode;
+use crate::settings::SETTINGS;
 use voussoir_core::law::{Facet, FacetMode};
 
 /// A contact point of the active set.
@@ -26,6 +27,25 @@ pub struct ActivePoint<'a> {
     pub guess: ContactMode,
     /// Unit of its stiffness.
     pub stiffness: f64,
+}
+
+/// Adds the facets that pass through a corner of two active ones. Slacks are exact to rounding only: a force can be without
+/// slack on both facets of friction and not on the facet of opening, which meets them.
+pub fn complete_corners(facets: &[Facet], active: &mut Vec<usize>) {
+    let (few, tolerance) = (active.clone(), SETTINGS.admissible);
+    for (i, j) in few.iter().enumerate().flat_map(|(k, i)| few[k + 1..].iter().map(move |j| (*i, *j))) {
+        let [(a, p), (b, q)] = [i, j].map(|k| (facets[k].normal, facets[k].bound));
+        let determinant = a[0] * b[1] - a[1] * b[0];
+        if determinant.abs() <= 1e-9 * (norm(a) * norm(b)) {
+            continue;
+        }
+        let corner = [(p * b[1] - q * a[1]) / determinant, (a[0] * q - b[0] * p) / determinant];
+        let meets =
+            |f: &Facet| slack(f, corner, 1.0).abs() <= tolerance * (f.bound.abs() + norm(f.normal) * norm(corner));
+        active.extend((0..facets.len()).filter(|k| !few.contains(k) && meets(&facets[*k])));
+    }
+    active.sort_unstable();
+    active.dedup();
 }
 
 impl ActivePoint<'_> {

@@ -2,12 +2,13 @@
 
 use super::piece::rates::Direction;
 use super::trace::Trace;
+use crate::contact::active_point::complete_corners;
 use crate::contact::facet::{dot, slack};
 use crate::contact::mode::ContactMode;
 use crate::linear::largest;
 use crate::path::events::{ContactStatus, transition};
 use crate::settings::SETTINGS;
-use voussoir_core::law::{Facet, FacetMode};
+use voussoir_core::law::Facet;
 use voussoir_core::path::{ContactEvent, PathEvent};
 
 /// Returns the distance to the next events along a direction, and their points with facets (`usize::MAX` for a
@@ -161,7 +162,6 @@ pub fn arrive(trace: &mut Trace, hits: &[(usize, usize)]) {
     let state = &mut trace.state;
     for &(c, f) in hits {
         let Some(facets) = &trace.system.facets[c] else { continue };
-        let force = state.force(c);
         let point = &mut state.points[c];
         point.arrived_from.get_or_insert(point.mode);
         // At the apex all facets meet.
@@ -180,8 +180,9 @@ pub fn arrive(trace: &mut Trace, hits: &[(usize, usize)]) {
         if !point.active.contains(&f) {
             point.active.push(f);
         }
+        complete_corners(facets, &mut point.active);
         point.mode = ContactMode::Facet(f as u8);
-        if point.apex && (facets[f].mode == FacetMode::Opening || force[0].abs() <= SETTINGS.residual()) {
+        if point.apex && point.opening_facet.is_some_and(|open| point.active.contains(&open)) {
             point.active = bare();
             point.mode = ContactMode::Open;
         } else if let (true, Some(open)) = (point.open(), point.opening_facet) {

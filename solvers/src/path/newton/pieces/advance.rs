@@ -87,7 +87,7 @@ impl Step<'_, '_> {
         let at_start = (self.piece.tangent.factor / unit).abs();
         all.push(self.watched.sense.map_or(never, |sense| Reading {
             value: sense * rate.factor / unit,
-            tolerance: SETTINGS.active * at_start,
+            tolerance: (SETTINGS.active * at_start).max(SETTINGS.rounding),
             ..never
         }));
         all.push(self.watched.target.map_or(never, |(target, direction)| Reading {
@@ -289,10 +289,12 @@ fn ended(low: Trial, high: &Trial) -> Advance {
     let hits: Vec<usize> = (0..monitors).filter(|i| ends(*i)).collect();
     let (turn, target) = (monitors, monitors + 1);
     let at = |i: usize| high.readings[i].is_violated() && low.readings[i].is_active();
-    match (hits.is_empty(), at(target), at(turn)) {
+    // Monitors that stay at zero are no events of a turn.
+    let none_ends = !hits.iter().any(|i| high.readings[*i].is_violated());
+    match (hits.is_empty(), at(target), at(turn) && none_ends) {
         (_, true, _) => Advance::Target(low.end),
+        (_, _, true) => Advance::Turn(low.end),
         (false, ..) => Advance::Event(low.end, hits),
-        (true, _, true) => Advance::Turn(low.end),
         // The bracket is narrower than rounding: all monitors that end in it end here.
         _ => {
             let hits: Vec<usize> = (0..monitors).filter(|i| high.readings[*i].is_violated()).collect();

@@ -7,6 +7,7 @@ use crate::path::event::first_modes;
 use crate::path::newton::model::control::Control;
 use crate::path::newton::model::state::State;
 use crate::path::newton::solve::limit_point_test::{LimitPointTest, limit_point_test};
+use crate::path::newton::solve::nearby::Accuracy;
 use crate::path::newton::solve::step::solve_step;
 use crate::path::newton::solve::tangent::tangent_at;
 use crate::path::newton::tracing::commit::commit;
@@ -54,7 +55,7 @@ fn rate_from_nothing(tracer: &mut Tracer, target: f64, direction: f64) -> Result
 /// Returns the rate at the present state in some modes, if they admit it.
 fn rate_in(tracer: &mut Tracer, modes: Vec<ContactMode>, target: f64, direction: f64) -> Option<Start> {
     let state = State { mode: modes, ..tracer.state.clone() };
-    let rate = tangent_at(&mut tracer.system, &state, &Control::Factor(target))?.scaled(direction);
+    let rate = tangent_at(&mut tracer.system, &state, &Control::Factor(target), Accuracy::Rounding)?.scaled(direction);
     is_admissible(&tracer.system, &state, &state.mode, &rate).then_some((rate, state.mode))
 }
 

@@ -19,6 +19,7 @@ use crate::path::newton::model::state::{State, Tangent, moved};
 use crate::path::newton::quantities::ahead::{facing_ahead, length_ahead};
 use crate::path::newton::quantities::events::events;
 use crate::path::newton::quantities::measure::{increment_along, motion_size};
+use crate::path::newton::solve::nearby::Accuracy;
 use crate::path::newton::solve::second_order::{instability, second_order_work};
 use crate::path::newton::solve::step::solve_step;
 use crate::path::newton::solve::tangent::tangent_at;
@@ -171,9 +172,10 @@ impl<'d> Run<'d> {
     fn step(&mut self, tracer: &mut Tracer) -> Option<LoadStepEnding> {
         let moves = increment_along(&tracer.system, &tracer.state, &self.piece.tangent).motion;
         let length = self.length.next.min(self.length.longest / moves.max(1e-300));
-        let slope = self.piece.tangent.factor / tracer.system.units().factor;
+        // Also from a state at which the factor does not change: beyond it the factor may turn.
+        let sense = if self.rises { self.range.direction } else { -self.range.direction };
         let watched = Watched {
-            sense: (slope.abs() > SETTINGS.rounding).then(|| slope.signum()),
+            sense: Some(sense),
             target: self.range.target.is_finite().then_some((self.range.target, self.range.direction)),
         };
         let start = tracer.state.clone();
@@ -273,7 +275,7 @@ impl<'d> Run<'d> {
             if facing.yields() && !next.yields() {
                 return None;
             }
-            let rate = tangent_at(&mut tracer.system, &next, &control)?;
+            let rate = tangent_at(&mut tracer.system, &next, &control, Accuracy::Rounding)?;
             let turns = self.goes_up(tracer, &rate) != self.rises;
             let short = share <= CORNER_STEPS[1] || !turns;
             (short && step_energy(tracer, &next).holds).then_some((share, next, rate))

@@ -4,7 +4,8 @@ use super::monitors::{Monitors, Reading};
 use crate::path::newton::model::control::Control;
 use crate::path::newton::model::state::{State, Tangent};
 use crate::path::newton::model::system::StepSystem;
-use crate::path::newton::solve::tangent::tangent_nearby;
+use crate::path::newton::solve::nearby::Accuracy;
+use crate::path::newton::solve::tangent::tangent_at;
 use std::rc::Rc;
 
 /// Returns the motions and factor of a tangent over the scaled unknowns.
@@ -59,7 +60,7 @@ impl Piece {
 
     /// Returns the rate of another state of the piece per unit of the step's length.
     pub fn rate_at(&self, system: &mut StepSystem, state: &State) -> Option<Tangent> {
-        tangent_nearby(system, state, &self.control(0.0))
+        tangent_at(system, state, &self.control(0.0), Accuracy::Fine)
     }
 
     /// Returns the readings of the monitors at a state along a rate, in a step from `start`.

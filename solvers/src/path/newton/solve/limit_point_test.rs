@@ -6,7 +6,7 @@
 //! exists.
 
 use super::tangent::tangent_from;
-use crate::contact::active_point::ActivePoint;
+use crate::contact::active_point::{ActivePoint, complete_corners};
 use crate::contact::facet::slack;
 use crate::contact::mode::ContactMode;
 use crate::linear::{inner, largest};
@@ -226,7 +226,9 @@ pub fn active_facets(
     }
     let open = (0..law.facets.len()).find(|i| is_open && law.facets[*i].mode == FacetMode::Opening);
     let tight = |i: &usize| slack(&law.facets[*i], r, area) <= SETTINGS.active * largest;
-    Some(((0..law.facets.len()).filter(tight).collect(), open))
+    let mut active = (0..law.facets.len()).filter(tight).collect();
+    complete_corners(&law.facets, &mut active);
+    Some((active, open))
 }
 
 /// Returns the rates of all unknowns except λ for a unit gap rate in each of the two directions of every point of the

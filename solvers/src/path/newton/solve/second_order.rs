@@ -2,6 +2,7 @@
 //! by column from the factorised equations.
 
 use super::linearised::{factorised, kept};
+use super::nearby::Accuracy;
 use super::tangent::tangent_at;
 use crate::contact::facet::slack;
 use crate::contact::mode::ContactMode;
@@ -91,7 +92,7 @@ pub fn stability(system: &mut StepSystem, state: &State, settles: bool) -> State
         return StateStability { under_load, under_control: under_load, sufficient_only };
     }
     let mut controlled = |state: &State, work: &Option<SecondOrderWork>| {
-        let rate = tangent_at(system, state, &Control::Factor(state.factor))?;
+        let rate = tangent_at(system, state, &Control::Factor(state.factor), Accuracy::Rounding)?;
         let yields = increment_along(system, state, &rate).displacement;
         work.as_ref().map(|work| work.stable_under_control(yields))
     };

@@ -80,16 +80,7 @@ pub fn wanted_modes(system: &mut StepSystem, start: &State, state: &State) -> (V
 }
 
 /// Returns the tangent of a converged state with its modes held, per unit of the control's gradient.
-pub fn tangent_at(system: &mut StepSystem, state: &State, control: &Control) -> Option<Tangent> {
-    tangent(system, state, control, Accuracy::Rounding)
-}
-
-/// Returns the same tangent, with any nearby factors.
-pub fn tangent_nearby(system: &mut StepSystem, state: &State, control: &Control) -> Option<Tangent> {
-    tangent(system, state, control, Accuracy::Fine)
-}
-
-fn tangent(system: &mut StepSystem, state: &State, control: &Control, accuracy: Accuracy) -> Option<Tangent> {
+pub fn tangent_at(system: &mut StepSystem, state: &State, control: &Control, accuracy: Accuracy) -> Option<Tangent> {
     let equations = system.equations(state);
     let row = control_row(system, control);
     tangent_of_modes(system, state, &equations, &row, accuracy)
