@@ -142,3 +142,27 @@ impl ActivePoint<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn completed(friction: f64, bounds: [f64; 3], mut active: Vec<usize>) -> Vec<usize> {
+        let facets = [
+            Facet::associated(FacetMode::Opening, [-1.0, 0.0], bounds[0]),
+            Facet::associated(FacetMode::Sliding, [-friction, 1.0], bounds[1]),
+            Facet::associated(FacetMode::Sliding, [-friction, -1.0], bounds[2]),
+        ];
+        complete_corners(&facets, &mut active);
+        active
+    }
+
+    /// Both facets of dry friction meet the facet of opening; with strength they do not, and facets without friction are parallel.
+    #[test]
+    fn facets_that_meet_in_a_corner_are_active_together() {
+        assert_eq!(completed(0.5, [0.0; 3], vec![1, 2]), [0, 1, 2]);
+        assert_eq!(completed(0.5, [0.0; 3], vec![2]), [2]);
+        assert_eq!(completed(0.5, [1.0, 2.0, 2.0], vec![0, 1]), [0, 1]);
+        assert_eq!(completed(0.0, [0.0; 3], vec![1, 2]), [1, 2]);
+    }
+}

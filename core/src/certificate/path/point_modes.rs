@@ -55,7 +55,7 @@ pub(super) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
 }
 
 /// Adds the indices of the facets whose slack, divided by the length of their normal, is at most `tolerance` \[N\] at all of
-/// these forces.
+/// these forces, and of those that pass through a corner of two such facets.
 pub(super) fn active_facets(
     active: &mut Vec<usize>,
     (contact, facets): (&Contact, &[Facet]),
@@ -68,6 +68,22 @@ pub(super) fn active_facets(
             active.push(index);
         }
     }
+    let few = active.len();
+    for (i, j) in (0..few).flat_map(|i| (i + 1..few).map(move |j| (i, j))) {
+        let [(a, p), (b, q)] = [i, j].map(|i| (facets[active[i]].normal, facets[active[i]].bound));
+        let determinant = a[0] * b[1] - a[1] * b[0];
+        if determinant.abs() <= ALONG * length(a) * length(b) {
+            continue;
+        }
+        let corner = [(p * b[1] - q * a[1]) / determinant, (a[0] * q - b[0] * p) / determinant];
+        for (index, facet) in facets.iter().enumerate() {
+            let size = facet.bound.abs() + length(facet.normal) * length(corner);
+            if !active.contains(&index) && (dot(facet.normal, corner) - facet.bound).abs() <= ALONG * size {
+                active.push(index);
+            }
+        }
+    }
+    active.sort_unstable();
 }
 
 /// Returns true if the active facets meet in the apex of dry friction: opening, and slip in both senses, without strength.
