@@ -12,7 +12,7 @@ pub(super) fn favoured(problem: &PathProblem, load_step: usize, motions: &[&[[f6
     let loads = problem.load_steps[load_step..].iter().map(|later| problem.wrenches(&later.loading));
     let to_the_right = problem.bodies.iter().map(|body| [body.mass, 0.0, 0.0]).collect();
     for load in loads.chain(std::iter::once(to_the_right)) {
-        // Twins may differ by little of what they have in common, so only differences of their motions count.
+        // Twins may be nearly equal, so only differences of their motions count.
         let differences = |k: usize| motions[k].iter().flatten().zip(motions[0].iter().flatten()).map(|(q, p)| q - p);
         let terms = |k: usize| load.iter().flatten().zip(differences(k)).map(|(w, q)| w * q);
         let works: Vec<f64> = left.iter().map(|k| terms(*k).sum()).collect();

@@ -172,7 +172,7 @@ impl<'d> Run<'d> {
     fn step(&mut self, tracer: &mut Tracer) -> Option<LoadStepEnding> {
         let moves = increment_along(&tracer.system, &tracer.state, &self.piece.tangent).motion;
         let length = self.length.next.min(self.length.longest / moves.max(1e-300));
-        // Also from a state at which the factor does not change: beyond it the factor may turn.
+        // The factor may also turn beyond a state at which it does not change.
         let sense = if self.rises { self.range.direction } else { -self.range.direction };
         let watched = Watched {
             sense: Some(sense),

@@ -167,7 +167,7 @@ fn twins_are_told_apart_by_loads() {
     assert_eq!(favoured(&pulled, 1, &[&left, &right]), 0);
     let idle = block(0.3, Loading::default());
     assert_eq!(favoured(&idle, 1, &[&left, &right]), 1);
-    // Twins that differ by little of what they have in common.
+    // The twins are nearly equal.
     let [right, left] = [[[0.0; 3], [1.0 + 1e-8, 0.0, 0.0]], [[0.0; 3], [1.0 - 1e-8, 0.0, 0.0]]];
     assert_eq!(favoured(&pushed, 1, &[&left, &right]), 1);
     assert_eq!(favoured(&pulled, 1, &[&left, &right]), 0);
