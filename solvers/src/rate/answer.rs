@@ -17,13 +17,12 @@
 use super::arrival::Arrival;
 use super::choice::choose;
 use super::counts::{Algorithm, RateCounts};
-use super::lcp::{associated_modes, pivoted_rate, rate_lcp};
-use super::neighbours::{add, neighbours, rising_from};
+use super::lcp::{pivoted_rate, rate_lcp};
+use super::neighbours::{add, neighbours};
 use super::order::Ordered;
 use super::problem::{Rate, RateProblem};
 use super::proof::NoRate;
 use super::tree::{Searched, search_some};
-use crate::contact::mode::ContactMode;
 use crate::settings::SETTINGS;
 use nalgebra::DMatrix;
 
@@ -111,34 +110,6 @@ pub fn only_neighbour(problem: &RateProblem, arrival: &Arrival, budget: &Budget,
     }
 }
 
-/// The result of a search for any rate with λ̇ = 1.
-pub enum RisingRate {
-    /// It is proved that no such rate exists.
-    None,
-    /// ġ and the modes.
-    Found(Vec<[f64; 2]>, Vec<ContactMode>),
-    /// Not decided, and why.
-    Undecided(String),
-}
-
-/// Finds any rate with λ̇ = 1 by a search of at most `most` leaves.
-pub fn rising_rate(problem: &RateProblem, most: u64, trials: &mut u64) -> RisingRate {
-    if let Some((rate, proof)) = pivoted_rate(problem, trials) {
-        if rate.factor > 0.0 {
-            return RisingRate::Found(rate.gaps, rate.modes);
-        }
-        if proof.is_some() {
-            return RisingRate::None;
-        }
-    }
-    let Searched { rates, open, .. } = search_some(problem, 1.0, (most as usize, 0), trials);
-    match (rates.into_iter().next(), open) {
-        (Some(rate), _) => RisingRate::Found(rate.gaps, rate.modes),
-        (None, Some(why)) => RisingRate::Undecided(why),
-        (None, None) => RisingRate::None,
-    }
-}
-
 /// Rates in the cells next to an arrival.
 #[derive(Debug, Clone)]
 pub enum Neighbour {
@@ -217,11 +188,6 @@ impl Inquiry<'_> {
     /// since the rate that another algorithm finds may not be the only one. Otherwise the first rate is kept.
     fn rising(&mut self, few: bool) -> (Option<NoRate>, Algorithm) {
         let trials = &mut self.counts.trials;
-        let modes = if few || self.monotone { None } else { associated_modes(self.problem, trials) };
-        if let Some(rate) = modes.and_then(|modes| rising_from(self.problem, modes, trials)) {
-            self.keep(vec![rate]);
-            return (None, Algorithm::Pivoting);
-        }
         let (rate, proof) = pivoted_rate(self.problem, trials).unzip();
         let (rises, proof) = (rate.as_ref().is_some_and(|rate| rate.factor > 0.0), proof.flatten());
         self.keep(rate.into_iter().collect());
@@ -270,5 +236,5 @@ fn is_monotone(problem: &RateProblem) -> bool {
         let symmetric = m.is_empty() || (m - m.transpose()).amax() <= SETTINGS.admissible;
         symmetric && (m + DMatrix::identity(m.nrows(), m.ncols()) * SETTINGS.admissible).cholesky().is_some()
     };
-    problem.is_associated() && rate_lcp(problem, true).is_some_and(|lcp| semidefinite(&lcp.lcp.matrix))
+    problem.is_associated() && rate_lcp(problem).is_some_and(|lcp| semidefinite(&lcp.lcp.matrix))
 }

@@ -44,11 +44,6 @@ fn facet<'a>(problem: &RateProblem<'a>, (k, f): (usize, usize)) -> &'a Facet {
     &problem.points[k].facets[f]
 }
 
-fn flow(problem: &RateProblem, at: (usize, usize), associated: bool) -> [f64; 2] {
-    let facet = facet(problem, at);
-    if associated { facet.normal } else { facet.flow }
-}
-
 impl RateLcp {
     /// Returns (point, facet) of all rows; rows of eliminated multipliers are last.
     pub fn all_rows(&self) -> Vec<(usize, usize)> {
@@ -74,9 +69,8 @@ impl RateLcp {
     }
 }
 
-/// Creates the problem with the laws' own flow or an associated one. `None` if a point that is open with a strength is
-/// not held by anything.
-pub fn rate_lcp(problem: &RateProblem, associated: bool) -> Option<RateLcp> {
+/// Creates the problem. `None` if a point that is open with a strength is not held by anything.
+pub fn rate_lcp(problem: &RateProblem) -> Option<RateLcp> {
     let points = || problem.points.iter().enumerate();
     let pairs = |(k, p): (usize, &ActivePoint)| -> Vec<(usize, usize)> {
         p.active.iter().filter(|f| Some(**f) != p.open).map(|f| (k, *f)).collect()
@@ -86,7 +80,7 @@ pub fn rate_lcp(problem: &RateProblem, associated: bool) -> Option<RateLcp> {
     let s = &problem.s;
     let entry = |i: (usize, usize), j: (usize, usize)| {
         let (k, l) = (i.0, j.0);
-        let (a, d) = (facet(problem, i).normal, flow(problem, j, associated));
+        let (a, d) = (facet(problem, i).normal, facet(problem, j).flow);
         a[0] * (s[(2 * k, 2 * l)] * d[0] + s[(2 * k, 2 * l + 1)] * d[1])
             + a[1] * (s[(2 * k + 1, 2 * l)] * d[0] + s[(2 * k + 1, 2 * l + 1)] * d[1])
     };
@@ -118,10 +112,10 @@ pub fn rate_lcp(problem: &RateProblem, associated: bool) -> Option<RateLcp> {
 }
 
 /// Returns ġ of multipliers with a λ̇.
-pub fn gaps_of(problem: &RateProblem, lcp: &RateLcp, z: &[f64], factor: f64, associated: bool) -> Vec<[f64; 2]> {
+pub fn gaps_of(problem: &RateProblem, lcp: &RateLcp, z: &[f64], factor: f64) -> Vec<[f64; 2]> {
     let mut gaps = vec![[0.0; 2]; problem.points.len()];
     let mut add = |at: (usize, usize), multiplier: f64| {
-        let d = flow(problem, at, associated);
+        let d = facet(problem, at).flow;
         (0..2).for_each(|i| gaps[at.0][i] -= multiplier * d[i]);
     };
     let own: Vec<f64> = z.iter().zip(&lcp.unit).map(|(z, unit)| z / unit).chain([factor]).collect();
@@ -134,7 +128,7 @@ pub fn gaps_of(problem: &RateProblem, lcp: &RateLcp, z: &[f64], factor: f64, ass
 /// A rate by Lemke's pivoting: with λ̇ = 1, or the ray of a mechanism, with the proof that no rate rises if it is one. For a
 /// monotone problem pivoting ends with one of both. `None` if it finds no rate that satisfies the laws.
 pub fn pivoted_rate(problem: &RateProblem, trials: &mut u64) -> Option<(Rate, Option<NoRate>)> {
-    let lcp = rate_lcp(problem, false).filter(|lcp| lcp.facets.len() <= MOST)?;
+    let lcp = rate_lcp(problem).filter(|lcp| lcp.facets.len() <= MOST)?;
     let mut proof = None;
     let rate = match lemke(&lcp.lcp, trials) {
         LemkeResult::Unfinished => return None,
@@ -144,26 +138,18 @@ pub fn pivoted_rate(problem: &RateProblem, trials: &mut u64) -> Option<(Rate, Op
             exact.filter(|rate| rate.factor > 0.0).unwrap_or_else(|| Rate {
                 factor: 1.0,
                 modes,
-                gaps: gaps_of(problem, &lcp, &z, 1.0, false),
+                gaps: gaps_of(problem, &lcp, &z, 1.0),
             })
         }
         LemkeResult::Ray(z) => {
             let most = z.iter().copied().fold(1e-300, f64::max);
             let modes = modes_of(problem, &lcp.facets, |i| z[i] > 1e-8 * most);
             proof = lcp.excluded_by(&z);
-            let gaps = gaps_of(problem, &lcp, &z, 0.0, false);
+            let gaps = gaps_of(problem, &lcp, &z, 0.0);
             problem.mechanism_near(&modes, &gaps).unwrap_or(Rate { factor: 0.0, modes, gaps })
         }
     };
     problem.admits(&rate).then_some((rate, proof))
-}
-
-/// Modes of the rate with associated flow and λ̇ = 1, by Lemke's pivoting. Its forces are unique, and symmetric if
-/// the structure is. `None` if pivoting finds no such rate.
-pub fn associated_modes(problem: &RateProblem, trials: &mut u64) -> Option<Vec<ContactMode>> {
-    let lcp = rate_lcp(problem, true).filter(|lcp| lcp.facets.len() <= MOST)?;
-    let LemkeResult::Solution(z) = lemke(&lcp.lcp, trials) else { return None };
-    Some(modes_of_solution(problem, &lcp, &z))
 }
 
 /// Returns the modes of multipliers that solve the problem.

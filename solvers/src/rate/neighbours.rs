@@ -9,9 +9,6 @@ use super::problem::{Rate, RateProblem};
 use crate::contact::mode::ContactMode;
 use crate::settings::SETTINGS;
 
-/// Rounds of the active set in which all points may change at once.
-const ROUNDS: usize = 12;
-
 /// The modes in which the path continues without a choice: the modes of the arrival, with each point of the event in
 /// the mode that repairs its violation there.
 pub fn forward_modes(problem: &RateProblem, arrival: &Arrival) -> Vec<ContactMode> {
@@ -88,33 +85,21 @@ pub fn settled(
     trials: &mut u64,
 ) -> Option<Rate> {
     let mut seen: Vec<Vec<ContactMode>> = Vec::new();
-    for round in 0..60 + modes.len() {
+    for _ in 0..60 + modes.len() {
         *trials += 1;
         let attempt = problem.attempt(&modes, 1.0)?;
         if attempt.singular {
             return problem.at_constant_load(&modes);
         }
-        let mut violations = problem.violations(&modes, &attempt, sense);
+        let violations = problem.violations(&modes, &attempt, sense);
         if violations.is_empty() {
             return Some(problem.rate(&modes, &attempt, sense, sense));
         }
-        let known = seen.iter().filter(|own| **own == modes).count();
-        if violations.iter().any(|(_, k, _)| held[*k]) || known > 2 {
+        if violations.iter().any(|(_, k, _)| held[*k]) || seen.contains(&modes) {
             return None;
-        }
-        if known > 0 && round > ROUNDS {
-            violations.sort_by_key(|violation| violation.1);
-            violations.truncate(1);
         }
         seen.push(modes.clone());
         violations.into_iter().for_each(|(_, k, to)| modes[k] = to);
     }
     None
-}
-
-/// A rate with λ̇ = 1 by the active set from some modes. `None` if it finds none.
-pub fn rising_from(problem: &RateProblem, modes: Vec<ContactMode>, trials: &mut u64) -> Option<Rate> {
-    let free = vec![false; modes.len()];
-    let rate = settled(problem, modes, &free, 1.0, trials)?;
-    (rate.factor > 0.0 && problem.admits(&rate)).then_some(rate)
 }

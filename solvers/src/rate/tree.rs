@@ -47,7 +47,7 @@ pub fn search(problem: &RateProblem, factor: f64, most: usize, trials: &mut u64)
 
 /// The same, but ends after `enough` leaves if it has found a rate.
 pub fn search_some(problem: &RateProblem, factor: f64, (most, enough): (usize, usize), trials: &mut u64) -> Searched {
-    let Some(lcp) = rate_lcp(problem, false) else {
+    let Some(lcp) = rate_lcp(problem) else {
         return Searched::undecided("the points that are open with a strength are held by nothing");
     };
     if lcp.facets.len() > MOST {
@@ -160,7 +160,7 @@ impl Program {
             return Some(Program { matrix: m.clone(), constant: q * (factor / size), size, factor });
         }
         let unit = |j: usize| -> Vec<f64> { (0..n).map(|i| f64::from(u8::from(i == j))).collect() };
-        let work: Vec<f64> = (0..n).map(|j| problem.power(&gaps_of(problem, lcp, &unit(j), 0.0, false))).collect();
+        let work: Vec<f64> = (0..n).map(|j| problem.power(&gaps_of(problem, lcp, &unit(j), 0.0))).collect();
         let size = work.iter().fold(0.0, |a: f64, c| a.max(c.abs()));
         if size == 0.0 {
             return None;
@@ -333,7 +333,6 @@ impl Search<'_> {
         let found = if feasible { self.rate_of_cell(&modes) } else { None };
         match found {
             Some(rate) => add(&mut self.rates, rate),
-            None if !feasible && self.only_rests(&modes) => {}
             None => self.doubtful = true,
         }
         if self.leaves >= self.enough && !self.rates.is_empty() {
@@ -342,23 +341,12 @@ impl Search<'_> {
         Ok((ModeTree::Rate(modes), (0..self.choices.len()).collect()))
     }
 
-    /// True if the equations of modes with λ̇ = 0 have the solution zero only.
-    fn only_rests(&self, modes: &[PointMode]) -> bool {
-        let known = |(point, mode): (&ActivePoint, &PointMode)| match mode {
-            PointMode::Vertex if !point.apex => None,
-            mode => Some(contact_mode(point, *mode, [0.0; 2])),
-        };
-        let modes: Option<Vec<ContactMode>> = self.problem.points.iter().zip(modes).map(known).collect();
-        let attempt = modes.and_then(|modes| self.problem.attempt(&modes, 0.0));
-        self.program.factor == 0.0 && attempt.is_some_and(|attempt| !attempt.singular)
-    }
-
     fn rate_of_cell(&self, modes: &[PointMode]) -> Option<Rate> {
         let n = self.lcp.facets.len();
         let (factor, problem) = (self.program.factor, self.problem);
         let size = if factor == 0.0 { 1.0 } else { self.program.size };
         let z: Vec<f64> = (n..2 * n).map(|x| self.dictionary.value(x).max(0.0) * size).collect();
-        let gaps = gaps_of(problem, self.lcp, &z, factor, false);
+        let gaps = gaps_of(problem, self.lcp, &z, factor);
         let points = problem.points.iter().zip(modes).zip(&gaps);
         let modes: Vec<ContactMode> = points.map(|((point, mode), gap)| contact_mode(point, *mode, *gap)).collect();
         let exact =

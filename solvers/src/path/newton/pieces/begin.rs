@@ -15,9 +15,6 @@ use crate::path::newton::tracing::tracer::{LoadStepEnding, Tracer, end_path};
 use crate::settings::SETTINGS;
 use voussoir_core::limit::Status;
 
-/// Shares of the load step at which a state is computed if no rate has been found.
-const TRIAL_LOADS: [f64; 3] = [1e-6, 1e-4, 1e-2];
-
 /// Returns the first piece, or the ending if the load step ends at its start.
 pub(super) fn begin(tracer: &mut Tracer, target: f64, direction: f64) -> Result<Piece, LoadStepEnding> {
     match first_rate(tracer, target, direction) {
@@ -78,14 +75,6 @@ fn first_rate(tracer: &mut Tracer, target: f64, direction: f64) -> Result<Start,
         }
         LimitPointTest::Unknown(why) => why,
     };
-    for share in TRIAL_LOADS {
-        let ahead =
-            Control::Factor(factor + share * direction * (target - factor).abs().min(tracer.system.units().factor));
-        let Ok((next, _)) = solve_step(&mut tracer.system, &state, state.clone(), &ahead) else { continue };
-        if let Some(found) = rate_in(tracer, next.mode, target, direction) {
-            return Ok(found);
-        }
-    }
     Err((
         Status::Stalled,
         format!("at factor {factor} no rate of equilibrium under the growing load was found: {unknown}"),

@@ -95,8 +95,6 @@ struct Cluster {
     arrival: Option<(Vec<ContactMode>, Piece, bool)>,
     /// Number of pieces of almost zero length.
     pieces: u32,
-    /// Length of the last step across a corner, relative to the first step, if the path has hardly moved since then.
-    across: Option<f64>,
 }
 
 /// Follows a load step with the strategy, up to a factor or the end of the path.
@@ -262,12 +260,10 @@ impl<'d> Run<'d> {
 
     /// Makes a short step from a corner, approximately along a piece, by Newton's method on the laws themselves: modes
     /// and branches may change in it. The next corner may follow at once, where points that slip and blocks that yield
-    /// decide about each other; steps then grow by a factor of four, but a turn is passed by a short one. `None` if
-    /// there is no such step.
+    /// decide about each other. A turn is passed by a short step. `None` if there is no such step.
     fn across(&mut self, tracer: &mut Tracer, facing: &State, piece: &Piece) -> Option<Ending> {
         let here = tracer.state.clone();
-        let grown = self.cluster.across.map(|share| (4.0 * share).min(1.0));
-        let (share, next, rate) = grown.into_iter().chain(CORNER_STEPS).find_map(|share| {
+        let (share, next, rate) = CORNER_STEPS.into_iter().find_map(|share| {
             let control = piece.control(share * self.length.first);
             let guess = moved(facing, &piece.tangent, share * self.length.first);
             let (next, _) = solve_step(&mut tracer.system, &here, guess, &control).ok()?;
@@ -284,7 +280,7 @@ impl<'d> Run<'d> {
         self.piece = Piece::new(&tracer.system, &next, &rate)?;
         self.length.next = share * self.length.first;
         self.rises = self.goes_up(tracer, &self.piece.tangent.clone());
-        self.cluster = Cluster { across: Some(share), ..Cluster::default() };
+        self.cluster = Cluster::default();
         if was != self.rises
             && let Some(ending) = self.at_turn(tracer, was)
         {

@@ -8,7 +8,7 @@ use crate::path::newton::model::state::{State, Tangent};
 use crate::path::newton::model::system::StepSystem;
 use crate::path::newton::quantities::control_row::add_weighted_gaps;
 use crate::path::newton::solve::limit_point_test::{
-    AfterEvent, EventPoints, active_facets, largest_force, rate_after_event,
+    AfterEvent, EventPoints, active_facets, largest_force, normalised, rate_after_event,
 };
 use crate::path::newton::solve::nearby::Accuracy;
 use crate::path::newton::solve::tangent::tangent_of_modes;
@@ -143,16 +143,6 @@ fn event_points(hits: &[Monitor]) -> EventPoints {
         all: of(&|_| true),
         stopping: of(&|what| matches!(what, What::Flow(_))),
         closing: of(&|what| what == What::Opening),
-    }
-}
-
-/// Returns the mode of a corner, which is the same for all pairs of its facets.
-fn normalised(system: &StepSystem, contact: usize, mode: ContactMode) -> ContactMode {
-    match mode {
-        ContactMode::Corner(i, j) => {
-            system.law(contact).and_then(|law| law.mode_of_pair(i as usize, j as usize)).unwrap_or(mode)
-        }
-        other => other,
     }
 }
 

@@ -15,17 +15,18 @@ use crate::path::newton::model::state::{State, Tangent};
 use crate::path::newton::model::system::StepSystem;
 use crate::path::newton::quantities::response::traction_row;
 use crate::path::twins::favoured;
-use crate::rate::answer::{Budget, Continuation, RisingRate, answer, rising_rate};
+use crate::rate::answer::{Budget, Continuation, answer};
 use crate::rate::arrival::{Arrival, ArrivalPoint};
 use crate::rate::counts::RateCounts;
 use crate::rate::problem::{Rate, RateProblem};
+use crate::rate::tree::{Searched, search_some};
 use crate::settings::SETTINGS;
 use nalgebra::{DMatrix, DVector};
 use voussoir_core::law::FacetMode;
 use voussoir_core::linear::{Entries, SparseLu};
 
-/// Greatest number of linear programs of a search.
-const MAX_PROGRAMS: u64 = 20_000;
+/// Greatest number of leaves of a search.
+const MAX_LEAVES: usize = 20_000;
 
 /// The active set of a state.
 pub struct ActiveSet {
@@ -57,18 +58,19 @@ pub fn limit_point_test(system: &mut StepSystem, state: &State, direction: f64) 
         return LimitPointTest::Unknown(format!("the stiffness of {count} facets of the active set was not found"));
     };
     let mut programs = 0;
-    let found = rising_rate(&rate_problem(system, &active, &responses), MAX_PROGRAMS, &mut programs);
+    let Searched { rates, open, .. } =
+        search_some(&rate_problem(system, &active, &responses), 1.0, (MAX_LEAVES, 0), &mut programs);
     system.count("rate_programs", programs);
-    match found {
-        RisingRate::None => LimitPointTest::None,
-        RisingRate::Undecided(why) => {
-            LimitPointTest::Unknown(format!("{count} facets of the active set may let the load grow: {why}"))
-        }
-        RisingRate::Found(gaps, modes) => {
-            let x = unknowns_of(&responses, &gaps, 1.0, direction);
-            let modes = modes_of(system, &active, modes);
+    match (rates.into_iter().next(), open) {
+        (Some(rate), _) => {
+            let x = unknowns_of(&responses, &rate.gaps, 1.0, direction);
+            let modes = modes_of(system, &active, rate.modes);
             LimitPointTest::Tangent(tangent_from(system, &x, state, &equations), modes)
         }
+        (None, Some(why)) => {
+            LimitPointTest::Unknown(format!("{count} facets of the active set may let the load grow: {why}"))
+        }
+        (None, None) => LimitPointTest::None,
     }
 }
 
@@ -178,15 +180,18 @@ pub fn without_factor(responses: &[Vec<f64>], gaps: &[[f64; 2]], factor: f64) ->
 /// Returns the modes of all points from those of the active set.
 fn modes_of(system: &StepSystem, active: &ActiveSet, modes: Vec<ContactMode>) -> Vec<ContactMode> {
     let mut all = active.modes.clone();
-    for (c, mode) in active.contacts.iter().zip(modes) {
-        // A corner has one mode for all pairs of its facets.
-        let law = system.law(*c);
-        all[*c] = match mode {
-            ContactMode::Corner(i, j) => law.and_then(|law| law.mode_of_pair(i as usize, j as usize)).unwrap_or(mode),
-            other => other,
-        };
-    }
+    active.contacts.iter().zip(modes).for_each(|(c, mode)| all[*c] = normalised(system, *c, mode));
     all
+}
+
+/// Returns the mode of a corner, which is the same for all pairs of its facets.
+pub fn normalised(system: &StepSystem, contact: usize, mode: ContactMode) -> ContactMode {
+    match mode {
+        ContactMode::Corner(i, j) => {
+            system.law(contact).and_then(|law| law.mode_of_pair(i as usize, j as usize)).unwrap_or(mode)
+        }
+        other => other,
+    }
 }
 
 /// Returns the points that may change their modes: without slack, at the tip of opening, or closing.
