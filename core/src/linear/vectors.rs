@@ -68,6 +68,11 @@ pub fn add_product(out: &mut [f64], rows: usize, a: &[f64], x: &[f64]) {
 
 /// Returns the greatest absolute value; NaN does not count.
 pub fn largest(values: &[f64]) -> f64 {
+    with_vectors!('a, largest_of(values: &'a [f64]) -> f64)
+}
+
+#[inline(always)]
+fn largest_of<S: Simd>(_: S, values: &[f64]) -> f64 {
     // `f64::max` takes several instructions, because either number may be NaN.
     let greater = |a: f64, b: f64| if b > a { b } else { a };
     let (eights, rest) = values.as_chunks::<8>();

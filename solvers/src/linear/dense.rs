@@ -86,14 +86,17 @@ fn add_to_two<S: Simd>(simd: S, (first, second): (&mut [f64], &mut [f64]), a: &[
 #[inline(always)]
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 4];
-    let (a4, b4) = (a.chunks_exact(4), b.chunks_exact(4));
-    let rest: f64 = a4.remainder().iter().zip(b4.remainder()).map(|(a, b)| a * b).sum();
-    for (a, b) in a4.zip(b4) {
-        for k in 0..4 {
-            sums[k] += a[k] * b[k];
-        }
+    let ((a4, a1), (b4, b1)) = (a.as_chunks::<4>(), b.as_chunks::<4>());
+    let rest: f64 = a1.iter().zip(b1).map(|(a, b)| a * b).sum();
+    for (a, b) in a4.iter().zip(b4) {
+        (0..4).for_each(|k| sums[k] += a[k] * b[k]);
     }
     (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
+}
+
+/// Returns some columns of a matrix.
+pub fn columns_of(a: &DMatrix<f64>, first: usize, count: usize) -> DMatrix<f64> {
+    DMatrix::from_column_slice(a.nrows(), count, &a.as_slice()[a.nrows() * first..][..a.nrows() * count])
 }
 
 /// Returns A times the first entries of columns.

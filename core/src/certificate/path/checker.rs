@@ -117,8 +117,8 @@ impl PathChecker {
             .iter()
             .zip(problem.applied(state.load_step, state.factor))
             .map(|(step, factor)| {
-                let sizes = problem.wrenches(&step.loading).into_iter().map(|[x, y, _]| (factor * x.hypot(y)).abs());
-                sizes.sum::<f64>()
+                let sizes = problem.wrenches(&step.loading).into_iter().map(|[x, y, _]| (x * x + y * y).sqrt());
+                factor.abs() * sizes.sum::<f64>()
             })
             .sum();
         let forces: f64 = state.force.iter().map(|f| (f[0] * f[0] + f[1] * f[1]).sqrt()).sum();

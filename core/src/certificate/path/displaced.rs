@@ -67,6 +67,7 @@ impl<'a> Displaced<'a> {
         }
     }
 
+    #[inline(always)]
     fn displacement(&self, body: usize, slot: Option<usize>, point: Vec2) -> Vec2 {
         let [rigid, deformed] = self.parts(body, slot, point);
         rigid + deformed

@@ -114,7 +114,7 @@ impl RateEquations {
         (index, contact): (usize, &Contact),
         component: usize,
     ) -> Column {
-        let mut column = Column::default();
+        let mut column = Column { equilibrium: Vec::with_capacity(6), gap: Vec::new() };
         let along = [contact.normal, contact.tangent][component];
         for (side, sign) in [(contact.minus, -1.0), (contact.plus, 1.0)] {
             if !self.held[side.body] {

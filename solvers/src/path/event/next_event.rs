@@ -71,17 +71,6 @@ fn irreversible(trace: &Trace, c: usize, gap: [f64; 2], opening: f64) -> [f64; 2
 
 /// Moves a step along a direction and records the events at its end.
 pub fn advance(trace: &mut Trace, direction: &Direction, step: f64, sense: f64, hits: &[(usize, usize)]) {
-    let unit = trace.system.units.energy();
-    let mut dissipated = trace.state.energy.dissipated;
-    for (c, point) in trace.state.points.iter().enumerate() {
-        if matches!(point.mode, ContactMode::Stick | ContactMode::Open) {
-            continue;
-        }
-        let mean = [0, 1].map(|i| trace.state.x[2 * c + i] + 0.5 * step * direction.x[2 * c + i]);
-        let flow = irreversible(trace, c, direction.gaps[c], opening_rate(trace, c, direction.gaps[c]));
-        dissipated -= dot(mean, flow) * step * unit;
-    }
-    trace.state.energy.dissipated = dissipated;
     let before = trace.state.factor;
     for (x, rate) in trace.state.x.iter_mut().zip(&direction.x) {
         *x += step * rate;
@@ -98,8 +87,8 @@ pub fn advance(trace: &mut Trace, direction: &Direction, step: f64, sense: f64, 
     arrive(trace, hits);
 }
 
-/// Applies a step to a contact point: its opening, the facets that it leaves, and the events recorded at the factor
-/// `before` the step. `size`: greatest rate of force.
+/// Applies a step to a contact point: its opening, the energy that it dissipates, the facets that it leaves, and the
+/// events recorded at the factor `before` the step. `size`: greatest rate of force.
 fn stepped(trace: &mut Trace, direction: &Direction, c: usize, (step, before): (f64, f64), size: f64) {
     let point = &mut trace.state.points[c];
     let (was_open, was_hit) = (point.open(), point.arrived_from.take().is_some());
@@ -107,14 +96,19 @@ fn stepped(trace: &mut Trace, direction: &Direction, c: usize, (step, before): (
     if !flows && point.active.is_empty() {
         return;
     }
-    let opening = if flows { step * opening_rate(trace, c, direction.gaps[c]) } else { 0.0 };
+    let [force, rate] = [&trace.state.x, &direction.x].map(|x| [x[2 * c], x[2 * c + 1]]);
+    let opening = if flows { opening_rate(trace, c, direction.gaps[c]) } else { 0.0 };
+    if !matches!(trace.state.points[c].mode, ContactMode::Stick | ContactMode::Open) {
+        let mean = [0, 1].map(|i| force[i] - 0.5 * step * rate[i]);
+        let flow = irreversible(trace, c, direction.gaps[c], opening);
+        trace.state.energy.dissipated -= dot(mean, flow) * step * trace.system.units.energy();
+    }
     let Some(facets) = &trace.system.facets[c] else { return };
     let point = &mut trace.state.points[c];
-    point.opening = if flows { (point.opening + opening).max(0.0) } else { 0.0 };
+    point.opening = if flows { (point.opening + step * opening).max(0.0) } else { 0.0 };
     let mut happened = begun(point.mode, facets, was_hit, !was_open && point.open());
     // Facets that this direction leaves become inactive.
     if !(point.open() && point.apex) {
-        let [force, rate] = [&trace.state.x, &direction.x].map(|x| [x[2 * c], x[2 * c + 1]]);
         let had = point.active.len();
         point.active.retain(|f| {
             let facet = &facets[*f];

@@ -18,7 +18,7 @@ use crate::optimise::dense_simplex::Feasibility;
 use crate::path::system::{Load, System};
 use crate::rate::mechanism::mechanisms;
 use crate::settings::SETTINGS;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, Vector3};
 use voussoir_core::random::Random;
 
 /// Greatest number of degrees of freedom for which uniqueness is examined.
@@ -35,20 +35,26 @@ pub fn unique(system: &System, points: &[Point], load: &Load, x: &[f64], gaps: &
     }
     let size = gaps.iter().flatten().fold(0.0, |a: f64, g| a.max(g.abs()));
     let space = |flows: &dyn Fn(usize) -> Option<Vec<[f64; 2]>>| {
-        // Two points without flow hold two bodies together: further points between them constrain nothing.
-        let mut held: Vec<([usize; 2], usize)> = Vec::new();
+        // A gap depends on the motion of two bodies about each other, which has three parts: rows in the span of earlier rows
+        // of the same bodies constrain nothing.
+        let mut spans: Vec<([usize; 2], Vec<Vector3<f64>>)> = Vec::new();
         let mut rows: Vec<Vec<f64>> = Vec::new();
         for c in 0..points.len() {
             let columns = system.kinematics.row(2 * c);
-            let own = [columns.first(), columns.last()].map(|entry| entry.map_or(usize::MAX, |entry| entry.0));
-            let stuck = held.iter().position(|(pair, _)| *pair == own).unwrap_or_else(|| {
-                held.push((own, 0));
-                held.len() - 1
+            let [Some(first), Some(last)] = [columns.first(), columns.last()] else { continue };
+            let bodies = [first.0 / 3, last.0 / 3];
+            let at = spans.iter().position(|(known, _)| *known == bodies).unwrap_or_else(|| {
+                spans.push((bodies, Vec::new()));
+                spans.len() - 1
             });
-            if held[stuck].1 < 2 {
-                let flows = flows(c);
-                held[stuck].1 += usize::from(flows.as_ref().is_some_and(Vec::is_empty));
-                rows.extend(constraints(system, c, flows));
+            let span = &mut spans[at].1;
+            for row in (span.len() < 3).then(|| constraints(system, c, flows(c))).into_iter().flatten() {
+                let own = Vector3::from_column_slice(&row[3 * bodies[0]..][..3]);
+                let left = span.iter().fold(own, |left, known| left - known * known.dot(&left));
+                if left.norm() > SETTINGS.admissible * own.norm() {
+                    span.push(left.normalize());
+                    rows.push(row);
+                }
             }
         }
         null_space(&DMatrix::from_fn(rows.len().max(freedoms), freedoms, |i, j| rows.get(i).map_or(0.0, |row| row[j])))

@@ -60,7 +60,7 @@ pub fn kinematic_rows(problem: &PathProblem, free: &[Option<usize>]) -> Vec<Vec<
     for contact in &problem.contacts {
         let rows = [problem.kinematics(contact, false), problem.kinematics(contact, true)];
         for i in 0..2 {
-            let mut row = Vec::new();
+            let mut row = Vec::with_capacity(6);
             for (side, body) in rows.iter().zip([contact.minus.body, contact.plus.body]) {
                 if let Some(free) = free[body] {
                     let [x, y, theta] = side[i];

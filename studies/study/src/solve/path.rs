@@ -22,7 +22,7 @@ struct Watched<'a> {
     observer: &'a mut dyn PathObserver,
     /// True if the other observer has ended the path.
     ended: bool,
-    /// The last state of each stage, by index.
+    /// The last state of each earlier stage, by index.
     ends: Vec<Option<PathState>>,
     progress: Progress,
     recorder: Recorder<'a>,
@@ -36,13 +36,18 @@ impl PathObserver for Watched<'_> {
         if self.malformed.is_err() {
             return false;
         }
-        self.ends[problem.load_steps[state.load_step].stage] = Some(state.clone());
+        let stage = |state: &PathState| problem.load_steps[state.load_step].stage;
+        if let Some(last) = self.progress.last().filter(|last| stage(last) != stage(state)) {
+            self.ends[stage(last)] = Some(last.clone());
+        }
         self.progress.add(problem, state);
         self.recorder.state(problem, state);
         let displaced = Displaced::new(&self.structure, state, self.input.settings.finite);
         if self.chain.broken().is_none() {
             // Gaps are not stored. The chain computes them from forces and motions, now and when it is read back.
-            self.chain.add(PathState { gap: displaced.gaps().to_vec(), ..state.clone() });
+            let mut own = state.clone();
+            own.gap.copy_from_slice(displaced.gaps());
+            self.chain.add(own);
         }
         self.checker.check(&displaced);
         self.ended |= !self.observer.state(problem, state);
@@ -77,9 +82,12 @@ impl<'a> Watched<'a> {
         solved: PathAnswer,
         believed: bool,
     ) -> CaseResult {
-        let Watched { input, checker, chain, ends, progress, recorder, malformed, .. } = self;
+        let Watched { input, checker, chain, mut ends, progress, recorder, malformed, .. } = self;
         if let Err(why) = malformed.and_then(|()| solved.check_form(problem)) {
             return failed(tag, format!("{tag}: {why}"));
+        }
+        if let Some(last) = progress.last() {
+            ends[problem.load_steps[last.load_step].stage] = Some(last.clone());
         }
         // A solver may require a stricter tolerance, never a looser one.
         let energy = solver.energy_tolerance().min(tolerance("path_energy").result);

@@ -58,6 +58,11 @@ impl Progress {
         }
     }
 
+    /// Returns the last state.
+    pub fn last(&self) -> Option<&PathState> {
+        self.last.as_ref()
+    }
+
     /// Returns the load step of the last state.
     pub fn load_step(&self) -> Option<usize> {
         self.last.as_ref().map(|state| state.load_step)

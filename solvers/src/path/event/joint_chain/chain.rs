@@ -167,11 +167,13 @@ impl JointChain {
 
     /// Refines all responses by one step.
     fn refine_responses(&mut self, mut right: Vec<DMatrix<f64>>) {
+        let mut gap = Vec::new();
         for (e, factor) in self.factors.all.iter().enumerate() {
             let m = 2 * factor.joint.contacts.len();
             for j in 0..right[e].ncols() {
                 let column = |e: usize| column(&self.columns.responses[e], j);
-                let (own, gap) = (column(e), factor.joint.gaps(e, &column));
+                let own = column(e);
+                factor.joint.set_gaps(&mut gap, e, &column);
                 for (p, rows) in factor.rows.iter().enumerate() {
                     let left = left_of(rows, pair(own, p), pair(&gap, p));
                     (0..2).for_each(|i| right[e][(2 * p + i, j)] += left[i]);
@@ -288,21 +290,18 @@ impl JointChain {
     /// Returns the rates as those of the whole system; gaps of points that stick are zero.
     pub fn rates(&self, system: &System, load: &Load) -> Option<Rates> {
         let rates = self.rates.as_ref()?;
-        let mut gaps = vec![[0.0; 2]; system.contacts];
+        let (mut gaps, mut all) = (vec![[0.0; 2]; system.contacts], Vec::new());
         for (e, factor) in self.factors.all.iter().enumerate() {
             let contacts = &factor.joint.contacts;
-            if contacts.iter().all(|c| self.modes[*c] == ContactMode::Stick) {
-                continue;
-            }
             let own = |e: usize| rates.own[e].as_slice();
             let moving = contacts.iter().enumerate().filter(|(_, c)| self.modes[**c] != ContactMode::Stick);
             if 2 * moving.clone().count() <= contacts.len() {
                 moving.for_each(|(p, c)| gaps[*c] = factor.joint.gap(e, p, &own));
             } else {
-                let all = factor.joint.gaps(e, &own);
+                factor.joint.set_gaps(&mut all, e, &own);
                 moving.for_each(|(p, c)| gaps[*c] = pair(&all, p));
             }
-            contacts.iter().filter(|c| self.modes[**c] != ContactMode::Stick).for_each(|c| {
+            contacts.iter().filter(|c| load.opens && self.modes[**c] != ContactMode::Stick).for_each(|c| {
                 (0..2).for_each(|i| gaps[*c][i] += load.gap[*c][i]);
             });
         }
@@ -326,27 +325,27 @@ impl JointChain {
     /// forces and motions.
     pub fn examined(&self, load: &Load, [forces, motions]: [f64; 2]) -> Option<(f64, Vec<DMatrix<f64>>)> {
         let rates = self.rates.as_ref()?;
-        let mut worst = 0.0f64;
+        let (mut worst, mut gap) = ([0.0f64; 2], Vec::new());
         let mut left = Vec::with_capacity(rates.own.len());
         for (e, factor) in self.factors.all.iter().enumerate() {
             let (joint, own) = (&factor.joint, &rates.own[e]);
             let m = 2 * joint.contacts.len();
-            let mut gap = joint.gaps(e, &|e: usize| rates.own[e].as_slice());
+            joint.set_gaps(&mut gap, e, &|e: usize| rates.own[e].as_slice());
             gap.iter_mut().zip(joint.contacts.iter().flat_map(|c| load.gap[*c])).for_each(|(g, load)| *g += load);
             let mut all = vec![0.0; m + 3];
             for (p, rows) in factor.rows.iter().enumerate() {
                 for (i, [by_force, by_gap]) in parts(rows, pair(own, p), pair(&gap, p)).into_iter().enumerate() {
-                    worst = worst.max(by_force.abs() / forces).max(by_gap.abs() / motions);
+                    worst = [worst[0].max(by_force.abs()), worst[1].max(by_gap.abs())];
                     all[2 * p + i] = -(by_force + by_gap);
                 }
             }
             for i in 0..3 {
                 all[m + i] = given(&self.load.resultants[e], i, &rates.share) - joint.resultant(i, own);
-                worst = worst.max(all[m + i].abs() / forces);
+                worst[0] = worst[0].max(all[m + i].abs());
             }
             left.push(DMatrix::from_vec(m + 3, 1, all));
         }
-        Some((worst, left))
+        Some(((worst[0] / forces).max(worst[1] / motions), left))
     }
 
     /// Corrects the rates by the residual of the equations. Returns the previous rates. `None` near a mechanism.

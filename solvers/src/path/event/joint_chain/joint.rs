@@ -19,15 +19,15 @@ pub struct Joint {
     /// Its contact points.
     pub contacts: Vec<usize>,
     /// H of all its points.
-    pub by_twist: DMatrix<f64>,
+    pub by_twist: Rc<DMatrix<f64>>,
     /// Gaps from the joint's own forces.
     pub own: Rc<DMatrix<f64>>,
     /// Gaps from the forces of the joint before, if a voussoir connects them.
     pub before: Option<Rc<DMatrix<f64>>>,
     /// Gaps from the forces of the joint after, if a voussoir connects them.
     pub after: Option<Rc<DMatrix<f64>>>,
-    /// The three matrices transposed, so that the gap of one point reads columns.
-    rows: [Option<Rc<DMatrix<f64>>>; 3],
+    /// Gaps from the unknowns of the joint, and from the forces beside it, transposed: the gap of one point reads columns.
+    pub rows: [Option<Rc<DMatrix<f64>>>; 3],
     /// κ.
     pub spring: Vector3<f64>,
 }
@@ -118,26 +118,34 @@ pub fn joints(system: &System, sections: &Sections) -> Option<Ordered> {
         for (k, p) in section.places.iter().enumerate() {
             places[p.contact] = (position, k);
         }
-        let by_twist = DMatrix::from_fn(2 * n, 3, |i, j| section.places[i / 2].rows[(i % 2, j)]);
-        let own = felt(system, section, section, &within);
-        let stuck = own.clone().cholesky()?.solve(&by_twist);
-        let stiffness = by_twist.transpose() * stuck;
+        let by_twist = kinds.of(DMatrix::from_fn(2 * n, 3, |i, j| section.places[i / 2].rows[(i % 2, j)]));
+        let own = kinds.of(felt(system, section, section, &within));
+        let congruent = |other: &&Joint| Rc::ptr_eq(&other.own, &own) && Rc::ptr_eq(&other.by_twist, &by_twist);
+        let spring = match all.iter().find(congruent) {
+            Some(other) => other.spring,
+            None => {
+                let stiffness = by_twist.transpose() * DMatrix::clone(&own).cholesky()?.solve(&*by_twist);
+                Vector3::from_fn(|i, _| SETTINGS.spring * stiffness[(i, i)])
+            }
+        };
         let last = order.get(position + 1).is_none_or(|next| next.1);
         let beside = |other: usize| felt(system, section, &sections.all[order[other].0], &within);
-        let own = kinds.of(own);
         let before = (!begins).then(|| kinds.of(beside(position - 1)));
         let after = (!last).then(|| kinds.of(beside(position + 1)));
-        let rows = [Some(&own), before.as_ref(), after.as_ref()];
-        let rows = rows.map(|block| block.map(|block| turned.of(block.transpose())));
+        let of_own = turned.of(DMatrix::from_fn(2 * n + 3, 2 * n, |j, i| match j.checked_sub(2 * n) {
+            None => own[(i, j)],
+            Some(j) => by_twist[(i, j)],
+        }));
+        let [to_before, to_after] = [&before, &after].map(|block| block.as_ref().map(|b| turned.of(b.transpose())));
         all.push(Joint {
-            rows,
+            rows: [Some(of_own), to_before, to_after],
             section: e,
             contacts: section.places.iter().map(|p| p.contact).collect(),
             by_twist,
             own,
             before,
             after,
-            spring: Vector3::from_fn(|i, _| SETTINGS.spring * stiffness[(i, i)]),
+            spring,
         });
     }
     Some((all, places))
@@ -162,34 +170,31 @@ impl Joint {
         self.contacts.iter().filter(|c| modes[**c] == ContactMode::Stick).count() < 2
     }
 
-    /// Returns the gaps of the points of joint `e` from the unknowns of the joints.
-    pub fn gaps<'a>(&self, e: usize, of: &dyn Fn(usize) -> &'a [f64]) -> Vec<f64> {
+    /// Computes the gaps of the points of joint `e` from the unknowns of the joints.
+    pub fn set_gaps<'a>(&self, gaps: &mut Vec<f64>, e: usize, of: &dyn Fn(usize) -> &'a [f64]) {
         let m = 2 * self.contacts.len();
-        let mut gaps = vec![0.0; m];
-        add_product(&mut gaps, &self.own, &of(e)[..m]);
-        add_product(&mut gaps, &self.by_twist, &of(e)[m..]);
+        gaps.clear();
+        gaps.resize(m, 0.0);
+        add_product(gaps, &self.own, &of(e)[..m]);
+        add_product(gaps, &self.by_twist, &of(e)[m..]);
         for (block, other) in [(&self.before, e.wrapping_sub(1)), (&self.after, e + 1)] {
             if let Some(block) = block {
-                add_product(&mut gaps, block, &of(other)[..block.ncols()]);
+                add_product(gaps, block, &of(other)[..block.ncols()]);
             }
         }
-        gaps
     }
 
     /// Returns the gap of one of its points.
     pub fn gap<'a>(&self, e: usize, p: usize, of: &dyn Fn(usize) -> &'a [f64]) -> [f64; 2] {
-        let m = 2 * self.contacts.len();
-        let row = |k: usize, i: usize, e: usize| {
-            let block = self.rows[k].as_ref()?;
-            let row = &block.as_slice()[block.nrows() * (2 * p + i)..][..block.nrows()];
-            Some(dot(row, &of(e)[..row.len()]))
-        };
-        let component = |i: usize| {
-            let twist: f64 = (0..3).map(|j| self.by_twist[(2 * p + i, j)] * of(e)[m + j]).sum();
-            let beside = row(1, i, e.wrapping_sub(1)).unwrap_or(0.0) + row(2, i, e + 1).unwrap_or(0.0);
-            row(0, i, e).unwrap_or(0.0) + twist + beside
-        };
-        [component(0), component(1)]
+        let mut gap = [0.0; 2];
+        for (block, other) in self.rows.iter().zip([e, e.wrapping_sub(1), e + 1]) {
+            if let Some(block) = block {
+                let (height, unknowns) = (block.nrows(), of(other));
+                let rows = block.as_slice()[2 * height * p..].chunks_exact(height);
+                gap.iter_mut().zip(rows).for_each(|(gap, row)| *gap += dot(row, &unknowns[..height]));
+            }
+        }
+        gap
     }
 
     /// Returns a component of the resultant of its forces.

@@ -11,7 +11,8 @@ pub const MOST_WEAK: usize = 24;
 
 /// Returns the twist of a joint: the last three of its unknowns.
 fn twist(unknowns: &[f64]) -> Vector3<f64> {
-    Vector3::from_column_slice(&unknowns[unknowns.len() - 3..])
+    let [.., x, y, angle] = *unknowns else { return Vector3::zeros() };
+    Vector3::new(x, y, angle)
 }
 
 /// The rates whose cycles the redundants close: for λ̇ = 1, or for the residual in a step of refinement.
@@ -53,23 +54,22 @@ pub fn closing(
                 (twist - given.unwrap_or(twist), given.unwrap_or(twist))
             }
         };
-        if section.shares.iter().any(|s| *s != 0.0) {
-            let shares = || section.shares.iter().enumerate().filter(|s| *s.1 != 0.0);
-            for j in 0..size {
-                let v = to_origin * by(column(j));
-                let sums = &mut matrix.as_mut_slice()[size * j..size * (j + 1)];
-                shares().for_each(|(k, share)| (0..3).for_each(|i| sums[3 * k + i] += share * v[i]));
+        let shares = || section.shares.iter().enumerate().filter(|s| *s.1 != 0.0);
+        for (j, sums) in matrix.as_mut_slice().chunks_exact_mut(size.max(1)).enumerate() {
+            let own = by(column(j));
+            // The twist of a weak joint moves only the joints that are coupled with it.
+            if own.iter().all(|v| *v == 0.0) {
+                continue;
             }
-            let constant = to_origin * (constant + before);
-            shares().for_each(|(k, share)| (0..3).for_each(|i| right[3 * k + i] -= share * constant[i]));
+            let at_origin = to_origin * own;
+            shares().for_each(|(k, share)| (0..3).for_each(|i| sums[3 * k + i] += share * at_origin[i]));
+            w.into_iter().for_each(|w| sums[n + 3 * w..][..3].copy_from_slice(own.as_slice()));
         }
-        if let Some(w) = w {
-            let at = n + 3 * w;
-            for i in 0..3 {
-                (0..size).for_each(|j| matrix[(at + i, j)] = by(column(j))[i]);
-                matrix[(at + i, at + i)] -= 1.0;
-                right[at + i] = -constant[i];
-            }
+        let at_origin = to_origin * (constant + before);
+        shares().for_each(|(k, share)| (0..3).for_each(|i| right[3 * k + i] -= share * at_origin[i]));
+        for (i, at) in w.into_iter().flat_map(|w| n + 3 * w..n + 3 * w + 3).enumerate() {
+            matrix[(at, at)] -= 1.0;
+            right[at] = -constant[i];
         }
     }
     let solved = solved(matrix, &right)?;

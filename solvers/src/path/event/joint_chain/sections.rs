@@ -3,7 +3,7 @@
 use crate::path::system::System;
 use nalgebra::{Matrix2, Matrix2x3, Matrix3, Matrix3xX, Vector3};
 use std::collections::BTreeMap;
-use voussoir_core::path::PathProblem;
+use voussoir_core::path::{Contact, PathProblem};
 
 /// Greatest number of cycles of sections.
 const MOST_CYCLES: usize = 8;
@@ -22,7 +22,8 @@ pub struct Section {
     pub bodies: [Option<usize>; 2],
     /// Its contact points.
     pub places: Vec<Place>,
-    /// E: converts resultants about the origin to resultants about the centre.
+    /// E: converts resultants about the origin to resultants about the centre, in the axes of the first contact point:
+    /// congruent joints then have the same rows H.
     pub to_centre: Matrix3<f64>,
     /// Coefficient of each cycle's redundants in its resultant: −1, 0 or 1.
     pub shares: Vec<f64>,
@@ -87,12 +88,14 @@ impl Sections {
                 centre = [centre[0] + p.x, centre[1] + p.y];
             }
             let centre = centre.map(|x| x / contacts.len() as f64 / system.units.length);
+            let Contact { normal: n, tangent: t, .. } = problem.contacts[contacts[0]];
+            let axes = Matrix3::new(n.x, n.y, 0.0, t.x, t.y, 0.0, 0.0, 0.0, 1.0);
             let mut places = Vec::with_capacity(contacts.len());
             for &c in &contacts {
                 of[c] = all.len();
-                places.push(Place::new(system, c, (bodies, centre), &poles)?);
+                places.push(Place::new(system, c, (bodies, centre, &axes), &poles)?);
             }
-            let to_centre = Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, centre[1], -centre[0], 1.0);
+            let to_centre = axes * Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, centre[1], -centre[0], 1.0);
             all.push(Section { bodies, places, to_centre, shares: Vec::new() });
         }
         let mut sections = Sections { all, of, cycles: 0, tree: Vec::new(), poles };
@@ -203,7 +206,7 @@ impl Place {
     fn new(
         system: &System,
         contact: usize,
-        (bodies, centre): ([Option<usize>; 2], [f64; 2]),
+        (bodies, centre, axes): ([Option<usize>; 2], [f64; 2], &Matrix3<f64>),
         poles: &[[f64; 2]],
     ) -> Option<Self> {
         let mut compliance: Matrix2<f64> = Matrix2::zeros();
@@ -218,7 +221,7 @@ impl Place {
             let about = |body: usize| {
                 let g = row_of(system, 2 * contact + i, body);
                 let p = [poles[body][0] - centre[0], poles[body][1] - centre[1]];
-                Vector3::new(g[0], g[1], g[2] - g[0] * p[1] + g[1] * p[0])
+                axes * Vector3::new(g[0], g[1], g[2] - g[0] * p[1] + g[1] * p[0])
             };
             let by = bodies.map(|b| b.map(about));
             let row = by[1]?;

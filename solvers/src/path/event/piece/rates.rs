@@ -142,8 +142,8 @@ pub fn direction_of(system: &System, points: &mut [Point], rates: Rates, load: &
     let Rates { mut x, mut gaps, mut factor, .. } = rates;
     // In a mechanism forces and λ are constant; their rates are rounding errors.
     let forces = 2 * system.contacts;
-    let stiffest = points.iter().map(|p| p.stiffness).fold(1.0, f64::max);
-    let still = if factor == 0.0 { 100.0 * SETTINGS.active * stiffest } else { SETTINGS.active };
+    let stiffest = || points.iter().map(|p| p.stiffness).fold(1.0, f64::max);
+    let still = if factor == 0.0 { 100.0 * SETTINGS.active * stiffest() } else { SETTINGS.active };
     let motions = largest(&x[forces..]);
     if load.settles && factor != 0.0 && motions * SETTINGS.active <= factor.abs() * load.size {
         if let Some(moved) = at_constant_forces((system, points), (&x, factor), load) {
