@@ -9,22 +9,19 @@
 //!    with λ̇ < 0. A neighbour with λ̇ = 0 on which the load does negative work continues the path if a point of the event
 //!    enters a new mode: other loads drive it.
 //!
-//! For associated flow without softening (AᵀSA positive semidefinite) step 2 is a monotone complementarity problem, which
-//! pivoting always solves. Otherwise steps 2 and 3 are complete searches ([`tree`](super::tree)) within a budget. If there
-//! are more combinations next to the arrival than the budget allows, pivoting comes before the search, and the first rate that
-//! rises is followed.
+//! Pivoting comes first in step 2. For associated flow without softening (AᵀSA positive semidefinite) it ends with a rate or
+//! with the proof that none rises. Otherwise steps 2 and 3 are complete searches ([`tree`](super::tree)) within a budget. If
+//! there are more combinations next to the arrival than the budget allows, the rate that pivoting finds is followed.
 
 use super::arrival::Arrival;
 use super::choice::choose;
 use super::counts::{Algorithm, RateCounts};
-use super::lcp::{pivoted_rate, rate_lcp};
+use super::lcp::pivoted_rate;
 use super::neighbours::{add, neighbours};
 use super::order::Ordered;
 use super::problem::{Rate, RateProblem};
 use super::proof::NoRate;
 use super::tree::{Searched, search_some};
-use crate::settings::SETTINGS;
-use nalgebra::DMatrix;
 
 /// Leaves of a search for mechanisms after which it ends if it has found one.
 const ENOUGH: usize = 256;
@@ -77,7 +74,6 @@ pub fn answer(problem: &RateProblem, arrival: &Arrival, budget: &Budget, counts:
         arrival: &ordered.arrival,
         budget,
         counts,
-        monotone: is_monotone(&ordered.problem),
         rates: Vec::new(),
         why_open: None,
     };
@@ -127,8 +123,6 @@ struct Inquiry<'a> {
     arrival: &'a Arrival,
     budget: &'a Budget,
     counts: &'a mut RateCounts,
-    /// True for associated flow without softening.
-    monotone: bool,
     /// Rates that continue the path.
     rates: Vec<Rate>,
     /// The first reason why a search was not complete.
@@ -138,9 +132,8 @@ struct Inquiry<'a> {
 impl Inquiry<'_> {
     fn answer(&mut self) -> RateAnswer {
         let falls = self.arrival.factor < 0.0;
-        // The forces of a monotone problem are unique: one combination is enough.
-        let most = if self.monotone { 0 } else { self.budget.combinations };
-        let (rates, complete) = neighbours(self.problem, self.arrival, most, &mut self.counts.trials);
+        let trials = &mut self.counts.trials;
+        let (rates, complete) = neighbours(self.problem, self.arrival, self.budget.combinations, trials);
         self.keep(rates);
         // If there are too many combinations next to the arrival, there are too many for a complete search.
         if self.leads_on(|rate| rate.factor > 0.0 || (falls && complete)) {
@@ -168,9 +161,9 @@ impl Inquiry<'_> {
         RateAnswer { continuation, none_rises }
     }
 
-    /// True if a rate that its modes determine is of a kind. All rates of a monotone problem have the same forces.
+    /// True if a rate that its modes determine is of a kind.
     fn leads_on(&self, kind: impl Fn(&Rate) -> bool) -> bool {
-        self.rates.iter().any(|rate| kind(rate) && (self.monotone || self.problem.is_isolated(rate)))
+        self.rates.iter().any(|rate| kind(rate) && self.problem.is_isolated(rate))
     }
 
     /// Adds those rates that continue the path. With λ̇ = 0 the load does work, or a point of the event enters a new mode.
@@ -191,7 +184,7 @@ impl Inquiry<'_> {
         let (rate, proof) = pivoted_rate(self.problem, trials).unzip();
         let (rises, proof) = (rate.as_ref().is_some_and(|rate| rate.factor > 0.0), proof.flatten());
         self.keep(rate.into_iter().collect());
-        if proof.is_some() || (rises && (self.monotone || !few)) {
+        if proof.is_some() || (rises && !few) {
             return (proof, Algorithm::Pivoting);
         }
         (self.searched(1.0), Algorithm::Tree)
@@ -217,9 +210,8 @@ impl Inquiry<'_> {
             let most = found.iter().map(|rate| rate.factor).fold(-1.0, f64::max);
             found.retain(|rate| rate.factor == most);
         }
-        let alone = found.len() == 1 || self.monotone;
         let (isolated, mixed): (Vec<Rate>, Vec<Rate>) =
-            found.into_iter().partition(|rate| alone || self.problem.is_isolated(rate));
+            found.into_iter().partition(|rate| self.problem.is_isolated(rate));
         let rates = if isolated.is_empty() { mixed } else { isolated };
         *self.counts.decided.entry(by).or_default() += 1;
         let continuation = match choose(self.problem, self.arrival, rates) {
@@ -228,13 +220,4 @@ impl Inquiry<'_> {
         };
         RateAnswer { continuation, none_rises }
     }
-}
-
-/// True for associated flow without softening: AᵀSA is symmetric and positive semidefinite.
-fn is_monotone(problem: &RateProblem) -> bool {
-    let semidefinite = |m: &DMatrix<f64>| {
-        let symmetric = m.is_empty() || (m - m.transpose()).amax() <= SETTINGS.admissible;
-        symmetric && (m + DMatrix::identity(m.nrows(), m.ncols()) * SETTINGS.admissible).cholesky().is_some()
-    };
-    problem.is_associated() && rate_lcp(problem).is_some_and(|lcp| semidefinite(&lcp.lcp.matrix))
 }

@@ -217,11 +217,6 @@ impl RateProblem<'_> {
         rates.iter().find(drives).or_else(|| rates.iter().find(|rate| self.load_resists(rate))).cloned()
     }
 
-    /// Returns true if flow is associated.
-    pub fn is_associated(&self) -> bool {
-        self.points.iter().flat_map(|p| p.facets).all(|f| f.flow == f.normal)
-    }
-
     /// Returns a motion without forces in which every point keeps its mode, close to a given one.
     pub fn mechanism_near(&self, modes: &[ContactMode], gaps: &[[f64; 2]]) -> Option<Rate> {
         let (flows, matrix) = self.system(modes);
