@@ -29,17 +29,21 @@ pub struct ActivePoint<'a> {
     pub stiffness: f64,
 }
 
+/// Returns true if the normals of two facets are not parallel.
+fn independent(f: &Facet, g: &Facet) -> bool {
+    let (a, b) = (f.normal, g.normal);
+    (a[0] * b[1] - a[1] * b[0]).abs() > 1e-9 * (norm(a) * norm(b))
+}
+
 /// Adds the facets that pass through a corner of two active ones. Slacks are exact to rounding only: a force can be without
 /// slack on both facets of friction and not on the facet of opening, which meets them.
 pub fn complete_corners(facets: &[Facet], active: &mut Vec<usize>) {
     let (few, tolerance) = (active.clone(), SETTINGS.admissible);
-    for (i, j) in few.iter().enumerate().flat_map(|(k, i)| few[k + 1..].iter().map(move |j| (*i, *j))) {
-        let [(a, p), (b, q)] = [i, j].map(|k| (facets[k].normal, facets[k].bound));
+    let pairs = few.iter().enumerate().flat_map(|(k, i)| few[k + 1..].iter().map(move |j| (&facets[*i], &facets[*j])));
+    for (f, g) in pairs.filter(|(f, g)| independent(f, g)) {
+        let (a, b) = (f.normal, g.normal);
         let determinant = a[0] * b[1] - a[1] * b[0];
-        if determinant.abs() <= 1e-9 * (norm(a) * norm(b)) {
-            continue;
-        }
-        let corner = [(p * b[1] - q * a[1]) / determinant, (a[0] * q - b[0] * p) / determinant];
+        let corner = [f.bound * b[1] - g.bound * a[1], a[0] * g.bound - b[0] * f.bound].map(|x| x / determinant);
         let meets =
             |f: &Facet| slack(f, corner, 1.0).abs() <= tolerance * (f.bound.abs() + norm(f.normal) * norm(corner));
         active.extend((0..facets.len()).filter(|k| !few.contains(k) && meets(&facets[*k])));
@@ -72,15 +76,10 @@ impl ActivePoint<'_> {
             return modes;
         }
         for (k, i) in self.active.iter().enumerate() {
-            let independent = self.active[k + 1..].iter().filter(|j| self.independent(*i, **j));
+            let independent = self.active[k + 1..].iter().filter(|j| independent(&self.facets[*i], &self.facets[**j]));
             modes.extend(independent.map(|j| ContactMode::Corner(*i as u8, *j as u8)));
         }
         modes
-    }
-
-    fn independent(&self, i: usize, j: usize) -> bool {
-        let (a, b) = (self.facets[i].normal, self.facets[j].normal);
-        (a[0] * b[1] - a[1] * b[0]).abs() > 1e-9 * (norm(a) * norm(b))
     }
 
     /// Returns the worst violation of a mode by a rate, relative to the given sizes of force and gap rates, and the
@@ -137,7 +136,9 @@ impl ActivePoint<'_> {
                     false => ContactMode::Facet(facet as u8),
                 }
             }
-            ContactMode::Facet(i) if self.independent(i as usize, facet) => ContactMode::Corner(i, facet as u8),
+            ContactMode::Facet(i) if independent(&self.facets[i as usize], &self.facets[facet]) => {
+                ContactMode::Corner(i, facet as u8)
+            }
             _ => ContactMode::Facet(facet as u8),
         }
     }

@@ -171,9 +171,7 @@ pub fn arrive(trace: &mut Trace, hits: &[(usize, usize)]) {
             trace.log.events.push(PathEvent { load_step, factor, contact: c, what: ContactEvent::Closes });
             continue;
         }
-        if !point.active.contains(&f) {
-            point.active.push(f);
-        }
+        point.active.push(f);
         complete_corners(facets, &mut point.active);
         point.mode = ContactMode::Facet(f as u8);
         if point.apex && point.opening_facet.is_some_and(|open| point.active.contains(&open)) {

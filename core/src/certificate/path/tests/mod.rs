@@ -3,6 +3,7 @@
 mod chain;
 mod derivatives;
 mod ends;
+mod point_modes;
 mod scenes;
 mod softening;
 mod wedge;

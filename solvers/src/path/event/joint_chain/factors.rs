@@ -79,9 +79,8 @@ impl Factor {
 
     /// Returns two rows of Ĉ and H, as columns.
     fn flexibility_of(&self, point: usize, before: Option<&Factor>) -> DMatrix<f64> {
-        let (m, n) = (self.forces(), self.joint.size());
-        let rows = self.joint.rows[0].as_ref().map_or(&[][..], |rows| &rows.as_slice()[2 * n * point..][..2 * n]);
-        let mut own = DMatrix::from_column_slice(n, 2, rows);
+        let m = self.forces();
+        let mut own = columns_of(&self.joint.rows, 2 * point, 2);
         let beside = before.and_then(|b| Some((b, self.joint.before.as_ref()?, b.joint.after.as_ref()?)));
         if let Some((before, block, back)) = beside {
             let rows = DMatrix::from_fn(before.forces(), 2, |j, i| block[(2 * point + i, j)]);

@@ -26,8 +26,10 @@ pub struct Joint {
     pub before: Option<Rc<DMatrix<f64>>>,
     /// Gaps from the forces of the joint after, if a voussoir connects them.
     pub after: Option<Rc<DMatrix<f64>>>,
-    /// Gaps from the unknowns of the joint, and from the forces beside it, transposed: the gap of one point reads columns.
-    pub rows: [Option<Rc<DMatrix<f64>>>; 3],
+    /// Gaps from all unknowns of the joint, transposed, so that the gap of one point reads columns.
+    pub rows: Rc<DMatrix<f64>>,
+    /// Gaps from the forces of the joints before and after, transposed.
+    beside: [Option<Rc<DMatrix<f64>>>; 2],
     /// κ.
     pub spring: Vector3<f64>,
 }
@@ -132,13 +134,14 @@ pub fn joints(system: &System, sections: &Sections) -> Option<Ordered> {
         let beside = |other: usize| felt(system, section, &sections.all[order[other].0], &within);
         let before = (!begins).then(|| kinds.of(beside(position - 1)));
         let after = (!last).then(|| kinds.of(beside(position + 1)));
-        let of_own = turned.of(DMatrix::from_fn(2 * n + 3, 2 * n, |j, i| match j.checked_sub(2 * n) {
+        let rows = turned.of(DMatrix::from_fn(2 * n + 3, 2 * n, |j, i| match j.checked_sub(2 * n) {
             None => own[(i, j)],
             Some(j) => by_twist[(i, j)],
         }));
-        let [to_before, to_after] = [&before, &after].map(|block| block.as_ref().map(|b| turned.of(b.transpose())));
+        let turned_beside = [&before, &after].map(|block| block.as_ref().map(|b| turned.of(b.transpose())));
         all.push(Joint {
-            rows: [Some(of_own), to_before, to_after],
+            rows,
+            beside: turned_beside,
             section: e,
             contacts: section.places.iter().map(|p| p.contact).collect(),
             by_twist,
@@ -187,12 +190,12 @@ impl Joint {
     /// Returns the gap of one of its points.
     pub fn gap<'a>(&self, e: usize, p: usize, of: &dyn Fn(usize) -> &'a [f64]) -> [f64; 2] {
         let mut gap = [0.0; 2];
-        for (block, other) in self.rows.iter().zip([e, e.wrapping_sub(1), e + 1]) {
-            if let Some(block) = block {
-                let (height, unknowns) = (block.nrows(), of(other));
-                let rows = block.as_slice()[2 * height * p..].chunks_exact(height);
-                gap.iter_mut().zip(rows).for_each(|(gap, row)| *gap += dot(row, &unknowns[..height]));
-            }
+        let beside = self.beside.iter().zip([e.wrapping_sub(1), e + 1]);
+        let beside = beside.filter_map(|(block, other)| Some((block.as_ref()?, other)));
+        for (block, other) in std::iter::once((&self.rows, e)).chain(beside) {
+            let (height, unknowns) = (block.nrows(), of(other));
+            let rows = block.as_slice()[2 * height * p..].chunks_exact(height);
+            gap.iter_mut().zip(rows).for_each(|(gap, row)| *gap += dot(row, &unknowns[..height]));
         }
         gap
     }

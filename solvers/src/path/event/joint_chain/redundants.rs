@@ -11,8 +11,7 @@ pub const MOST_WEAK: usize = 24;
 
 /// Returns the twist of a joint: the last three of its unknowns.
 fn twist(unknowns: &[f64]) -> Vector3<f64> {
-    let [.., x, y, angle] = *unknowns else { return Vector3::zeros() };
-    Vector3::new(x, y, angle)
+    Vector3::from_column_slice(&unknowns[unknowns.len() - 3..])
 }
 
 /// The rates whose cycles the redundants close: for λ̇ = 1, or for the residual in a step of refinement.

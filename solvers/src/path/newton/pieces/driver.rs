@@ -421,14 +421,14 @@ impl<'d> Run<'d> {
         self.after(tracer)
     }
 
-    /// Removes the last limit point if the load has been constant since then: a mechanism may have closed a gap.
+    /// Removes the limit points since which the load has been constant: a mechanism may have closed a gap.
     fn forget_still_peak(&self, tracer: &mut Tracer) {
-        let own = |peak: &&ProvenPeak| peak.load_step == tracer.in_force.load_step;
-        let Some(last) = tracer.limit.proven_peaks.last().filter(own) else { return };
-        let (factor, here) = (last.factor, tracer.state.factor);
-        if [last.lowest, here].iter().all(|other| (factor - other).abs() <= SETTINGS.residual() * factor.abs()) {
-            tracer.limit.proven_peaks.pop();
-            tracer.limit.peak.take_if(|peak| peak.factor == factor);
+        let (load_step, here) = (tracer.in_force.load_step, tracer.state.factor);
+        let same =
+            |peak: &ProvenPeak, other: f64| (peak.factor - other).abs() <= SETTINGS.residual() * peak.factor.abs();
+        let still = |peak: &mut ProvenPeak| peak.load_step == load_step && same(peak, peak.lowest) && same(peak, here);
+        while let Some(last) = tracer.limit.proven_peaks.pop_if(still) {
+            tracer.limit.peak.take_if(|peak| peak.factor == last.factor);
         }
     }
 
