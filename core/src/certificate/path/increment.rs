@@ -43,11 +43,14 @@ pub(super) fn passed(
     allowed: Allowed,
 ) -> Passed {
     let moved = [0, 1].map(|i| gaps[1][i] - gaps[0][i]);
+    let open = opening > allowed.opening;
+    if moved == [0.0; 2] && !open {
+        return Passed { opening, outside: 0.0 };
+    }
     let stuck = Passed { opening, outside: length(moved) };
     let PointLaw::Facets(facets) = &contact.law else { return stuck };
     active.clear();
     active_facets(active, (contact, facets), &forces, allowed.slack);
-    let open = opening > allowed.opening;
     if active.is_empty() && !open {
         return stuck;
     }

@@ -69,6 +69,9 @@ pub(super) fn active_facets(
         }
     }
     let few = active.len();
+    if few < 2 {
+        return;
+    }
     for (i, j) in (0..few).flat_map(|i| (i + 1..few).map(move |j| (i, j))) {
         let [(a, p), (b, q)] = [i, j].map(|i| (facets[active[i]].normal, facets[active[i]].bound));
         let determinant = a[0] * b[1] - a[1] * b[0];

@@ -38,9 +38,10 @@ pub fn path_structure(assembly: &Assembly, stages: &[Stage]) -> Result<PathProbl
     let (length, span) = (assembly.size(), assembly.span());
     let width = assembly.width;
     let mut read = PathProblem { bodies, body_of, contacts, load_steps, length, span, width, counters };
+    let laws: Vec<Option<PointLaw>> = assembly.catalogue.laws.iter().map(|(_, law)| PointLaw::of(&**law)).collect();
     for (index, joint) in assembly.joints.iter().enumerate() {
         if read.body_of[joint.minus] != read.body_of[joint.plus] {
-            let points = contact_points(&mut read, assembly, index, joint)?;
+            let points = contact_points(&mut read, assembly, &laws, index)?;
             read.contacts.extend(points);
         }
     }
@@ -119,15 +120,14 @@ fn places(assembly: &Assembly, joint: &Joint) -> Result<Vec<(f64, f64)>, String>
 fn contact_points(
     read: &mut PathProblem,
     assembly: &Assembly,
+    laws: &[Option<PointLaw>],
     index: usize,
-    joint: &Joint,
 ) -> Result<Vec<Contact>, String> {
+    let joint = &assembly.joints[index];
     let (normal, tangent) = joint.frame();
-    let law = match assembly.law(joint).map(|law| (law.facets(), law.response())) {
-        None => PointLaw::Bonded,
-        Some((Some(facets), _)) => PointLaw::Facets(facets.into()),
-        Some((None, Some(response))) => PointLaw::Response(response),
-        Some((None, None)) => return Err("a joint law gives neither facets nor tractions from gaps".into()),
+    let law = match joint.bond {
+        Bond::Bonded => &PointLaw::Bonded,
+        Bond::Law(law) => laws[law].as_ref().ok_or("a joint law gives neither facets nor tractions from gaps")?,
     };
     let stiffness = assembly.law(joint).filter(|_| law.facets().is_some()).and_then(|law| law.stiffness());
     let mut found = Vec::new();

@@ -71,7 +71,7 @@ pub fn closing(
             right[at] = -constant[i];
         }
     }
-    let solved = solved(matrix, &right)?;
+    let solved = solved(matrix, right)?;
     let load = if matches!(open, Open::Load) { 1.0 } else { 0.0 };
     Some(DVector::from_fn(size + 1, |j, _| match j.cmp(&n) {
         std::cmp::Ordering::Less => solved[j],
@@ -80,43 +80,37 @@ pub fn closing(
     }))
 }
 
-/// Solves a small system: rows and columns scaled to one, full pivoting, one step of refinement. `None` if the matrix
+/// Solves a small system: rows, then columns scaled to one, full pivoting, one step of refinement. `None` if the matrix
 /// is singular to rounding.
-fn solved(matrix: DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
-    let n = matrix.nrows();
-    if n == 0 {
-        return Some(DVector::zeros(0));
+fn solved(mut matrix: DMatrix<f64>, mut right: DVector<f64>) -> Option<DVector<f64>> {
+    if right.is_empty() {
+        return Some(right);
     }
-    let mut scaled = matrix;
-    let (mut rows, mut columns) = (vec![1.0; n], vec![1.0; n]);
-    for _ in 0..3 {
-        for (i, all) in rows.iter_mut().enumerate() {
-            let size = scaled.row(i).amax().sqrt();
-            if size == 0.0 || !size.is_finite() {
-                return None;
-            }
-            scaled.row_mut(i).unscale_mut(size);
-            *all *= size;
-        }
-        for (j, all) in columns.iter_mut().enumerate() {
-            let size = scaled.column(j).amax().sqrt();
-            if size == 0.0 || !size.is_finite() {
-                return None;
-            }
-            scaled.column_mut(j).unscale_mut(size);
-            *all *= size;
-        }
+    let usable = |size: &f64| *size > 0.0 && size.is_finite();
+    for (i, right) in right.iter_mut().enumerate() {
+        let size = Some(matrix.row(i).amax()).filter(usable)?;
+        matrix.row_mut(i).unscale_mut(size);
+        *right /= size;
     }
-    let right = DVector::from_fn(n, |i, _| right[i] / rows[i]);
-    let lu = scaled.clone().full_piv_lu();
-    let pivots = lu.u().diagonal().abs();
-    if pivots.min() <= SETTINGS.shift() * pivots.max() {
+    let mut columns = Vec::with_capacity(right.len());
+    for mut column in matrix.column_iter_mut() {
+        let size = Some(column.amax()).filter(usable)?;
+        column.unscale_mut(size);
+        columns.push(size);
+    }
+    let lu = matrix.clone().full_piv_lu();
+    let (least, greatest) = lu
+        .lu_internal()
+        .diagonal()
+        .iter()
+        .fold((f64::INFINITY, 0.0f64), |(least, greatest), v| (least.min(v.abs()), greatest.max(v.abs())));
+    if least <= SETTINGS.shift() * greatest {
         return None;
     }
     let mut x = lu.solve(&right)?;
-    x += lu.solve(&(&right - &scaled * &x))?;
-    let size = (0..n).map(|i| (0..n).map(|j| (scaled[(i, j)] * x[j]).abs()).sum::<f64>()).fold(right.amax(), f64::max);
-    let left = (&right - &scaled * &x).amax();
-    (left <= SETTINGS.residual() * size && x.iter().all(|v| v.is_finite()))
-        .then(|| DVector::from_fn(n, |j, _| x[j] / columns[j]))
+    x += lu.solve(&(&right - &matrix * &x))?;
+    let size = x.amax().max(right.amax());
+    let left = (right - matrix * &x).amax();
+    x.iter_mut().zip(columns).for_each(|(x, size)| *x /= size);
+    (left <= SETTINGS.residual() * size && x.iter().all(|v| v.is_finite())).then_some(x)
 }
