@@ -5,7 +5,7 @@ use voussoir::core::certificate::MechanismKind;
 use voussoir::core::limit::Status;
 use voussoir::results::CaseResult;
 use voussoir_tests::random::{Law, Numbers, RandomScene, scene};
-use voussoir_tests::{answered, assert_close};
+use voussoir_tests::{Arch, answered, assert_close};
 
 fn scene_of(numbers: Numbers) -> RandomScene {
     scene(numbers).expect("a scene")
@@ -42,6 +42,17 @@ fn both_path_solvers_follow_the_same_pieces() {
     let newton = followed(&scene, "newton_path");
     let factor = certified(&newton, Status::Collapse);
     assert_close(factor, certified(&followed(&scene, "event_path"), Status::Collapse), 1e-12);
+}
+
+/// Many compliant points to a joint: the collapse load of the ring is that of rigid blocks.
+#[test]
+fn a_ring_with_many_points_to_a_joint_collapses() {
+    let joint = |stiffness: &str| format!("law = \"unilateral\"\ntangential = \"stuck\"\n{stiffness}");
+    let rigid = Arch { joint: joint(""), ..Arch::default() };
+    let known = certified(&answered(&rigid.study()), Status::Collapse);
+    let joint = joint("normal_stiffness = 2e10\nshear_stiffness = 1e10");
+    let many = Arch { joint, mesh: "elements = [1, 72]".into(), solver: "event_path", ..rigid };
+    assert_close(certified(&answered(&many.study()), Status::Collapse), known, 1e-9);
 }
 
 /// Bricks that slide side by side are a mechanism. On this wall every brick slides on the ground by itself at λ = μ:

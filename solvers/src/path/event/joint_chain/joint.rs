@@ -1,6 +1,6 @@
 //! A joint of the chain: its points, and the flexibilities that couple them and the neighbouring joints.
 
-use super::sections::{Section, Sections};
+use super::sections::{Place, Section, Sections};
 use crate::contact::mode::ContactMode;
 use crate::linear::dense::{add_product, dot};
 use crate::linear::largest;
@@ -9,8 +9,8 @@ use crate::settings::SETTINGS;
 use nalgebra::{DMatrix, Vector3};
 use std::rc::Rc;
 
-/// Number of different matrices that are compared.
-const KINDS: usize = 16;
+/// Greatest number of points of a joint between rigid blocks: the equations of more points are sparse, and their inverse is not.
+const MOST_POINTS: usize = 100;
 
 /// A joint.
 pub struct Joint {
@@ -95,9 +95,7 @@ impl Shared {
             return known.clone();
         }
         let new = Rc::new(matrix);
-        if self.0.len() < KINDS {
-            self.0.push(new.clone());
-        }
+        self.0.push(new.clone());
         new
     }
 }
@@ -105,8 +103,14 @@ impl Shared {
 /// The joints in their order, and (joint, position in it) of every contact point.
 pub type Ordered = (Vec<Joint>, Vec<(usize, usize)>);
 
-/// Returns the joints of chains. `None` if sections do not form chains, or if a section has no flexibility.
+/// Returns the joints of chains. `None` if sections do not form chains, if a section has no flexibility, or if there are too
+/// many points between rigid blocks.
 pub fn joints(system: &System, sections: &Sections) -> Option<Ordered> {
+    let alone = |place: &Place| system.flexibility.row(2 * place.contact).iter().all(|e| e.0 / 2 == place.contact);
+    let has_many = |section: &Section| section.places.len() > MOST_POINTS && section.places.iter().all(alone);
+    if sections.all.iter().any(has_many) {
+        return None;
+    }
     let order = ordered(system, sections)?;
     let mut within = vec![usize::MAX; system.contacts];
     for section in &sections.all {
