@@ -1,4 +1,4 @@
-//! The rate problem on the chain: modes change until no point violates its mode.
+//! The rate problem on the chain: modes change until no point violates its mode, before refinement of the rates and after it.
 
 use super::chain::JointChain;
 use crate::contact::mode::ContactMode;
@@ -41,7 +41,7 @@ pub fn by_joint_chain(
         *trials += 1;
         chain.set_modes(system, (load_step, load), &modes)?;
         chain.find_rates()?;
-        let rates = chain.rates(system, load)?;
+        let mut rates = chain.rates(system, load)?;
         let mut moved = leaving((system, points), (&rates, load), active, &modes)?;
         if moved.is_empty() {
             if rates.nears_mechanism(2 * system.contacts) {
@@ -49,7 +49,12 @@ pub fn by_joint_chain(
             }
             let sizes = sizes((system, load), &rates);
             let good = chain.unchecked()? < UNCHECKED && chain.unbalanced() <= enough(&sizes) * sizes[0];
-            let rates = if good { rates } else { refined(chain, (system, load), &modes, rates)? };
+            if !good {
+                rates = refined(chain, (system, load), &modes, rates)?;
+                moved = leaving((system, points), (&rates, load), active, &modes)?;
+            }
+        }
+        if moved.is_empty() {
             return Some((modes, rates));
         }
         if round >= ROUNDS[1] {
