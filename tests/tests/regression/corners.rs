@@ -44,7 +44,7 @@ fn both_path_solvers_follow_the_same_pieces() {
     assert_close(factor, certified(&followed(&scene, "event_path"), Status::Collapse), 1e-12);
 }
 
-/// Many compliant points to a joint: the collapse load of the ring is that of rigid blocks.
+/// Many compliant points to a joint: the whole system is solved, and the collapse load of the ring is that of rigid blocks.
 #[test]
 fn a_ring_with_many_points_to_a_joint_collapses() {
     let joint = |stiffness: &str| format!("law = \"unilateral\"\ntangential = \"stuck\"\n{stiffness}");

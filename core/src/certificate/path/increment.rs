@@ -44,6 +44,7 @@ pub(super) fn passed(
 ) -> Passed {
     let moved = [0, 1].map(|i| gaps[1][i] - gaps[0][i]);
     let open = opening > allowed.opening;
+    // A closed point that has not moved can have stuck, whatever its facets.
     if moved == [0.0; 2] && !open {
         return Passed { opening, outside: 0.0 };
     }
