@@ -57,7 +57,7 @@ pub fn by_active_set(trace: &mut Trace, load: &Load, active: &[usize]) -> Contin
             return next;
         }
     }
-    Next::Lost("the stiffness of the contact points of the active set could not be found".into()).into()
+    Next::Lost("the rates of the contact points of the active set could not be computed accurately".into()).into()
 }
 
 /// Factorises again if the present factorisation cannot be used with the `open` points free in these modes.
@@ -152,20 +152,15 @@ fn by_newcomers(trace: &mut Trace, load: &Load, active: &[usize], open: &[usize]
         }
     };
     let falls = rate.factor < 0.0;
-    let mut rates = rates_of(&local, base, at, &rate, (open, &mut modes))?;
+    let rates = rates_of(&local, base, at, &rate, (open, &mut modes))?;
     log.counts.solves += rates.refinements;
-    let forces = 2 * system.contacts;
-    if rates.factor == 0.0 {
-        rates.x[..forces].fill(0.0);
-        rates = Rates::new(system, rates.x, 0.0, load);
-        rates.worst = residual(system, &rates, load, &modes).0;
-    } else if !refined_columns && rates.nears_mechanism(forces) {
+    if rates.factor != 0.0 && !refined_columns && rates.nears_mechanism(2 * system.contacts) {
         factors.refine_columns = true;
         return Some(Newcomers::Again);
     }
-    let moved = leaving((system, &state.points), (&rates, load), active, &modes)?;
+    let rates = solved_anew(trace, rates, load, &modes);
+    let moved = leaving((&trace.system, &trace.state.points), (&rates, load), active, &modes)?;
     if moved.is_empty() {
-        let rates = solved_anew(trace, rates, load, &modes);
         let believed = rates.worst <= trace.believed();
         return believed.then(|| {
             let direction = trace.take(modes, rates, load);
@@ -297,6 +292,12 @@ fn refined(
         if still || rounding {
             break;
         }
+    }
+    if still {
+        // Of a mechanism, the rates of forces are rounding errors.
+        rates.x[..2 * system.contacts].fill(0.0);
+        rates = Rates { refinements: rates.refinements, ..Rates::new(system, rates.x, 0.0, load) };
+        worst = residual(system, &rates, load, modes).0;
     }
     rates.worst = worst;
     rates
