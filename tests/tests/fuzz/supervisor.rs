@@ -19,12 +19,15 @@ pub fn hold(name: &str, short: u64) {
     let number = |variable: &str| std::env::var(variable).ok().map(|text| text.parse::<u64>().expect("a whole number"));
     let count = number("VOUSSOIR_FUZZ_CASES").unwrap_or(short);
     let from = number("VOUSSOIR_FUZZ_FROM").unwrap_or(0);
-    let mut tally = Tally::default();
-    let mut next = from;
-    while next < from + count {
-        next = one_child(name, next, from + count, &mut tally);
-    }
-    let Tally { findings, slow } = tally;
+    // Two children side by side have half of the inputs each.
+    let half = from + count / 2;
+    let [mut first, second] = std::thread::scope(|scope| {
+        let halves = [(from, half), (half, from + count)];
+        halves.map(|half| scope.spawn(move || all_of(name, half))).map(|tried| tried.join().expect("a tally"))
+    });
+    first.findings.extend(second.findings);
+    first.slow.extend(second.slow);
+    let Tally { findings, slow } = first;
     println!("{name}: {count} inputs, {} findings, {} runs cut short", findings.len(), slow.len());
     findings.iter().map(|(seed, _)| seed).chain(&slow).for_each(|seed| keep(name, *seed));
     if count == 1 {
@@ -49,6 +52,15 @@ fn keep(name: &str, seed: u64) {
         let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("fuzz-{name}-{seed}"));
         drop(std::fs::write(file, (target.input)(seed).text));
     }
+}
+
+/// Tries all seeds of a range, with a new child after each that ends or hangs.
+fn all_of(name: &str, (mut next, to): (u64, u64)) -> Tally {
+    let mut tally = Tally::default();
+    while next < to {
+        next = one_child(name, next, to, &mut tally);
+    }
+    tally
 }
 
 /// Tries seeds until all are done or one ends the process; returns the next seed.

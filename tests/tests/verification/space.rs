@@ -70,7 +70,7 @@ fn small_corners_have_bounds_that_meet() {
 /// A corner with slip that does not open the joints collapses below the associated factor, in two directions.
 #[test]
 fn a_corner_collapses_earlier_with_its_own_flow() {
-    let corner = "scene = \"masonry_wall\"\nblock = [2.0, 1.0, 0.5]\ncourses = 4\nblocks = 2\ncorner = { blocks = 2 }";
+    let corner = "scene = \"masonry_wall\"\nblock = [2.0, 1.0, 0.5]\ncourses = 3\nblocks = 2\ncorner = { blocks = 2 }";
     let own = |push: [f64; 3]| {
         let text = pushed(corner, 0.5, push).replace("coulomb_associated", "coulomb");
         answered(&(text + "[solver]\nsolver = \"limit_sequential\"\n"))
