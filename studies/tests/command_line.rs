@@ -315,31 +315,6 @@ fn a_new_crate_is_written() {
     assert_eq!(code(&voussoir(&["new", "crate", "pins", "--out", into, "--repository", into])), 2, "no repository");
 }
 
-/// A new crate compiles with its tests against this repository, and needs no crate but `voussoir` and `voussoir-plug`. This
-/// takes about half a minute, so `.ci/extra` runs it.
-#[test]
-#[ignore = "compiles a crate: about half a minute"]
-fn a_new_crate_compiles() {
-    let folder = empty_folder("new_crate_compiles");
-    let into = folder.to_str().expect("a path");
-    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
-    assert_eq!(code(&voussoir(&["new", "crate", "pins", "--out", into, "--repository", root])), 0);
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| Path::new(root).join("target"), Into::into);
-    let krate = folder.join("pins");
-    // The example's lock file has the same versions as the workspace.
-    let lock = text(&Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/my_law/Cargo.lock"));
-    std::fs::write(krate.join("Cargo.lock"), lock.replace("\"my_law\"", "\"pins\"")).expect("a lock file");
-    let cargo = Command::new(env!("CARGO"))
-        .args(["check", "--release", "--offline", "--all-targets", "--config"])
-        .arg(Path::new(root).join(".ci/light.toml"))
-        .arg("--target-dir")
-        .arg(target)
-        .current_dir(&krate)
-        .output()
-        .expect("cargo starts");
-    assert!(cargo.status.success(), "{}", String::from_utf8_lossy(&cargo.stderr));
-}
-
 /// `diff` ends with 0 if two folders have the same results and with 1 if they differ. The table begins with the largest
 /// change. A folder without results is wrong input, and the nearest name of a missing folder is suggested.
 #[test]
