@@ -6,7 +6,6 @@
 //!
 //! Klarbring (1990), Ing.-Arch. 60.
 
-use super::neighbours::settled;
 use super::problem::{Rate, RateProblem};
 use super::proof::{ModeTree, NoRate};
 use crate::contact::active_point::ActivePoint;
@@ -133,20 +132,13 @@ pub fn pivoted_rate(problem: &RateProblem, trials: &mut u64) -> Option<(Rate, Op
     let rate = match lemke(&lcp.lcp, trials) {
         LemkeResult::Unfinished => return None,
         LemkeResult::Solution(z) => {
-            let modes = modes_of_solution(problem, &lcp, &z);
-            let exact = settled(problem, modes.clone(), &vec![false; modes.len()], 1.0, trials);
-            exact.filter(|rate| rate.factor > 0.0).unwrap_or_else(|| Rate {
-                factor: 1.0,
-                modes,
-                gaps: gaps_of(problem, &lcp, &z, 1.0),
-            })
+            Rate { factor: 1.0, modes: modes_of_solution(problem, &lcp, &z), gaps: gaps_of(problem, &lcp, &z, 1.0) }
         }
         LemkeResult::Ray(z) => {
             let most = z.iter().copied().fold(1e-300, f64::max);
             let modes = modes_of(problem, &lcp.facets, |i| z[i] > 1e-8 * most);
             proof = lcp.excluded_by(&z);
-            let gaps = gaps_of(problem, &lcp, &z, 0.0);
-            problem.mechanism_near(&modes, &gaps).unwrap_or(Rate { factor: 0.0, modes, gaps })
+            Rate { factor: 0.0, modes, gaps: gaps_of(problem, &lcp, &z, 0.0) }
         }
     };
     problem.admits(&rate).then_some((rate, proof))

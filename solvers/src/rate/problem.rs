@@ -201,12 +201,6 @@ impl RateProblem<'_> {
         SETTINGS.inequality() * size * self.load_rate.amax().max(self.load_force)
     }
 
-    /// Returns the rate of some modes with λ̇ = `factor` if it satisfies them.
-    pub fn exactly(&self, modes: Vec<ContactMode>, factor: f64) -> Option<Rate> {
-        let attempt = self.attempt(&modes, 1.0).filter(|attempt| !attempt.singular)?;
-        self.violations(&modes, &attempt, factor).is_empty().then(|| self.rate(&modes, &attempt, factor, factor))
-    }
-
     /// Returns the motion at constant load that some modes allow. The load does work on it; if no such motion exists,
     /// the load resists it.
     pub fn at_constant_load(&self, modes: &[ContactMode]) -> Option<Rate> {
@@ -215,42 +209,5 @@ impl RateProblem<'_> {
         let rates: Vec<Rate> = fitting.map(|sign| self.rate(modes, &attempt, sign, 0.0)).collect();
         let drives = |rate: &&Rate| self.leads_on(rate);
         rates.iter().find(drives).or_else(|| rates.iter().find(|rate| self.load_resists(rate))).cloned()
-    }
-
-    /// Returns a motion without forces in which every point keeps its mode, close to a given one.
-    pub fn mechanism_near(&self, modes: &[ContactMode], gaps: &[[f64; 2]]) -> Option<Rate> {
-        let (flows, matrix) = self.system(modes);
-        let n = flows.len();
-        if n == 0 {
-            return None;
-        }
-        // Inverse iteration from the given motion finds the null vector.
-        let shifted = &matrix + DMatrix::identity(n, n) * (1e-12 * matrix.amax().max(1e-300));
-        let lu = shifted.lu();
-        let points = self.points.iter().zip(modes).zip(gaps);
-        let unknowns = points.flat_map(|((point, mode), gap)| {
-            let unit = point.stiffness.sqrt();
-            mode.unknowns(point.facets, *gap).into_iter().map(move |v| v * unit)
-        });
-        let mut v = DVector::from_vec(unknowns.collect::<Vec<f64>>());
-        if v.len() != n || v.amax() == 0.0 {
-            return None;
-        }
-        for _ in 0..4 {
-            v = lu.solve(&v)?;
-            let size = v.amax();
-            if !size.is_finite() || size == 0.0 {
-                return None;
-            }
-            v /= size;
-        }
-        if (&matrix * &v).amax() > 1e-9 * matrix.amax() {
-            return None;
-        }
-        let v: Vec<f64> = v.iter().copied().collect();
-        let attempt = self.completed(&flows, &v, 1.0, true)?;
-        let forward = if self.power(&attempt.gaps_of_points()) < 0.0 { -1.0 } else { 1.0 };
-        let sign = [forward, -forward].into_iter().find(|sign| self.violations(modes, &attempt, *sign).is_empty())?;
-        Some(self.rate(modes, &attempt, sign, 0.0))
     }
 }

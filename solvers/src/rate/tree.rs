@@ -348,10 +348,8 @@ impl Search<'_> {
         let z: Vec<f64> = (n..2 * n).map(|x| self.dictionary.value(x).max(0.0) * size).collect();
         let gaps = gaps_of(problem, self.lcp, &z, factor);
         let points = problem.points.iter().zip(modes).zip(&gaps);
-        let modes: Vec<ContactMode> = points.map(|((point, mode), gap)| contact_mode(point, *mode, *gap)).collect();
-        let exact =
-            if factor == 0.0 { problem.mechanism_near(&modes, &gaps) } else { problem.exactly(modes.clone(), factor) };
-        let rate = exact.unwrap_or(Rate { factor, modes, gaps });
+        let modes = points.map(|((point, mode), gap)| contact_mode(point, *mode, *gap)).collect();
+        let rate = Rate { factor, modes, gaps };
         let leads_on = factor != 0.0 || problem.leads_on(&rate);
         (leads_on && problem.admits(&rate)).then_some(rate)
     }

@@ -150,7 +150,7 @@ fn dilatancy_turns_a_fold_into_a_rise() {
 fn unloading_is_no_continuation() {
     let laws = dry(0.5, 0.0);
     let case = only_unloading(&laws);
-    let unloading = case.problem.exactly(vec![ContactMode::Stick], -1.0).expect("a rate");
+    let unloading = Rate { factor: -1.0, modes: vec![ContactMode::Stick], gaps: vec![[0.0; 2]] };
     assert!(!case.arrival.continues(&case.problem, &unloading));
     let Continuation::NoneContinues(proofs) = case.answer().continuation else { panic!() };
     proofs.iter().for_each(|proof| super::proofs::check(&case.problem, proof));

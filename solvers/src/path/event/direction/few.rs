@@ -294,7 +294,7 @@ fn refined(
         }
     }
     if still {
-        // Of a mechanism, the rates of forces are rounding errors.
+        // In a mechanism the rates of forces are rounding errors.
         rates.x[..2 * system.contacts].fill(0.0);
         rates = Rates { refinements: rates.refinements, ..Rates::new(system, rates.x, 0.0, load) };
         worst = residual(system, &rates, load, modes).0;

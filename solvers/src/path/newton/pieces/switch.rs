@@ -160,10 +160,11 @@ pub(super) fn after_event(
     (direction, rises): (f64, bool),
 ) -> NextPiece {
     let single = hits.iter().all(|m| m.contact == hits[0].contact);
-    let mut crossing = if single { crossings(system, state, piece, hits) } else { Vec::new() };
-    let goes_up = |start: &Start| start.0.factor * direction > 0.0;
-    if crossing.len() == 1 && (!rises || goes_up(&crossing[0])) {
-        return leading(crossing.remove(0), 0, None);
+    let mut crossing = if single { crossings(system, state, piece, hits) } else { Vec::new() }.into_iter();
+    if let (Some(start), None) = (crossing.next(), crossing.next())
+        && (!rises || start.0.factor * direction > 0.0)
+    {
+        return leading(start, 0, None);
     }
     system.count("rate_problems", 1);
     let sense = if rises { 1.0 } else { -1.0 };
@@ -177,10 +178,9 @@ pub(super) fn after_event(
             none_rises: true,
             proved: true,
         },
-        AfterEvent::Unknown(why, none_rises) => match crossing.pop() {
-            Some(start) if crossing.is_empty() => leading(start, 0, (!none_rises).then_some(why)),
-            _ => NextPiece::Nothing { why: format!("the rate is not decided: {why}"), none_rises, proved: false },
-        },
+        AfterEvent::Unknown(why, none_rises) => {
+            NextPiece::Nothing { why: format!("the rate is not decided: {why}"), none_rises, proved: false }
+        }
     }
 }
 
