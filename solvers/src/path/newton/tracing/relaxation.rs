@@ -6,7 +6,8 @@
 //! ```
 //!
 //! Each step is an equilibrium with the additional stiffness κ B. It is unique if κ is greater than the magnitude of
-//! the least, negative eigenvalue of K; friction keeps its history from step to step. In every step the potential falls
+//! the least, negative eigenvalue of K, at its end too: a step that is not is repeated with more damping. Friction keeps
+//! its history from step to step. In every step the potential falls
 //! by the dissipation of the wrenches and of friction. The descent therefore ends in the equilibrium to which the state
 //! would fall slowly, never in one beyond a rise of its energy. The end counts as an equilibrium if it holds without
 //! damping and has positive second-order work. The work of the viscous wrenches is the energy that a real fall
@@ -65,13 +66,22 @@ fn descent(system: &mut StepSystem, from: &State, work: &SecondOrderWork, sense:
         system.loads.damping = Some(Damping { rate, from: anchor.clone() });
         let found = iterate(system, &state, state.clone(), &control, 8);
         system.count("relaxation_steps", 1);
-        let Ok((mut next, iterations)) = found else {
-            failures += 1;
-            rate *= 4.0;
-            if failures > MAX_FAILURES {
-                return None;
+        system.loads.damping = None;
+        let unstable = |system: &mut StepSystem, next: &State| {
+            second_order_work(system, next).filter(|work| work.turned > 0).map(|work| work.curvature.abs())
+        };
+        let found = found.map(|(next, iterations)| (unstable(system, &next), next, iterations));
+        let (turned, mut next, iterations) = match found {
+            Ok((turned, next, iterations)) if turned.is_none_or(|turned| turned <= rate) => (turned, next, iterations),
+            // No state, or one that is unstable in spite of the damping: it may not be the next one of the descent.
+            refused => {
+                failures += 1;
+                rate = (4.0 * rate).max(refused.map_or(0.0, |(turned, ..)| 2.0 * turned.unwrap_or(0.0)));
+                if failures > MAX_FAILURES {
+                    return None;
+                }
+                continue;
             }
-            continue;
         };
         failures = 0;
         let moved = distance(system, &state, &next);
@@ -83,7 +93,6 @@ fn descent(system: &mut StepSystem, from: &State, work: &SecondOrderWork, sense:
             return None;
         }
         if moved < last_moved {
-            system.loads.damping = None;
             let next = settled(system, &state, &control, moved, rate);
             if let Some(next) = next {
                 let side = along(system, from, &next, mode);
@@ -91,12 +100,11 @@ fn descent(system: &mut StepSystem, from: &State, work: &SecondOrderWork, sense:
             }
         }
         last_moved = moved;
-        system.loads.damping = None;
-        rate = match second_order_work(system, &state) {
+        rate = match turned {
             // With this damping each step is unique, and unstable motions double in it.
-            Some(work) if work.turned > 0 => 2.0 * work.curvature.abs().max(SETTINGS.same_rate()),
-            _ if iterations <= 10 => (0.5 * rate).max(SETTINGS.same_rate()),
-            _ => rate,
+            Some(turned) => 2.0 * turned.max(SETTINGS.same_rate()),
+            None if iterations <= 10 => (0.5 * rate).max(SETTINGS.same_rate()),
+            None => rate,
         };
     }
     None
