@@ -6,12 +6,12 @@
 //! ```
 //!
 //! Each step is an equilibrium with the additional stiffness κ B. It is unique if κ is greater than the magnitude of
-//! the least, negative eigenvalue of K, at its end too: a step that is not is repeated with more damping. Friction keeps
-//! its history from step to step. In every step the potential falls
-//! by the dissipation of the wrenches and of friction. The descent therefore ends in the equilibrium to which the state
-//! would fall slowly, never in one beyond a rise of its energy. The end counts as an equilibrium if it holds without
-//! damping and has positive second-order work. The work of the viscous wrenches is the energy that a real fall
-//! releases: the decrease of the potential minus the work of friction.
+//! the least, negative eigenvalue of K. A step at whose end κ is smaller is repeated with more damping. Friction keeps
+//! its history from step to step. In every step the potential falls by the dissipation of the wrenches and of friction.
+//! The descent therefore ends in the equilibrium to which the state would fall slowly, never in one beyond a rise of its
+//! energy. The end counts as an equilibrium if it holds without damping and has positive second-order work. The work of
+//! the viscous wrenches is the energy that a real fall releases: the decrease of the potential minus the work of
+//! friction.
 
 use crate::path::newton::model::control::Control;
 use crate::path::newton::model::loads::Damping;
@@ -64,24 +64,19 @@ fn descent(system: &mut StepSystem, from: &State, work: &SecondOrderWork, sense:
     let mut last_moved = f64::INFINITY;
     for _ in 0..MAX_STEPS {
         system.loads.damping = Some(Damping { rate, from: anchor.clone() });
-        let found = iterate(system, &state, state.clone(), &control, 8);
+        let found = iterate(system, &state, state.clone(), &control, 8).ok();
         system.count("relaxation_steps", 1);
         system.loads.damping = None;
-        let unstable = |system: &mut StepSystem, next: &State| {
-            second_order_work(system, next).filter(|work| work.turned > 0).map(|work| work.curvature.abs())
-        };
-        let found = found.map(|(next, iterations)| (unstable(system, &next), next, iterations));
-        let (turned, mut next, iterations) = match found {
-            Ok((turned, next, iterations)) if turned.is_none_or(|turned| turned <= rate) => (turned, next, iterations),
+        let work = found.as_ref().and_then(|(next, _)| second_order_work(system, next));
+        let turned = work.filter(|work| work.turned > 0).map_or(0.0, |work| work.curvature.abs());
+        let Some((mut next, iterations)) = found.filter(|_| turned <= rate) else {
             // No state, or one that is unstable in spite of the damping: it may not be the next one of the descent.
-            refused => {
-                failures += 1;
-                rate = (4.0 * rate).max(refused.map_or(0.0, |(turned, ..)| 2.0 * turned.unwrap_or(0.0)));
-                if failures > MAX_FAILURES {
-                    return None;
-                }
-                continue;
+            failures += 1;
+            rate = (4.0 * rate).max(2.0 * turned);
+            if failures > MAX_FAILURES {
+                return None;
             }
+            continue;
         };
         failures = 0;
         let moved = distance(system, &state, &next);
@@ -100,11 +95,13 @@ fn descent(system: &mut StepSystem, from: &State, work: &SecondOrderWork, sense:
             }
         }
         last_moved = moved;
-        rate = match turned {
+        rate = if turned > 0.0 {
             // With this damping each step is unique, and unstable motions double in it.
-            Some(turned) => 2.0 * turned.max(SETTINGS.same_rate()),
-            None if iterations <= 10 => (0.5 * rate).max(SETTINGS.same_rate()),
-            None => rate,
+            2.0 * turned.max(SETTINGS.same_rate())
+        } else if iterations <= 10 {
+            (0.5 * rate).max(SETTINGS.same_rate())
+        } else {
+            rate
         };
     }
     None
