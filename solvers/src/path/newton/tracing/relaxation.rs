@@ -6,18 +6,18 @@
 //! ```
 //!
 //! Each step is an equilibrium with the additional stiffness κ B. It is unique if κ is greater than the magnitude of
-//! the least, negative eigenvalue of K. A step at whose end κ is smaller is repeated with more damping. Friction keeps
-//! its history from step to step. In every step the potential falls by the dissipation of the wrenches and of friction.
-//! The descent therefore ends in the equilibrium to which the state would fall slowly, never in one beyond a rise of its
-//! energy. The end counts as an equilibrium if it holds without damping and has positive second-order work. The work of
-//! the viscous wrenches is the energy that a real fall releases: the decrease of the potential minus the work of
-//! friction.
+//! the least, negative eigenvalue of K. A step at whose end κ is smaller is repeated with more damping, and so is a step
+//! whose energies are not in balance. Friction keeps its history from step to step. In every step the potential falls by
+//! the dissipation of the wrenches and of friction. The descent therefore ends in the equilibrium to which the state
+//! would fall slowly, never in one beyond a rise of its energy. The end counts as an equilibrium if it holds without
+//! damping and has positive second-order work. The work of the viscous wrenches is the energy that a real fall releases:
+//! the decrease of the potential minus the work of friction.
 
+use super::descent_energy::{DescentState, descent_step, moved};
 use crate::path::newton::model::control::Control;
 use crate::path::newton::model::loads::Damping;
 use crate::path::newton::model::state::State;
 use crate::path::newton::model::system::StepSystem;
-use crate::path::newton::quantities::measure::increment_between;
 use crate::path::newton::solve::iteration::iterate;
 use crate::path::newton::solve::second_order::second_order_work;
 use crate::path::stability::SecondOrderWork;
@@ -35,6 +35,10 @@ pub struct Relaxation {
     pub next: State,
     /// Its distance along the critical mode, in units.
     pub side: f64,
+    /// Decrease of the potential up to `next` \[J\].
+    pub fall: f64,
+    /// Its part that is not work of friction \[J\].
+    pub released: f64,
     /// Energy dissipated by friction up to `before` \[J\].
     pub dissipated: f64,
 }
@@ -59,20 +63,28 @@ fn descent(system: &mut StepSystem, from: &State, work: &SecondOrderWork, sense:
         let Some(free) = system.scaled.free[body] else { continue };
         (0..3).for_each(|k| q[k] += sense * SETTINGS.visible * u.motion()[k] * mode[3 * free + k] / size);
     }
-    let mut rate = (2.0 * work.curvature.abs()).max(SETTINGS.same_rate());
-    let (mut state, mut dissipated, mut failures) = (from.clone(), 0.0, 0);
-    let mut last_moved = f64::INFINITY;
+    // With this damping each step is unique, and an unstable motion grows by a third in it.
+    let unique = |turned: f64| 4.0 * turned.max(SETTINGS.active);
+    let mut rate = unique(work.curvature.abs());
+    let (mut state, mut energies) = (from.clone(), DescentState::of(system, from, None));
+    let (mut fall, mut dissipated, mut failures) = (0.0, 0.0, 0);
     for _ in 0..MAX_STEPS {
-        system.loads.damping = Some(Damping { rate, from: anchor.clone() });
+        let damping = Damping { rate, from: anchor.clone() };
+        system.loads.damping = Some(damping.clone());
         let found = iterate(system, &state, state.clone(), &control, 8).ok();
         system.count("relaxation_steps", 1);
         system.loads.damping = None;
         let work = found.as_ref().and_then(|(next, _)| second_order_work(system, next));
         let turned = work.filter(|work| work.turned > 0).map_or(0.0, |work| work.curvature.abs());
-        let Some((mut next, iterations)) = found.filter(|_| turned <= rate) else {
-            // No state, or one that is unstable in spite of the damping: it may not be the next one of the descent.
+        // A state that is unstable in spite of its damping may not be the next one of the descent.
+        let step = found.filter(|_| turned <= rate).map(|(next, _)| {
+            let end = DescentState::of(system, &next, Some(&damping));
+            (descent_step(system, (&state, &energies), (&next, &end)), next, end)
+        });
+        let longer = step.as_ref().map_or(0.0, |(step, ..)| 0.9 / step.error.sqrt()).clamp(0.25, 2.0);
+        rate = (rate / longer).max(unique(turned));
+        let Some((step, mut next, end)) = step.filter(|(step, ..)| step.error <= 1.0) else {
             failures += 1;
-            rate = (4.0 * rate).max(2.0 * turned);
             if failures > MAX_FAILURES {
                 return None;
             }
@@ -80,29 +92,23 @@ fn descent(system: &mut StepSystem, from: &State, work: &SecondOrderWork, sense:
         };
         failures = 0;
         let moved = distance(system, &state, &next);
-        dissipated += increment_between(system, &state, &next).dissipation * u.energy();
+        (fall, dissipated) = (fall + step.fall, dissipated + step.dissipated);
         let start = state.clone();
         system.keep(&start, &mut next);
-        (state, anchor) = (next.clone(), next.motion);
+        (state, anchor, energies) = (next.clone(), next.motion, end);
         if fallen(system, from, &state) {
             return None;
         }
-        if moved < last_moved {
-            let next = settled(system, &state, &control, moved, rate);
-            if let Some(next) = next {
-                let side = along(system, from, &next, mode);
-                return Some(Relaxation { before: state, next, dissipated, side });
-            }
+        let stable = turned == 0.0;
+        let next = stable.then(|| settled(system, &state, &control, moved, damping.rate)).flatten();
+        if let Some(next) = next {
+            let end = DescentState::of(system, &next, None);
+            let last = descent_step(system, (&state, &energies), (&next, &end));
+            let fall = fall + last.fall;
+            let released = (fall - dissipated - last.dissipated).max(0.0);
+            let side = along(system, from, &next, mode);
+            return Some(Relaxation { before: state, next, fall, released, dissipated, side });
         }
-        last_moved = moved;
-        rate = if turned > 0.0 {
-            // With this damping each step is unique, and unstable motions double in it.
-            2.0 * turned.max(SETTINGS.same_rate())
-        } else if iterations <= 10 {
-            (0.5 * rate).max(SETTINGS.same_rate())
-        } else {
-            rate
-        };
     }
     None
 }
@@ -119,21 +125,12 @@ fn settled(system: &mut StepSystem, state: &State, control: &Control, moved: f64
 
 /// Returns the Euclidean distance of the motions of two states in their units.
 fn distance(system: &StepSystem, a: &State, b: &State) -> f64 {
-    let units = system.units().motion();
-    let free = (0..a.motion.len()).filter(|body| system.scaled.free[*body].is_some());
-    let squares = free.flat_map(|body| (0..3).map(move |k| (body, k)));
-    squares.map(|(body, k)| ((a.motion[body][k] - b.motion[body][k]) / units[k]).powi(2)).sum::<f64>().sqrt()
+    moved(system, &a.motion, &b.motion).map(|moved| moved * moved).sum::<f64>().sqrt()
 }
 
 /// Returns the distance of a state from another along a mode, in units.
 fn along(system: &StepSystem, from: &State, state: &State, mode: &[f64]) -> f64 {
-    let units = system.units().motion();
-    let of_body = |body: usize| {
-        let free = system.scaled.free[body]?;
-        let moved = |k: usize| (state.motion[body][k] - from.motion[body][k]) / units[k];
-        Some((0..3).map(|k| moved(k) * mode[3 * free + k]).sum::<f64>())
-    };
-    (0..from.motion.len()).filter_map(of_body).sum()
+    moved(system, &from.motion, &state.motion).zip(mode).map(|(moved, mode)| moved * mode).sum()
 }
 
 /// Returns true if a body has moved so far that the structure has fallen.

@@ -5,10 +5,8 @@
 use super::commit::commit;
 use super::relaxation::{Relaxation, relaxations};
 use super::tracer::Tracer;
-use crate::path::energy::EnergyBalance;
 use crate::path::newton::model::state::State;
 use crate::path::newton::quantities::events::events;
-use crate::path::newton::quantities::recorded::{energy_after, recorded, work_state};
 use crate::path::stability::SecondOrderWork;
 use crate::path::twins::favoured;
 use crate::settings::SETTINGS;
@@ -28,11 +26,8 @@ pub enum Departure {
 /// damped descent from it reaches.
 pub fn leave_unstable(tracer: &mut Tracer, state: &State, work: &SecondOrderWork, snaps: bool) -> Departure {
     let found = relaxations(&mut tracer.system, state, work);
-    let fallen = |relaxation: Relaxation| (fall(tracer, &relaxation), relaxation);
-    let found = found.into_iter().map(fallen).collect();
-    let Some((fall, chosen, twins)) = choose(tracer, found) else { return Departure::Falls };
-    let Relaxation { before, next, dissipated, .. } = chosen;
-    let released = (fall - dissipated).max(0.0);
+    let Some((chosen, twins)) = choose(tracer, found) else { return Departure::Falls };
+    let Relaxation { before, next, released, dissipated, .. } = chosen;
     tracer.record.branchings.push(Branching {
         load_step: tracer.in_force.load_step,
         factor: state.factor,
@@ -42,7 +37,7 @@ pub fn leave_unstable(tracer: &mut Tracer, state: &State, work: &SecondOrderWork
     });
     let what = if snaps { "snaps" } else { "becomes unstable, and leaves its branch" };
     tracer.record.notes.push(format!(
-        "at factor {} the structure {what}: damped descent sets free {released:.6e} J{}",
+        "at factor {} the structure {what}: damped descent sets free {released:.3e} J{}",
         state.factor,
         if twins { "; the mirrored branch has the same energy, and can carry another load" } else { "" }
     ));
@@ -52,31 +47,19 @@ pub fn leave_unstable(tracer: &mut Tracer, state: &State, work: &SecondOrderWork
     if commit(tracer, next) { Departure::Stable } else { Departure::Stopped }
 }
 
-/// Returns the decrease of the potential of constant loads in a descent, minus the friction of its last step \[J\].
-fn fall(tracer: &Tracer, relaxation: &Relaxation) -> f64 {
-    let Relaxation { before, next, .. } = relaxation;
-    let system = &tracer.system;
-    let [gradient, last] = [next, before].map(|state| system.gradient(state));
-    let (end, begun) = (work_state(system, next, &gradient), work_state(system, before, &last));
-    let nothing = EnergyBalance::default();
-    let work = energy_after(nothing, system, (&tracer.state, &tracer.record.work), (next, &end)).work;
-    let friction = energy_after(nothing, system, (before, &begun), (next, &end)).dissipated;
-    let stored = recorded(&nothing, system, tracer.in_force.load_step, next, &gradient).stored;
-    work - (stored - tracer.record.state.stored) - friction
-}
-
 /// Returns the descent with the greatest decrease of energy, and true if the other is its twin.
-fn choose(tracer: &Tracer, mut found: Vec<(f64, Relaxation)>) -> Option<(f64, Relaxation, bool)> {
-    let (b, other) = found.pop()?;
-    let Some((a, one)) = found.pop() else { return Some((b, other, false)) };
+fn choose(tracer: &Tracer, mut found: Vec<Relaxation>) -> Option<(Relaxation, bool)> {
+    let other = found.pop()?;
+    let Some(one) = found.pop() else { return Some((other, false)) };
+    let (a, b) = (one.fall, other.fall);
     let rounding = SETTINGS.admissible * tracer.record.state.stored.abs();
     if (a - b).abs() > SETTINGS.small * a.abs().max(b.abs()) + rounding {
-        return Some(if a > b { (a, one, false) } else { (b, other, false) });
+        return Some((if a > b { one } else { other }, false));
     }
     if one.side * other.side > 0.0 {
-        return Some((a, one, false));
+        return Some((one, false));
     }
     let motions = [&one.next.motion[..], &other.next.motion[..]];
     let chosen = favoured(tracer.system.problem, tracer.in_force.load_step, &motions);
-    Some((a, if chosen == 0 { one } else { other }, true))
+    Some((if chosen == 0 { one } else { other }, true))
 }
