@@ -4,7 +4,18 @@
 //! the present and of later stages do more work, or on which the blocks lean to the right.
 
 use crate::settings::SETTINGS;
-use voussoir_core::path::PathProblem;
+use voussoir_core::path::{Branching, PathProblem};
+
+/// Returns the record of a state from which `others` other continuations lead on as well as the one that is followed,
+/// and its note.
+pub(super) fn record(load_step: usize, factor: f64, others: usize) -> (Branching, String) {
+    let branches = if others == 1 { "another branch satisfies" } else { "other branches satisfy" };
+    let note = format!(
+        "at factor {factor} the path divides: {branches} all laws equally well and can carry another load; one branch \
+         is followed"
+    );
+    (Branching { load_step, factor, snaps: false, released: 0.0, twins: true }, note)
+}
 
 /// Returns the index of the motion that is followed. `load_step`: the present one.
 pub(super) fn favoured(problem: &PathProblem, load_step: usize, motions: &[&[[f64; 3]]]) -> usize {

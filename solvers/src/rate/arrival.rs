@@ -8,6 +8,7 @@
 
 use super::problem::{Rate, RateProblem};
 use crate::contact::mode::ContactMode;
+use crate::settings::SETTINGS;
 use voussoir_core::law::FacetMode;
 
 /// An active contact point at the end of the piece before the event.
@@ -33,6 +34,16 @@ pub struct Arrival {
 }
 
 impl Arrival {
+    /// Creates an arrival at a state whose greatest contact force is `greatest`. Forces that are zero within rounding,
+    /// as at the apex of friction, are set to zero: they must not decide between rates.
+    pub fn new(factor: f64, points: impl Iterator<Item = ArrivalPoint>, greatest: f64) -> Self {
+        let rounded = |point: ArrivalPoint| {
+            let zero = point.force[0].hypot(point.force[1]) <= SETTINGS.active * greatest;
+            ArrivalPoint { force: if zero { [0.0; 2] } else { point.force }, ..point }
+        };
+        Arrival { factor, points: points.map(rounded).collect() }
+    }
+
     /// Modes of all points on the piece before the event.
     pub fn modes(&self) -> Vec<ContactMode> {
         self.points.iter().map(|point| point.mode).collect()

@@ -1,8 +1,10 @@
 //! The one rule that chooses if several rates continue.
 //!
 //! 1. The present modes, if they continue and are stable under control.
-//! 2. Otherwise the rate with the greatest dissipation per unit step, if any dissipates.
-//! 3. Otherwise the rate with the least second-order energy per unit step.
+//! 2. Otherwise other modes come before the present ones, and rates with λ rising that are stable under control before
+//!    those that are not, since motions at a constant load grow on these. Of the rates left, the one with the greatest
+//!    dissipation per unit step.
+//! 3. If none dissipates, the rate with the least second-order energy per unit step.
 //!
 //! Rates that their modes do not determine are left out if others are left: if two parts of a structure may slide
 //! independently, one of them slides first. Rates within a relative 1e-6 are twins. A unit step has a length of one
@@ -32,6 +34,10 @@ pub fn choose(problem: &RateProblem, arrival: &Arrival, rates: Vec<Rate>) -> Opt
     // The present modes are unstable: another rate continues, if there is one.
     let (own, others): (Vec<Rate>, Vec<Rate>) = rates.into_iter().partition(|rate| present.contains(&rate.modes));
     let rates = if others.is_empty() { own } else { others };
+    // A falling rate that is stable may be unloading.
+    let lasts = |rate: &Rate| rate.factor <= 0.0 || problem.stable_under_control(rate);
+    let (lasting, left): (Vec<Rate>, Vec<Rate>) = rates.into_iter().partition(lasts);
+    let rates = if lasting.is_empty() { left } else { lasting };
     let dissipation: Vec<f64> = rates.iter().map(|rate| dissipation_share(problem, arrival, rate)).collect();
     let most = dissipation.iter().copied().fold(0.0, f64::max);
     let merit: Vec<f64> = if most > SETTINGS.admissible * force_size(problem, arrival) {

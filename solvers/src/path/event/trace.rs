@@ -7,6 +7,7 @@ use super::piece::point::Point;
 use super::piece::rates::{Direction, Rates, direction_of};
 use crate::contact::facet::dot;
 use crate::contact::mode::ContactMode;
+use crate::linear::largest;
 use crate::path::energy::{EnergyBalance, WorkState};
 use crate::path::system::{Load, System};
 use crate::rate::arrival::Arrival;
@@ -195,7 +196,8 @@ impl<'a> Trace<'a> {
     /// Returns the arrival of some contact points at the present event.
     pub fn arrival(&self, points: &[usize]) -> Arrival {
         let arrived = |c: &usize| self.state.points[*c].arrival(self.state.force(*c));
-        Arrival { factor: self.state.sense, points: points.iter().map(arrived).collect() }
+        let greatest = largest(&self.state.x[..2 * self.system.contacts]);
+        Arrival::new(self.state.sense, points.iter().map(arrived), greatest)
     }
 
     fn motion(&self) -> Vec<[f64; 3]> {

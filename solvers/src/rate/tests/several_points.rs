@@ -137,8 +137,8 @@ fn a_falling_rate_without_dissipation_continues() {
     assert!(answer.none_rises.is_some());
 }
 
-/// Three symmetric points that soften each other: two slip, which dissipates most per unit step if not all do; the two other
-/// pairs are twins.
+/// Three symmetric points that soften each other: one slips, since pairs are unstable under control although they dissipate
+/// more. The two others are twins.
 #[test]
 fn three_points_have_two_twins() {
     let laws = dry(0.5, 0.0);
@@ -149,7 +149,7 @@ fn three_points_have_two_twins() {
     }
     let (rate, twins) = case.goes();
     assert_eq!((rate.factor, twins.len()), (1.0, 2));
-    assert_eq!(rate.modes.iter().filter(|mode| **mode == SLIP).count(), 2);
+    assert_eq!(rate.modes.iter().filter(|mode| **mode == SLIP).count(), 1);
 }
 
 /// Two blocks may slide, each alone or both: mechanisms without dissipation and without energy are twins.

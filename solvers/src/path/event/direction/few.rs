@@ -8,12 +8,12 @@ use crate::path::event::piece::rates::{Rates, direction_of, leaving, motion_alon
 use crate::path::event::piece::schur::SchurComplement;
 use crate::path::event::trace::{Log, Trace};
 use crate::path::system::{Load, System};
-use crate::path::twins::favoured;
+use crate::path::twins::{self, favoured};
 use crate::rate::answer::{Budget, Continuation, Neighbour, RateAnswer, answer, only_neighbour};
 use crate::rate::neighbours::settled;
 use crate::rate::problem::Rate;
 use crate::settings::SETTINGS;
-use voussoir_core::path::{Branching, PathProblem};
+use voussoir_core::path::PathProblem;
 
 /// Greatest number of points whose mode differs from the factorised one; with more, the matrix is factorised again.
 const UPDATES: usize = 40;
@@ -257,9 +257,9 @@ fn favoured_twin(
     let motions = motions?;
     let motions: Vec<&[[f64; 3]]> = motions.iter().map(Vec::as_slice).collect();
     let chosen = favoured(problem, load_step, &motions);
-    let others = rates.len() - 1;
-    log.branchings.push(Branching { load_step, factor, snaps: false, released: 0.0, twins: true });
-    log.notes.push(format!("at factor {factor} {others} other rate(s) are twins of the one that is followed"));
+    let (branching, note) = twins::record(load_step, factor, rates.len() - 1);
+    log.branchings.push(branching);
+    log.notes.push(note);
     Some(rates.swap_remove(chosen))
 }
 

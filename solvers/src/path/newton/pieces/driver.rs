@@ -30,6 +30,7 @@ use crate::path::newton::tracing::step_energy::step_energy;
 use crate::path::newton::tracing::tracer::{LoadStepEnding, Tracer, direction, end_path};
 use crate::path::newton::tracing::witness::none_continues;
 use crate::path::stability::SecondOrderWork;
+use crate::path::twins;
 use crate::settings::SETTINGS;
 use voussoir_core::limit::Status;
 use voussoir_core::path::{Branching, LimitPointEnd, LoadStep, LoadStepEnd, ProvenPeak};
@@ -652,14 +653,11 @@ impl<'d> Run<'d> {
     }
 
     /// Records other rates at an event that the rule does not distinguish from the chosen one.
-    fn note_twins(&self, tracer: &mut Tracer, twins: usize) {
-        if twins > 0 {
-            let (load_step, factor) = (tracer.in_force.load_step, tracer.state.factor);
-            tracer.record.branchings.push(Branching { load_step, factor, snaps: false, released: 0.0, twins: true });
-            tracer
-                .record
-                .notes
-                .push(format!("at factor {factor} {twins} other rate(s) are twins of the one that is followed"));
+    fn note_twins(&self, tracer: &mut Tracer, others: usize) {
+        if others > 0 {
+            let (branching, note) = twins::record(tracer.in_force.load_step, tracer.state.factor, others);
+            tracer.record.branchings.push(branching);
+            tracer.record.notes.push(note);
         }
     }
 

@@ -127,7 +127,7 @@ pub fn rate_after_event(
         stops: event.stopping.contains(c),
         force: state.force[*c],
     };
-    let arrival = Arrival { factor: sense, points: active.contacts.iter().map(point).collect() };
+    let arrival = Arrival::new(sense, active.contacts.iter().map(point), largest_force(state));
     let mut counts = RateCounts::default();
     let found = answer(&problem, &arrival, &Budget::default(), &mut counts);
     drop(problem);
