@@ -2,8 +2,8 @@
 //!
 //! 1. The present modes, if they continue and are stable under control.
 //! 2. Otherwise other modes come before the present ones, and rates with λ rising that are stable under control before
-//!    those that are not, since motions at a constant load grow on these. Of the rates left, the one with the greatest
-//!    dissipation per unit step.
+//!    those that are not, since motions at a constant load grow on these. Then the greatest dissipation per unit step
+//!    decides.
 //! 3. If none dissipates, the rate with the least second-order energy per unit step.
 //!
 //! Rates that their modes do not determine are left out if others are left: if two parts of a structure may slide

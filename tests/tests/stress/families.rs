@@ -179,8 +179,7 @@ struct Tally {
     scenes: usize,
     /// Scenes in which two certified answers contradict each other.
     disagree: usize,
-    /// Of these, the scenes in which only the lists of limit points, the statuses or the released
-    /// energies differ.
+    /// Number of these scenes in which only lists of limit points, statuses or released energies differ.
     mild: usize,
     /// Default runs that are open, that are stalled, and that fail their certificate.
     default_open: Vec<u64>,
