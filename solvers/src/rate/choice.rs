@@ -1,8 +1,8 @@
 //! The one rule that chooses if several rates continue.
 //!
 //! 1. The present modes, if they continue and are stable under control.
-//! 2. Otherwise other modes come before the present ones, and rates with λ rising that are stable under control before
-//!    those that are not, since motions at a constant load grow on these. Then the greatest dissipation per unit step
+//! 2. Otherwise other modes come before the present ones. A rate with λ rising that is unstable under control is left out
+//!    if a stable one rises, too, since motions at a constant load grow on it. Then the greatest dissipation per unit step
 //!    decides.
 //! 3. If none dissipates, the rate with the least second-order energy per unit step.
 //!
@@ -34,10 +34,10 @@ pub fn choose(problem: &RateProblem, arrival: &Arrival, rates: Vec<Rate>) -> Opt
     // The present modes are unstable: another rate continues, if there is one.
     let (own, others): (Vec<Rate>, Vec<Rate>) = rates.into_iter().partition(|rate| present.contains(&rate.modes));
     let rates = if others.is_empty() { own } else { others };
-    // A falling rate that is stable may be unloading.
-    let lasts = |rate: &Rate| rate.factor <= 0.0 || problem.stable_under_control(rate);
-    let (lasting, left): (Vec<Rate>, Vec<Rate>) = rates.into_iter().partition(lasts);
-    let rates = if lasting.is_empty() { left } else { lasting };
+    let rises = |rate: &&Rate| rate.factor > 0.0;
+    let one_lasts = rates.iter().filter(rises).any(|rate| problem.stable_under_control(rate));
+    let lasts = |rate: &Rate| rate.factor <= 0.0 || !one_lasts || problem.stable_under_control(rate);
+    let rates: Vec<Rate> = rates.into_iter().filter(lasts).collect();
     let dissipation: Vec<f64> = rates.iter().map(|rate| dissipation_share(problem, arrival, rate)).collect();
     let most = dissipation.iter().copied().fold(0.0, f64::max);
     let merit: Vec<f64> = if most > SETTINGS.admissible * force_size(problem, arrival) {
