@@ -265,6 +265,7 @@ fn locate(step: &mut Step, mut low: Trial, mut high: Trial) -> Advance {
         let arrived = (0..middle.readings.len()).any(arrives);
         low = middle;
         if arrived {
+            low = polished(step, low);
             return ended(low, &high);
         }
     }
@@ -276,6 +277,18 @@ fn locate(step: &mut Step, mut low: Trial, mut high: Trial) -> Advance {
         true => Advance::Failed,
         false => ended(low, &high),
     }
+}
+
+/// Returns the state at which the first monitor of an event is zero to 1 % of its tolerance. A force that is left there
+/// moves the point at once in its next mode, in a soft structure by more than the tolerance of openings.
+fn polished(step: &mut Step, arrived: Trial) -> Trial {
+    let left = |reading: &Reading| {
+        let rate = reading.rate.filter(|rate| *rate < -reading.rate_tolerance)?;
+        (reading.is_active() && reading.value > 0.01 * reading.tolerance).then_some(reading.value / -rate)
+    };
+    let Some(left) = arrived.readings.iter().filter_map(left).reduce(f64::min) else { return arrived };
+    let next = step.trial(&arrived.end, arrived.end.length + left);
+    next.filter(|next| !next.readings.iter().any(Reading::is_violated)).unwrap_or(arrived)
 }
 
 /// Returns the end of a step at `low`; `high` beyond it violates a monitor.
