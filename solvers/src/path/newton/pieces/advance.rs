@@ -282,11 +282,12 @@ fn locate(step: &mut Step, mut low: Trial, mut high: Trial) -> Advance {
 /// Returns the state at which the first monitor of an event is zero to 1 % of its tolerance. A force that is left there
 /// moves the point at once in its next mode, in a soft structure by more than the tolerance of openings.
 fn polished(step: &mut Step, arrived: Trial) -> Trial {
-    let left = |reading: &Reading| {
-        let rate = reading.rate.filter(|rate| *rate < -reading.rate_tolerance)?;
-        (reading.is_active() && reading.value > 0.01 * reading.tolerance).then_some(reading.value / -rate)
+    let crossing = |reading: &Reading| {
+        let rate = reading.rate.filter(|rate| reading.is_active() && *rate < -reading.rate_tolerance)?;
+        Some((reading.value / -rate, reading.value > 0.01 * reading.tolerance))
     };
-    let Some(left) = arrived.readings.iter().filter_map(left).reduce(f64::min) else { return arrived };
+    let first = arrived.readings.iter().filter_map(crossing).min_by(|a, b| a.0.total_cmp(&b.0));
+    let Some((left, true)) = first else { return arrived };
     let next = step.trial(&arrived.end, arrived.end.length + left);
     next.filter(|next| !next.readings.iter().any(Reading::is_violated)).unwrap_or(arrived)
 }
