@@ -20,7 +20,7 @@ pub struct ArrivalPoint {
     pub hit: bool,
     /// True if the event is the end of its slip.
     pub stops: bool,
-    /// Its contact force at the event \[N\].
+    /// Its contact force at the event \[N\]; zero if it is rounding.
     pub force: [f64; 2],
 }
 

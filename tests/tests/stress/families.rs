@@ -132,8 +132,8 @@ fn same_points(a: &[[f64; 2]], b: &[[f64; 2]]) -> bool {
 
 /// Compares the energies that are released at branches of the same load.
 fn same_energies(a: &[[f64; 2]], b: &[[f64; 2]]) -> bool {
-    let pairs = a.iter().flat_map(|x| b.iter().filter(|y| same(x[0], y[0])).map(|y| (x[1], y[1])));
-    pairs.into_iter().all(|(x, y)| (x - y).abs() <= SAME_ENERGY * x.abs().max(y.abs()) + ZERO_ENERGY)
+    let mut pairs = a.iter().flat_map(|x| b.iter().filter(|y| same(x[0], y[0])).map(|y| (x[1], y[1])));
+    pairs.all(|(x, y)| (x - y).abs() <= SAME_ENERGY * x.abs().max(y.abs()) + ZERO_ENERGY)
 }
 
 /// A study and its result; `None` after a crash.

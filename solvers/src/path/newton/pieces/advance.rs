@@ -265,8 +265,7 @@ fn locate(step: &mut Step, mut low: Trial, mut high: Trial) -> Advance {
         let arrived = (0..middle.readings.len()).any(arrives);
         low = middle;
         if arrived {
-            low = polished(step, low);
-            return ended(low, &high);
+            return ended(polished(step, low), &high);
         }
     }
     // Slacks and openings are continuous along a path: a jump over the bracket leads to another branch.

@@ -11,7 +11,7 @@ use crate::settings::SETTINGS;
 
 /// The data of a state of a descent for the energies of a step that starts or ends at it.
 pub struct DescentState {
-    /// State of the loads and supports.
+    /// Data for the work of loads.
     work: WorkState,
     /// Stored energy \[J\].
     stored: f64,
@@ -24,12 +24,13 @@ impl DescentState {
     pub fn of(system: &StepSystem, state: &State, damping: Option<&Damping>) -> Self {
         let gradient = system.gradient(state);
         let stored = recorded(&EnergyBalance::default(), system, 0, state, &gradient).stored;
-        let viscous =
-            |damping: &Damping| moved(system, &damping.from, &state.motion).map(|moved| damping.rate * moved).collect();
+        let forces = |damping: &Damping| {
+            free_motions(system, &damping.from, &state.motion).map(|motion| damping.rate * motion).collect()
+        };
         DescentState {
             work: work_state(system, state, &gradient),
             stored,
-            viscous: damping.map(viscous).unwrap_or_default(),
+            viscous: damping.map(forces).unwrap_or_default(),
         }
     }
 }
@@ -54,7 +55,8 @@ pub fn descent_step(
     let energy = energy_after(EnergyBalance::default(), system, (start, &from.work), (state, &to.work));
     let fall = energy.work - (to.stored - from.stored);
     let force = |k: usize| 0.5 * [from, to].iter().filter_map(|end| end.viscous.get(k)).sum::<f64>();
-    let viscous: f64 = moved(system, &start.motion, &state.motion).enumerate().map(|(k, moved)| force(k) * moved).sum();
+    let motions = free_motions(system, &start.motion, &state.motion);
+    let viscous: f64 = motions.enumerate().map(|(k, motion)| force(k) * motion).sum();
     let unit = system.units().energy();
     let error = (fall - energy.dissipated - viscous * unit).abs();
     let rounding = SETTINGS.admissible * to.stored.abs().max(unit);
@@ -62,8 +64,12 @@ pub fn descent_step(
     DescentStep { fall, dissipated: energy.dissipated, error: error / allowed }
 }
 
-/// Returns the motions of the free bodies between two states in their units.
-pub fn moved<'a>(system: &'a StepSystem, from: &'a [[f64; 3]], to: &'a [[f64; 3]]) -> impl Iterator<Item = f64> + 'a {
+/// Returns the motions of the free bodies from one state to another, in their units.
+pub fn free_motions<'a>(
+    system: &'a StepSystem,
+    from: &'a [[f64; 3]],
+    to: &'a [[f64; 3]],
+) -> impl Iterator<Item = f64> + 'a {
     let units = system.units().motion();
     let free = (0..to.len()).filter(|body| system.scaled.free[*body].is_some());
     free.flat_map(move |body| (0..3).map(move |k| (to[body][k] - from[body][k]) / units[k]))

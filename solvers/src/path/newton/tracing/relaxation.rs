@@ -13,7 +13,7 @@
 //! damping and has positive second-order work. The work of the viscous wrenches is the energy that a real fall releases:
 //! the decrease of the potential minus the work of friction.
 
-use super::descent_energy::{DescentState, descent_step, moved};
+use super::descent_energy::{DescentState, descent_step, free_motions};
 use crate::path::newton::model::control::Control;
 use crate::path::newton::model::loads::Damping;
 use crate::path::newton::model::state::State;
@@ -48,9 +48,7 @@ pub fn relaxations(system: &mut StepSystem, state: &State, work: &SecondOrderWor
     if system.limits.remembers {
         return Vec::new();
     }
-    let found = [1.0, -1.0].into_iter().filter_map(|sense| descent(system, state, work, sense)).collect();
-    system.loads.damping = None;
-    found
+    [1.0, -1.0].into_iter().filter_map(|sense| descent(system, state, work, sense)).collect()
 }
 
 /// Computes a descent in one sense of the critical mode.
@@ -125,12 +123,12 @@ fn settled(system: &mut StepSystem, state: &State, control: &Control, moved: f64
 
 /// Returns the Euclidean distance of the motions of two states in their units.
 fn distance(system: &StepSystem, a: &State, b: &State) -> f64 {
-    moved(system, &a.motion, &b.motion).map(|moved| moved * moved).sum::<f64>().sqrt()
+    free_motions(system, &a.motion, &b.motion).map(|motion| motion * motion).sum::<f64>().sqrt()
 }
 
 /// Returns the distance of a state from another along a mode, in units.
 fn along(system: &StepSystem, from: &State, state: &State, mode: &[f64]) -> f64 {
-    moved(system, &from.motion, &state.motion).zip(mode).map(|(moved, mode)| moved * mode).sum()
+    free_motions(system, &from.motion, &state.motion).zip(mode).map(|(motion, mode)| motion * mode).sum()
 }
 
 /// Returns true if a body has moved so far that the structure has fallen.
