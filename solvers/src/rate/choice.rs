@@ -34,7 +34,9 @@ pub fn choose(problem: &RateProblem, arrival: &Arrival, rates: Vec<Rate>) -> Opt
     // The present modes are unstable: another rate continues, if there is one.
     let (own, others): (Vec<Rate>, Vec<Rate>) = rates.into_iter().partition(|rate| present.contains(&rate.modes));
     let rates = if others.is_empty() { own } else { others };
-    let rates = without_unstable_rising(problem, rates);
+    let lasts = |rate: &&Rate| rate.factor <= 0.0 || problem.stable_under_control(rate);
+    let lasting: Vec<Rate> = rates.iter().filter(lasts).cloned().collect();
+    let rates = if lasting.iter().any(|rate| rate.factor > 0.0) { lasting } else { rates };
     let dissipation: Vec<f64> = rates.iter().map(|rate| dissipation_share(problem, arrival, rate)).collect();
     let most = dissipation.iter().copied().fold(0.0, f64::max);
     let merit: Vec<f64> = if most > SETTINGS.admissible * force_size(problem, arrival) {
@@ -47,15 +49,6 @@ pub fn choose(problem: &RateProblem, arrival: &Arrival, rates: Vec<Rate>) -> Opt
     let mut tied =
         rates.into_iter().zip(merit).filter(|(_, m)| best - m <= SETTINGS.distinct() * size).map(|(rate, _)| rate);
     tied.next().map(|rate| (rate, tied.collect()))
-}
-
-/// Leaves out rates with λ rising that are unstable under control, if a stable one rises, too.
-fn without_unstable_rising(problem: &RateProblem, rates: Vec<Rate>) -> Vec<Rate> {
-    let unstable = |rate: &Rate| rate.factor > 0.0 && !problem.stable_under_control(rate);
-    let unstable: Vec<bool> = rates.iter().map(unstable).collect();
-    let stable_rises = rates.iter().zip(&unstable).any(|(rate, unstable)| rate.factor > 0.0 && !unstable);
-    let kept = rates.into_iter().zip(unstable).filter(|(_, unstable)| !(stable_rises && *unstable));
-    kept.map(|(rate, _)| rate).collect()
 }
 
 /// Dissipation per unit step.
