@@ -60,7 +60,7 @@ dist:
 # Packages of all crates in order, each built from what its package contains. Cargo keeps unpacked packages by the path of the
 # target folder, also if they have changed: hence one folder for each commit.
 package:
-    cargo package --workspace --locked --exclude voussoir-tests --exclude voussoir-benches --target-dir "target/package-$(git rev-parse --short HEAD)"
+    cargo package --workspace --locked --exclude voussoir-tests --exclude voussoir-independent --exclude voussoir-benches --target-dir "target/package-$(git rev-parse --short HEAD)"
 
 # Public names of the crates for plug-ins, compared with a revision: `just semver v0.1.0`. It needs cargo-semver-checks and,
 # for the first run, a network.

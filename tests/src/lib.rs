@@ -8,10 +8,8 @@
 mod arch;
 pub mod book;
 pub mod by_hand;
-pub mod energy;
 pub mod family;
 pub mod gates;
-pub mod integrator;
 mod keep;
 pub mod known;
 pub mod random;

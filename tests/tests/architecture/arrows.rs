@@ -33,7 +33,8 @@ fn the_arrows_hold() {
     let own = ["core", "external", "laws", "plot", "report", "solvers", "study", "verify"];
     assert_eq!(ours("studies"), own.map(|name| format!("voussoir-{name}")));
     // Tests register their own plug-ins, as any other project would.
-    assert_eq!(ours("tests"), ["voussoir", "voussoir-core"]);
+    assert_eq!(ours("tests"), ["voussoir", "voussoir-independent", "voussoir-core"]);
+    assert_eq!(ours("tests/independent"), ["voussoir"]);
     assert_eq!(ours("benches"), ["voussoir", "voussoir-tests"]);
     for folder in ["core", "core/keys-derive", "core/plug", "laws", "solvers"] {
         each_source(&workspace().join(folder).join("src"), &mut |path, text| {

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use voussoir::results::CaseResult;
 use voussoir::solve_case;
-use voussoir_tests::energy::{EnergyScene, Landing, TraceLimits, dead_load, load_path, settle};
+use voussoir_independent::energy::{EnergyScene, Landing, TraceLimits, dead_load, load_path, settle};
 use voussoir_tests::family::{Family, FamilyScene, Form, family_scene};
 use voussoir_tests::{first_case, keep};
 
@@ -80,7 +80,7 @@ fn scene(k: u64) -> FamilyScene {
 
 /// Returns the stable branches; `None` if the energy program fails.
 fn branches(text: &str, largest: f64) -> Option<Vec<Branch>> {
-    let energy = EnergyScene::of_study(text);
+    let energy = EnergyScene::of_case(&first_case(text));
     let limits = TraceLimits { largest, farthest: FARTHEST };
     let starts = if energy.settled.len() > 1 {
         let branches = settle(&energy, TraceLimits::default());

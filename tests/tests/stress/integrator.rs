@@ -9,8 +9,8 @@
 use voussoir::core::limit::Status;
 use voussoir::results::CaseResult;
 use voussoir::solve_case;
-use voussoir_tests::integrator::families::SmallScene;
-use voussoir_tests::integrator::{End, Found, integrate};
+use voussoir_independent::integrator::families::SmallScene;
+use voussoir_independent::integrator::{End, Found, integrate};
 use voussoir_tests::{first_case, keep};
 
 /// Relative difference of equal loads.

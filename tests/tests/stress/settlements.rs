@@ -18,7 +18,7 @@ use voussoir::core::limit::Status;
 use voussoir::core::model::Bond;
 use voussoir::core::model::geometry::Vec2;
 use voussoir::results::CaseResult;
-use voussoir_tests::energy::{EnergyScene, TraceLimits, load_path, settle};
+use voussoir_independent::energy::{EnergyScene, TraceLimits, load_path, settle};
 use voussoir_tests::settled::{Deforming, Draw, Random, SettledScene, Settling, Shape, settled_scene};
 use voussoir_tests::{answered, first_case, keep, names_bifurcation};
 
@@ -79,7 +79,7 @@ fn names_other_states(result: &CaseResult) -> bool {
 /// Returns the fault if the greatest and the first limit point are not both peaks of the energy on one branch, within 1
 /// %. Shorter steps of the energy program are tried too, since it may pass over a dip.
 fn no_peaks_of_the_energy(study: &str, result: &CaseResult, own: f64) -> Option<String> {
-    let energy = EnergyScene::of_study(study);
+    let energy = EnergyScene::of_case(&first_case(study));
     let first = result.path.first_limit_point.unwrap_or(own);
     let is = |load: f64, peak: &f64| (load - peak).abs() <= 1e-2 * peak.abs().max(1e-9);
     let known = |branch: &Vec<f64>| {

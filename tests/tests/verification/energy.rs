@@ -2,9 +2,9 @@
 //! unknowns, minima of the potential energy, the load point held.
 
 use nalgebra::DVector;
-use voussoir_tests::energy::*;
+use voussoir_independent::energy::*;
 use voussoir_tests::settled::{Deforming, Draw, Random, Settling, Shape, settled_scene};
-use voussoir_tests::{answered, assert_close};
+use voussoir_tests::{answered, assert_close, first_case};
 
 const FINITE: &str = "solver = \"newton_path\"\nkinematics = \"finite\"";
 
@@ -73,7 +73,7 @@ fn the_energy_program_derives_its_energy() {
     let mut random = Random::new(1);
     for settling in [Settling::Out, Settling::Both] {
         let draw = Draw { shape: Shape::Arch, deforming: Deforming::Compliant, settling, size: 3e-2, stuck: true };
-        let scene = EnergyScene::of_study(&settled_scene(&mut random, draw).study(FINITE));
+        let scene = EnergyScene::of_case(&first_case(&settled_scene(&mut random, draw).study(FINITE)));
         let held = scene.held(0, 0.7);
         let q = DVector::from_fn(scene.unknowns(), |_, _| random.uniform(-0.05, 0.05));
         let slip: Vec<f64> = scene.points.iter().map(|_| random.uniform(-1e-3, 1e-3)).collect();
@@ -98,7 +98,7 @@ fn the_energy_program_derives_its_energy() {
 /// The springs of a joint have the stiffness of its area and of its moment of inertia.
 #[test]
 fn springs_of_a_joint_have_its_area_and_moment_of_inertia() {
-    let scene = EnergyScene::of_study(&spread_arch(15, 0.0, true));
+    let scene = EnergyScene::of_case(&first_case(&spread_arch(15, 0.0, true)));
     for joint in scene.points.chunk_by(|a, b| a.joint == b.joint) {
         let (first, last) = (joint[0].position, joint[joint.len() - 1].position);
         let (height, middle) = ((last - first).norm(), (first + last) / 2.0);
@@ -113,7 +113,7 @@ fn springs_of_a_joint_have_its_area_and_moment_of_inertia() {
 #[test]
 fn peak_of_an_arch_on_compliant_joints_by_two_routes() {
     let text = spread_arch(15, 0.0, true);
-    let scene = EnergyScene::of_study(&text);
+    let scene = EnergyScene::of_case(&first_case(&text));
     let path = load_path(&scene, &dead_load(&scene), TraceLimits::default());
     let [peak] = &path.peaks[..] else { panic!("{:?}", path.peaks) };
     assert_close(peak.factor, 609.604410, 1e-8);
@@ -126,7 +126,7 @@ fn peak_of_an_arch_on_compliant_joints_by_two_routes() {
 /// unstable equilibrium of the energy program; the stable states are mirror twins.
 #[test]
 fn a_spread_arch_of_15_voussoirs_leaves_its_symmetric_state() {
-    let scene = EnergyScene::of_study(&spread_arch(15, -0.05, false));
+    let scene = EnergyScene::of_case(&first_case(&spread_arch(15, -0.05, false)));
     let branches = settle(&scene, TraceLimits::default());
     let ends: Vec<&Landing> = branches.iter().map(|b| &b[b.len() - 1].last().landing).collect();
     assert_eq!(ends.len(), 2);
@@ -150,7 +150,7 @@ fn a_spread_arch_of_15_voussoirs_leaves_its_symmetric_state() {
 /// points only).
 #[test]
 fn spread_arches_by_the_trapezoidal_rule_of_nine_points() {
-    let scene = with_trapezoidal_rule(EnergyScene::of_study(&spread_arch(15, -0.05, true)), 9);
+    let scene = with_trapezoidal_rule(EnergyScene::of_case(&first_case(&spread_arch(15, -0.05, true))), 9);
     let branches = settle(&scene, TraceLimits::default());
     assert_eq!(branches.len(), 2);
     for branch in &branches {
@@ -161,7 +161,7 @@ fn spread_arches_by_the_trapezoidal_rule_of_nine_points() {
         let greatest = load_path(&scene, end, TraceLimits::default()).greatest().expect("a peak").factor;
         assert_close(greatest, 616.5, 1e-2);
     }
-    let scene = with_trapezoidal_rule(EnergyScene::of_study(&spread_arch(16, -0.05, true)), 9);
+    let scene = with_trapezoidal_rule(EnergyScene::of_case(&first_case(&spread_arch(16, -0.05, true))), 9);
     let branches = settle(&scene, TraceLimits::default());
     let [branch] = &branches[..] else { panic!("{} branches", branches.len()) };
     let path = load_path(&scene, &branch[0].last().landing, TraceLimits::default());

@@ -4,10 +4,10 @@
 
 use voussoir::core::limit::Status;
 use voussoir::results::CaseResult;
-use voussoir_tests::energy::{EnergyScene, Landing, TraceLimits, load_path, settle};
+use voussoir_independent::energy::{EnergyScene, Landing, TraceLimits, load_path, settle};
 use voussoir_tests::family::{Family, Form, family_scene};
 use voussoir_tests::settled::{Deforming, Draw, Random, SettledScene, Settling, Shape, settled_scene};
-use voussoir_tests::{answered, assert_close, keep};
+use voussoir_tests::{answered, assert_close, first_case, keep};
 
 const FINITE: &str = "solver = \"newton_path\"\nkinematics = \"finite\"";
 /// Greatest relative difference of factors.
@@ -105,7 +105,7 @@ fn tally(range: std::ops::Range<usize>) -> Tally {
         let settled = scene(k);
         let text = settled.study(FINITE);
         keep(&format!("settled{k}.toml"), &text);
-        let energy = EnergyScene::of_study(&text);
+        let energy = EnergyScene::of_case(&first_case(&text));
         let branches = branches(&energy);
         tally.scenes += 1;
         tally.piers += usize::from(settled.shape == Shape::Pier);

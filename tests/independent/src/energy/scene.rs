@@ -1,6 +1,5 @@
 //! The data of the energy: blocks, springs of the joints, loads, motions of supports.
 
-use crate::first_case;
 use nalgebra::DVector;
 use voussoir::core::model::geometry::{Vec2, cross, turned};
 use voussoir::core::path::{LoadStepEnd, PathProblem};
@@ -78,12 +77,8 @@ pub struct Place {
 }
 
 impl EnergyScene {
-    /// Creates it from the first case of a study: dead load, stages with settlements, a live load that grows.
-    pub fn of_study(text: &str) -> Self {
-        Self::of_case(&first_case(text))
-    }
-
-    /// Creates it from a case whose blocks are rigid and whose joints are compliant.
+    /// Creates it from a case whose blocks are rigid and whose joints are compliant: dead load, stages with
+    /// settlements, a live load that grows.
     pub fn of_case(case: &Case) -> Self {
         let problem = PathProblem::new(&case.assembly, &case.stages).expect("a path problem");
         let mut count = 0;
