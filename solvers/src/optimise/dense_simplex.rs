@@ -245,37 +245,23 @@ impl Dictionary {
         &self.matrix[i * self.columns..(i + 1) * self.columns]
     }
 
+    /// Exchanges the basic variable of row `r` for that of column `c`.
     fn pivot(&mut self, r: usize, c: usize) {
         let n = self.columns;
-        let p = 1.0 / self.matrix[r * n + c];
-        let mut row = std::mem::take(&mut self.matrix);
-        {
-            let source = &mut row[r * n..(r + 1) * n];
-            source.iter_mut().for_each(|v| *v *= -p);
-            source[c] = p;
-        }
-        self.beta[r] *= -p;
-        let beta = self.beta[r];
-        let (before, rest) = row.split_at_mut(r * n);
-        let (source, after) = rest.split_at_mut(n);
-        for (i, target) in before.chunks_exact_mut(n).chain(after.chunks_exact_mut(n)).enumerate() {
-            let i = if i >= r { i + 1 } else { i };
-            let factor = target[c];
-            if factor == 0.0 {
-                continue;
+        let scale = -1.0 / self.matrix[r * n + c];
+        let mut source: Vec<f64> = self.row(r).iter().map(|v| v * scale).collect();
+        source[c] = -scale;
+        let beta = self.beta[r] * scale;
+        let (rows, costs) = (self.matrix.chunks_exact_mut(n).zip(&mut self.beta), (&mut self.cost[..], &mut 0.0));
+        for (target, right) in rows.chain([costs]) {
+            let factor = std::mem::take(&mut target[c]);
+            if factor != 0.0 {
+                target.iter_mut().zip(&source).for_each(|(t, s)| *t += factor * s);
+                *right += factor * beta;
             }
-            target[c] = 0.0;
-            for (t, s) in target.iter_mut().zip(source.iter()) {
-                *t += factor * s;
-            }
-            self.beta[i] += factor * beta;
         }
-        let factor = self.cost[c];
-        self.cost[c] = 0.0;
-        for (t, s) in self.cost.iter_mut().zip(source.iter()) {
-            *t += factor * s;
-        }
-        self.matrix = row;
+        self.matrix[r * n..(r + 1) * n].copy_from_slice(&source);
+        self.beta[r] = beta;
         let (leaving, entering) = (self.basic[r], self.nonbasic[c]);
         self.basic[r] = entering;
         self.nonbasic[c] = leaving;

@@ -18,7 +18,7 @@ use voussoir_tests::{first_case, keep};
 /// Relative difference of equal loads.
 const SAME_LOAD: f64 = 1e-6;
 /// Longest steps of the energy program, in spans; shorter steps do not pass over a dip.
-const STEPS: [f64; 3] = [1e-3, 1e-4, 1e-5];
+const STEPS: [f64; 4] = [1e-3, 1e-4, 1e-5, 1e-6];
 /// Tangential gap, relative to the height of a joint, up to which a point stays in the middle of both blocks. Beyond it
 /// the program moves points to the corners of one block, and the energy program does not.
 const LARGEST_SHEAR: f64 = 0.005;
