@@ -21,6 +21,7 @@ const SAMPLES: usize = 16;
 const MAX_TRIALS: usize = 100;
 
 /// A state of a piece at the end of a step.
+#[derive(Clone)]
 pub(super) struct StepEnd {
     pub state: State,
     /// Its rate per unit of the step's length.
@@ -31,6 +32,13 @@ pub(super) struct StepEnd {
     /// Error of the trapezoidal rule for the factor's change, from its rates at both ends, relative to that change. It
     /// reveals a factor that falls, rises and falls again within the step.
     pub unexplained: f64,
+}
+
+impl StepEnd {
+    /// Returns the first state of a piece, where a step begins.
+    pub fn first(start: &State, piece: &Piece) -> Self {
+        StepEnd { state: start.clone(), rate: piece.tangent.clone(), length: 0.0, error: 0.0, unexplained: 0.0 }
+    }
 }
 
 /// The end of a step.
@@ -166,11 +174,15 @@ pub(super) fn chord(from: &State, to: &State) -> Tangent {
     }
 }
 
-/// Computes the state at a length along a piece from one of its states, whatever the readings of its monitors.
-pub(super) fn state_at(system: &mut StepSystem, start: &State, piece: &Piece, length: f64) -> Option<StepEnd> {
-    let low = StepEnd { state: start.clone(), rate: piece.tangent.clone(), length: 0.0, error: 0.0, unexplained: 0.0 };
+/// Computes the state at a length along a piece `from` the first of some states that leads there, whatever its readings.
+pub(super) fn state_at(
+    system: &mut StepSystem,
+    (start, piece): (&State, &Piece),
+    from: &[&StepEnd],
+    length: f64,
+) -> Option<StepEnd> {
     let mut step = Step { system, start, piece, watched: Watched { sense: None, target: None } };
-    step.trial(&low, length).map(|trial| trial.end)
+    from.iter().find_map(|from| step.trial(from, length)).map(|trial| trial.end)
 }
 
 /// Moves a length along a piece from one of its states.
@@ -182,8 +194,7 @@ pub(super) fn advance(
 ) -> Advance {
     let mut step = Step { system, start, piece, watched };
     let readings = step.readings(start, &piece.tangent);
-    let end = StepEnd { state: start.clone(), rate: piece.tangent.clone(), length: 0.0, error: 0.0, unexplained: 0.0 };
-    let low = Trial { end, readings };
+    let low = Trial { end: StepEnd::first(start, piece), readings };
     let crossing = first_crossing(&low.readings);
     // Beyond the end of a branch of a law of tractions a state along the present tangent may not exist.
     let of_branch = step.branch_crossing(&low.readings);

@@ -184,8 +184,10 @@ impl<'d> Run<'d> {
         {
             return ending;
         }
-        if let Some((end, work)) = advance.end().and_then(|end| self.first_unstable(tracer, &start, end)) {
-            return self.leave(tracer, end, &work);
+        if let Some(end) = advance.end()
+            && let Some((unstable, work, again)) = self.first_unstable(tracer, end)
+        {
+            return if again { self.shorten(tracer, 0.5 * end.length) } else { self.leave(tracer, unstable, &work) };
         }
         match advance {
             Advance::Failed => self.shorten(tracer, 0.3 * length),
@@ -491,30 +493,31 @@ impl<'d> Run<'d> {
     }
 
     /// Returns the first state of a step that is unstable under its loads, on a rising branch above all limit points,
-    /// with its second-order work.
-    fn first_unstable(&self, tracer: &mut Tracer, start: &State, end: &StepEnd) -> Option<(StepEnd, SecondOrderWork)> {
-        let factor = end.state.factor;
+    /// with its second-order work, and true if a shorter step may locate it better.
+    fn first_unstable(&self, tracer: &mut Tracer, end: &StepEnd) -> Option<(StepEnd, SecondOrderWork, bool)> {
+        let (start, factor) = (tracer.state.clone(), end.state.factor);
         let mut own = tracer.limit.proven_peaks.iter().filter(|peak| peak.load_step == tracer.in_force.load_step);
         let above = own.all(|peak| (factor - peak.factor) * self.range.direction > 0.0);
         if self.standing.unstable || !self.rises || !above || end.length == 0.0 {
             return None;
         }
         let mut work = instability(&mut tracer.system, &end.state)?;
-        let (mut low, mut high) = (0.0, end.length);
-        let mut found = None;
-        while high - low > SETTINGS.admissible * end.length {
+        let (mut low, mut high) = (StepEnd::first(&start, &self.piece), end.clone());
+        while high.length - low.length > SETTINGS.admissible * end.length {
             // At the bifurcation itself the equations are singular.
-            let looked = [0.5, 0.4, 0.6].map(|share| low + share * (high - low)).into_iter().find_map(|length| {
-                state_at(&mut tracer.system, start, &self.piece, length).map(|state| (length, state))
+            let middle = [0.5, 0.4, 0.6].into_iter().find_map(|share| {
+                let length = low.length + share * (high.length - low.length);
+                state_at(&mut tracer.system, (&start, &self.piece), &[&low, &high], length)
             });
-            let Some((middle, state)) = looked else { break };
-            match instability(&mut tracer.system, &state.state) {
-                Some(here) => (work, high, found) = (here, middle, Some(state)),
+            let Some(middle) = middle else { break };
+            match instability(&mut tracer.system, &middle.state) {
+                Some(here) => (work, high) = (here, middle),
                 None => low = middle,
             }
         }
-        let found = found.or_else(|| state_at(&mut tracer.system, start, &self.piece, high))?;
-        Some((found, work))
+        // From a state far beyond a bifurcation, damped descent may reach another branch.
+        let far = high.length - low.length > SETTINGS.distinct() * end.length;
+        Some((high, work, far && end.length > SETTINGS.distinct() * self.length.first))
     }
 
     /// Leaves an equilibrium that has become unstable under its loads.

@@ -1,7 +1,7 @@
 //! Steps along a piece: a block of 1 N on two points that is pushed at height h, and one on two bonded springs.
 
-use super::super::advance::{Advance, Watched, advance, first_crossing, state_at};
-use super::{piece_at, second_step};
+use super::super::advance::{Advance, StepEnd, Watched, advance, first_crossing, state_at};
+use super::{Piece, State, StepSystem, piece_at, second_step};
 use crate::path::newton::pieces::monitors::{Reading, What};
 use crate::path::two_blocks::{STIFFNESS, assert_close, block, force, on_springs, pushed_at, stage, v};
 use voussoir_core::path::{LoadStepEnd, PathProblem};
@@ -74,13 +74,18 @@ fn a_step_ends_at_its_target() {
     assert_close(end.state.factor, 0.123, 1e-14);
 }
 
+/// Returns the state at a length along a piece.
+fn state_on(system: &mut StepSystem, state: &State, piece: &Piece, length: f64) -> Option<StepEnd> {
+    state_at(system, (state, piece), &[&StepEnd::first(state, piece)], length)
+}
+
 /// A state at a length is found whatever the readings of its monitors: beyond the first slip the slack is negative.
 #[test]
 fn a_state_beyond_an_event_violates_its_monitor() {
     let problem = block(FRICTION, pushed_at(HEIGHT));
     let (mut system, state) = second_step(&problem);
     let piece = piece_at(&mut system, &state);
-    let beyond = state_at(&mut system, &state, &piece, 0.28 / piece.tangent.factor).expect("a state");
+    let beyond = state_on(&mut system, &state, &piece, 0.28 / piece.tangent.factor).expect("a state");
     let read = piece.read(&system, &state, &beyond.state, &beyond.rate);
     let violated: Vec<_> =
         piece.monitors.0.iter().zip(&read).filter(|(_, r)| r.is_violated()).map(|(m, _)| (m.contact, m.what)).collect();
@@ -93,7 +98,7 @@ fn the_error_of_a_prediction_is_of_second_order() {
     let problem = soft();
     let (mut system, state) = second_step(&problem);
     let piece = piece_at(&mut system, &state);
-    let error = |system: &mut _, length: f64| state_at(system, &state, &piece, length).expect("a state").error;
+    let error = |system: &mut _, length: f64| state_on(system, &state, &piece, length).expect("a state").error;
     let [long, short] = [0.4, 0.2].map(|factor| error(&mut system, factor / piece.tangent.factor));
     // The rotation is odd in the load and the vertical movement is even: errors of second order and above.
     assert!(long > 0.0 && short < 0.55 * long, "{long} {short}");
@@ -106,7 +111,7 @@ fn a_long_step_of_springs_ends_on_the_arc() {
     let (mut system, state) = second_step(&problem);
     let piece = piece_at(&mut system, &state);
     for factor in [0.1, 1.0, 4.0] {
-        let end = state_at(&mut system, &state, &piece, factor / piece.tangent.factor).expect("a state").state;
+        let end = state_on(&mut system, &state, &piece, factor / piece.tangent.factor).expect("a state").state;
         assert_close((-end.motion[1][2]).tan(), end.factor * 0.8 / (10.0 - 0.8), 1e-9);
     }
 }
