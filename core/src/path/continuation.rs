@@ -81,8 +81,10 @@ pub trait Continuation: Any + Debug + Send + Sync {
     /// `None` before the first. A strategy may change its measure between two steps but not within one.
     fn constraint(&self, increment: &Increment, previous: Option<&Increment>) -> Constraint;
 
-    /// Returns true if λ may fall during a step.
-    fn passes_limit_points(&self) -> bool;
+    /// Returns true if λ may fall during a step. A strategy that sets λ itself returns false.
+    fn passes_limit_points(&self) -> bool {
+        true
+    }
 
     /// Returns the length of the first step of a load step: the share of the unit load (of size F) that an elastic
     /// structure would carry in it.

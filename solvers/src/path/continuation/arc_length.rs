@@ -42,10 +42,6 @@ impl Continuation for ArcLength {
         sphere(increment, self.psi)
     }
 
-    fn passes_limit_points(&self) -> bool {
-        true
-    }
-
     step_lengths!();
 }
 

@@ -57,10 +57,6 @@ impl Continuation for CrackOpening {
         }
     }
 
-    fn passes_limit_points(&self) -> bool {
-        true
-    }
-
     step_lengths!();
 }
 

@@ -32,10 +32,6 @@ impl Continuation for DisplacementControl {
         }
     }
 
-    fn passes_limit_points(&self) -> bool {
-        true
-    }
-
     step_lengths!();
 }
 

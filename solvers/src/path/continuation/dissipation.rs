@@ -38,10 +38,6 @@ impl Continuation for Dissipation {
         }
     }
 
-    fn passes_limit_points(&self) -> bool {
-        true
-    }
-
     step_lengths!();
 }
 

@@ -361,6 +361,15 @@ impl<'d> Run<'d> {
 
     /// Returns the ending if the range or the path ends after a step.
     fn after(&mut self, tracer: &mut Tracer) -> Option<LoadStepEnding> {
+        let fallen = |peak: &&ProvenPeak| {
+            let fall = (peak.factor - peak.lowest) * self.range.direction;
+            peak.load_step == tracer.in_force.load_step && fall > SETTINGS.residual() * peak.factor.abs()
+        };
+        if let Some(factor) = tracer.limit.proven_peaks.last().filter(fallen).map(|peak| peak.factor)
+            && let Some(ending) = self.end_at_limit_point(tracer, factor)
+        {
+            return Some(ending);
+        }
         if self.range.target.is_infinite()
             && let Some(ending) = ray(tracer, &self.piece, self.range.direction)
         {
@@ -442,9 +451,17 @@ impl<'d> Run<'d> {
         }
         note_peak(tracer, Some(&self.piece.tangent), self.range.direction);
         note_other_branches(tracer, &self.piece.tangent);
+        // A mechanism under a constant load may close a gap.
+        let still = stands_still(tracer, &self.piece);
+        let ending = if still { None } else { self.end_at_limit_point(tracer, tracer.state.factor) };
+        ending.or_else(|| self.after(tracer))
+    }
+
+    /// Returns the ending at a limit point that the stage or its strategy does not pass.
+    fn end_at_limit_point(&self, tracer: &mut Tracer, factor: f64) -> Option<LoadStepEnding> {
         if matches!(self.range.load_step.end, LoadStepEnd::Factor(_)) {
             tracer.ending.limit_point_end = Some(LimitPointEnd::Target);
-            let (factor, target) = (tracer.state.factor, self.range.target);
+            let target = self.range.target;
             let why = format!("the path has a limit point at factor {factor}, before the factor {target} of its stage");
             return Some(end_path(tracer, Status::LimitPoint, why));
         }
@@ -452,10 +469,8 @@ impl<'d> Run<'d> {
             let why = "behind this limit point the load does not grow, and the strategy goes no further";
             return Some(end_path(tracer, Status::LimitPoint, why.into()));
         }
-        if tracer.settings.ends_at_first_limit_point(self.range.load_step.stage) {
-            return Some(end_path(tracer, Status::LimitPoint, String::new()));
-        }
-        self.after(tracer)
+        let ends = tracer.settings.ends_at_first_limit_point(self.range.load_step.stage);
+        ends.then(|| end_path(tracer, Status::LimitPoint, String::new()))
     }
 
     /// Beyond a limit point of a settlement, continues from the equilibrium that damped descent reaches.
