@@ -106,12 +106,13 @@ fn outcomes(seed: u64, associated: bool) -> ([Outcome; 2], String) {
     (outcomes, line)
 }
 
-/// A stack, a portal, an arch and a wall carry the load of an independent integrator, and so do their mirror images.
+/// A stack, a portal, an arch and a wall carry the load of an independent integrator, and so do their mirror images; one
+/// portal has associated flow.
 #[test]
 fn integrator_of_some() {
     let found: Vec<_> = std::thread::scope(|scope| {
-        let work = [vec![2], vec![1, 20, 3]].map(|seeds: Vec<u64>| {
-            scope.spawn(move || seeds.into_iter().map(|seed| outcomes(seed, false)).collect::<Vec<_>>())
+        let work = [vec![(2, false), (9025, true)], vec![(1, false), (20, false), (3, false)]].map(|scenes| {
+            scope.spawn(move || scenes.into_iter().map(|(seed, flow)| outcomes(seed, flow)).collect::<Vec<_>>())
         });
         work.into_iter().flat_map(|part| part.join().expect("no panic")).collect()
     });
@@ -136,4 +137,5 @@ fn integrator_of_many() {
         outcomes.into_iter().for_each(|outcome| *counts.entry(outcome).or_insert(0) += 1);
     }
     println!("{counts:?}");
+    assert_eq!(counts.get(&Outcome::Contradicts), None);
 }

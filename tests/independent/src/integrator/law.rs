@@ -86,21 +86,9 @@ impl PointLaw {
         Number::constant(before.gap[1]) + (g[1] - Number::constant(before.gap[1])) * share
     }
 
-    /// A point that is open at the end of the step. It dilates until the instant at which it opens.
+    /// A point that is open at the end of the step. It dilates with its whole slip, also while it is open.
     fn opened(&self, before: &Memory, gap: [f64; 2], slip_t: f64) -> Response {
-        let mut dilation = before.slip[0];
-        if self.dilatancy > 0.0 && before.gap[0] <= before.slip[0] {
-            let state = |g: [f64; 2]| {
-                let normal = -self.stiffness[0] * (g[0] - before.slip[0]);
-                let shear = (self.stiffness[1] * (g[1] - slip_t)).abs();
-                let across = self.stiffness[1] + self.friction * self.dilatancy * self.stiffness[0];
-                let gamma = (shear - self.friction * normal) / across;
-                (gamma, shear - gamma * self.stiffness[1])
-            };
-            let (from, to) = (state(before.gap), state(gap));
-            let share = if from.1 > to.1 { (from.1 / (from.1 - to.1)).clamp(0.0, 1.0) } else { 0.0 };
-            dilation += self.dilatancy * (from.0 + share * (to.0 - from.0)).max(0.0);
-        }
+        let dilation = before.slip[0] + self.dilatancy * (gap[1] - slip_t).abs();
         let memory = Memory { slip: [dilation, gap[1]], gap };
         response([Number::constant(0.0); 2], memory, Mode::Open)
     }
