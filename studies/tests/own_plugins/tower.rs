@@ -138,10 +138,6 @@ impl Continuation for Taxicab {
         Constraint { value, derivative }
     }
 
-    fn passes_limit_points(&self) -> bool {
-        true
-    }
-
     fn first_step(&self) -> f64 {
         self.first_step
     }

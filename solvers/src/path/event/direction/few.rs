@@ -214,11 +214,10 @@ fn by_rate_problem(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<C
     log.counts.solves += rates.refinements;
     let mut rates = solved_anew(trace, rates, load, &modes);
     // A mechanism ends the path: the error of its equations is the error of the load.
-    let mechanism = rates.factor == 0.0;
-    if rates.worst > if mechanism { trace.believed() } else { SETTINGS.distinct() } {
-        let at = (&trace.system, trace.state.points.as_slice());
-        let motion = if mechanism { None } else { motion_alone(at, &rates, load, active, &modes) };
-        let Some(motion) = motion else {
+    let accepted = if rates.factor == 0.0 { trace.believed() } else { SETTINGS.distinct() };
+    if rates.worst > accepted {
+        let motion = motion_alone((&trace.system, &trace.state.points), &rates, load, active, &modes);
+        let Some(motion) = motion.filter(|_| rates.factor != 0.0) else {
             let why = format!(
                 "the rates at λ = {:.9} leave {:.1e} of their equations: the system is singular to rounding",
                 trace.state.factor, rates.worst

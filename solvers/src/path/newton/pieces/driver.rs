@@ -361,11 +361,13 @@ impl<'d> Run<'d> {
 
     /// Returns the ending if the range or the path ends after a step.
     fn after(&mut self, tracer: &mut Tracer) -> Option<LoadStepEnding> {
-        let fallen = |peak: &&ProvenPeak| {
-            let fall = (peak.factor - peak.lowest) * self.range.direction;
-            peak.load_step == tracer.in_force.load_step && fall > SETTINGS.residual() * peak.factor.abs()
+        // A mechanism under a constant load may close a gap: the path ends only where the load falls.
+        let falls = |peak: &&ProvenPeak| {
+            let fallen = (peak.factor - peak.lowest) * self.range.direction > SETTINGS.residual() * peak.factor.abs();
+            let own = peak.load_step == tracer.in_force.load_step;
+            own && (fallen || !self.rises && !stands_still(tracer, &self.piece))
         };
-        if let Some(factor) = tracer.limit.proven_peaks.last().filter(fallen).map(|peak| peak.factor)
+        if let Some(factor) = tracer.limit.proven_peaks.last().filter(falls).map(|peak| peak.factor)
             && let Some(ending) = self.end_at_limit_point(tracer, factor)
         {
             return Some(ending);
@@ -451,10 +453,7 @@ impl<'d> Run<'d> {
         }
         note_peak(tracer, Some(&self.piece.tangent), self.range.direction);
         note_other_branches(tracer, &self.piece.tangent);
-        // A mechanism under a constant load may close a gap.
-        let still = stands_still(tracer, &self.piece);
-        let ending = if still { None } else { self.end_at_limit_point(tracer, tracer.state.factor) };
-        ending.or_else(|| self.after(tracer))
+        self.after(tracer)
     }
 
     /// Returns the ending at a limit point that the stage or its strategy does not pass.
@@ -510,13 +509,14 @@ impl<'d> Run<'d> {
     /// Returns the first state of a step that is unstable under its loads, on a rising branch above all limit points,
     /// with its second-order work, and true if a shorter step may locate it better.
     fn first_unstable(&self, tracer: &mut Tracer, end: &StepEnd) -> Option<(StepEnd, SecondOrderWork, bool)> {
-        let (start, factor) = (tracer.state.clone(), end.state.factor);
+        let factor = end.state.factor;
         let mut own = tracer.limit.proven_peaks.iter().filter(|peak| peak.load_step == tracer.in_force.load_step);
         let above = own.all(|peak| (factor - peak.factor) * self.range.direction > 0.0);
         if self.standing.unstable || !self.rises || !above || end.length == 0.0 {
             return None;
         }
         let mut work = instability(&mut tracer.system, &end.state)?;
+        let start = tracer.state.clone();
         let (mut low, mut high) = (StepEnd::first(&start, &self.piece), end.clone());
         while high.length - low.length > SETTINGS.admissible * end.length {
             // At the bifurcation itself the equations are singular.
