@@ -7,7 +7,8 @@
 //!
 //! Each step is an equilibrium with the additional stiffness κ B. It is unique if κ is greater than the magnitude of
 //! the least, negative eigenvalue of K. A step at whose end κ is smaller is repeated with more damping, and so is a step
-//! whose energies are not in balance. Friction keeps its history from step to step. In every step the potential falls by
+//! whose energies are not in balance; the first one is repeated with a smaller push along the critical mode, because next
+//! to a bifurcation a stable state may be near. Friction keeps its history from step to step. In every step the potential falls by
 //! the dissipation of the wrenches and of friction. The descent therefore ends in the equilibrium to which the state
 //! would fall slowly, never in one beyond a rise of its energy. The end counts as an equilibrium if it holds without
 //! damping and has positive second-order work. The work of the viscous wrenches is the energy that a real fall releases:
@@ -65,7 +66,7 @@ fn descent(system: &mut StepSystem, from: &State, work: &SecondOrderWork, sense:
     let unique = |turned: f64| 4.0 * turned.max(SETTINGS.active);
     let mut rate = unique(work.curvature.abs());
     let (mut state, mut energies) = (from.clone(), DescentState::of(system, from, None));
-    let (mut fall, mut dissipated, mut failures) = (0.0, 0.0, 0);
+    let (mut fall, mut dissipated, mut failures, mut begun) = (0.0, 0.0, 0, false);
     for _ in 0..MAX_STEPS {
         let damping = Damping { rate, from: anchor.clone() };
         system.loads.damping = Some(damping.clone());
@@ -80,15 +81,23 @@ fn descent(system: &mut StepSystem, from: &State, work: &SecondOrderWork, sense:
             (descent_step(system, (&state, &energies), (&next, &end)), next, end)
         });
         let longer = step.as_ref().map_or(0.0, |(step, ..)| 0.9 / step.error.sqrt()).clamp(0.25, 2.0);
-        rate = (rate / longer).max(unique(turned));
-        let Some((step, mut next, end)) = step.filter(|(step, ..)| step.error <= 1.0) else {
+        let step = step.filter(|(step, ..)| step.error <= 1.0);
+        // The first step is as long as its push; the others are shorter with more damping.
+        if begun || step.is_some() {
+            rate /= longer;
+        } else {
+            let push = anchor.as_flattened_mut().iter_mut().zip(from.motion.as_flattened());
+            push.for_each(|(anchor, from)| *anchor = from + longer * (*anchor - from));
+        }
+        rate = rate.max(unique(turned));
+        let Some((step, mut next, end)) = step else {
             failures += 1;
             if failures > MAX_FAILURES {
                 return None;
             }
             continue;
         };
-        failures = 0;
+        (failures, begun) = (0, true);
         let moved = distance(system, &state, &next);
         (fall, dissipated) = (fall + step.fall, dissipated + step.dissipated);
         let start = state.clone();
