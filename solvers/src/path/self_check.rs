@@ -3,8 +3,8 @@
 //! - every claim: the field of its state is in equilibrium, within its strengths and complementary;
 //! - collapse at a constant load: a mechanism with p·q̇ = 1 that satisfies the laws' flow at that field and changes no
 //!   force;
-//! - no equilibrium: the same under the dead load, before all of it is carried. A limit point of the dead load is no
-//!   proof: with non-associated friction another path may carry it;
+//! - no equilibrium: the same under the dead load, before all of it is carried. A limit point of the dead load proves less:
+//!   on another path, or behind it, the structure may carry more;
 //! - unbounded: rates of forces that balance the load and stay in the recession cone of the facets;
 //! - limit point: no modes of the active points have a rate with growing λ (`rising`).
 

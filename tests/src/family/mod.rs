@@ -153,6 +153,12 @@ impl FamilyScene {
         self
     }
 
+    /// Returns the scene with joints and blocks that are softer by a factor.
+    pub fn softer(mut self, by: f64) -> FamilyScene {
+        self.stiffness.iter_mut().flatten().chain(&mut self.moduli).for_each(|value| *value /= by);
+        self
+    }
+
     /// Returns true if all loads are forces at points.
     pub fn has_point_loads(&self) -> bool {
         self.loads.iter().all(|load| matches!(load, Load::Point { .. }))

@@ -12,7 +12,7 @@
 //!
 //! The reference of a scene is the answer that most runs share. `FAMILY` is one family, several with commas, or absent
 //! for all. Scenes with an even seed, and all of `finite`, have finite displacements; `KINEMATICS=finite` or `small`
-//! overrides this. `OUT` writes the study of each run that disagrees and its `default`; `ALL=1` writes every run.
+//! overrides this. `SOFTER=1000` divides all stiffnesses, so that many scenes do not carry their weight. `OUT` writes the study of each run that disagrees and its `default`; `ALL=1` writes every run.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use voussoir::core::limit::Status;
@@ -59,6 +59,8 @@ struct Answer {
     certified: bool,
     load: f64,
     first: f64,
+    /// The limit point of gravity at which the path ends.
+    of_gravity: Option<f64>,
     /// Limit points of the last stage, each with the fall of the load after it.
     points: Vec<[f64; 2]>,
     /// Branches that the path has left, each with the energy that is released.
@@ -72,7 +74,9 @@ impl Answer {
     fn of(result: CaseResult) -> Answer {
         let load = result.load_factor.unwrap_or(f64::NAN);
         let points = result.path.limit_points.iter().filter(|point| point.stage == "live" && !point.gravity);
+        let of_gravity = result.path.limit_points.last().filter(|point| point.gravity);
         Answer {
+            of_gravity: of_gravity.filter(|_| result.status == Status::LimitPoint).map(|point| point.factor),
             status: result.status,
             certified: result.certificate.passed,
             load,
@@ -96,6 +100,8 @@ impl Answer {
             Some("first")
         } else if !same(self.load, other.load) {
             Some("greatest")
+        } else if self.of_gravity.zip(other.of_gravity).is_some_and(|(a, b)| !same(a, b)) {
+            Some("gravity")
         } else if self.status != other.status {
             Some("status")
         } else if !same_points(&self.points, &other.points) {
@@ -110,7 +116,8 @@ impl Answer {
     fn shown(&self) -> String {
         let points: Vec<f64> = self.points.iter().map(|point| point[0]).collect();
         let certified = if self.certified { "" } else { " not certified" };
-        format!("{:?}{certified} {:.9} first {:.9} points {points:.9?}", self.status, self.load, self.first)
+        let of_gravity = self.of_gravity.map_or(String::new(), |factor| format!(" of gravity {factor:.9}"));
+        format!("{:?}{certified} {:.9} first {:.9}{of_gravity} points {points:.9?}", self.status, self.load, self.first)
     }
 }
 
@@ -224,6 +231,9 @@ fn compared(family: Family, seed: u64, tally: &mut Tally) {
     let mut scene = family_scene(family, seed);
     if let Ok(kinematics) = std::env::var("KINEMATICS") {
         scene.finite = kinematics == "finite";
+    }
+    if let Some(by) = std::env::var("SOFTER").ok().and_then(|by| by.parse().ok()) {
+        scene = scene.softer(by);
     }
     let all = runs(&scene);
     let label = format!("{} {seed} ({} {:?}, {})", family.name(), scene.shape, scene.law, kinematics(&scene));

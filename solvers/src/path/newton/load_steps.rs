@@ -74,11 +74,6 @@ fn run<'a>(tracer: &mut Tracer<'a, '_>, problem: &'a PathProblem) {
             LoadStepEnd::Factor(factor) if load_step.period.passes() => time_steps::follow(tracer, load_step, factor),
             LoadStepEnd::Factor(factor) => load_to_factor(tracer, load_step, factor),
         };
-        // Beyond a peak a structure reaches the load in another equilibrium: it has snapped through.
-        if tracer.limit.peak.is_some() && matches!(outcome, LoadStepEnding::Reached) {
-            tracer.ending.status = Status::Collapse;
-            outcome = LoadStepEnding::Ended;
-        }
         let ends = problem.load_steps.get(index + 1).is_none_or(|next| next.stage != load_step.stage);
         if ends && matches!(outcome, LoadStepEnding::Reached) {
             outcome = end_stage(tracer, load_step);
@@ -86,18 +81,24 @@ fn run<'a>(tracer: &mut Tracer<'a, '_>, problem: &'a PathProblem) {
         match outcome {
             LoadStepEnding::Reached => earlier.push((tracer.state.factor - load_step.start, &load_step.loading)),
             LoadStepEnding::Ended => {
-                if load_step.gravity && matches!(tracer.ending.status, Status::Collapse | Status::LimitPoint) {
-                    tracer.record.notes.push(format!(
-                        "the change of gravity is carried up to {:.9} of its value only",
-                        tracer.limit.peak.as_ref().map_or(tracer.state.factor, |p| p.factor)
-                    ));
-                    tracer.ending.status = Status::NoEquilibrium;
+                if load_step.gravity && tracer.ending.status == Status::Collapse {
+                    end_under_gravity(tracer);
                 }
                 return;
             }
         }
     }
-    tracer.ending.status = if tracer.limit.peak.is_some() { Status::LimitPoint } else { Status::Stands };
+    tracer.ending.status = Status::Stands;
+}
+
+/// Ends a path that moves on under a constant share of gravity: without equilibrium if a mechanism proves it. A limit
+/// point of gravity stays one: on another path the structure may carry more, and behind it, it may stand again.
+fn end_under_gravity(tracer: &mut Tracer) {
+    let peak = tracer.limit.peak.as_ref();
+    let moves = tracer.ending.motion.is_some() || peak.is_some_and(|peak| peak.motion.is_some());
+    tracer.ending.status = if moves { Status::NoEquilibrium } else { Status::LimitPoint };
+    let carried = peak.map_or(tracer.state.factor, |peak| peak.factor);
+    tracer.record.notes.push(format!("the change of gravity is carried up to {carried:.9} of its value only"));
 }
 
 /// Examines the stability of the state at the end of a stage. From an unstable state damped descent leads to a stable
@@ -150,14 +151,6 @@ fn answer(mut tracer: Tracer) -> PathAnswer {
         counters.entry(name.into()).or_default();
     }
     let mut notes = tracer.record.notes;
-    let (balance, stored) = (&tracer.record.balance, tracer.record.state.stored);
-    let size = balance.scale(stored);
-    if size > 1e-12 * tracer.system.units().energy() {
-        // The same words in all cases, so that a study shows them once.
-        let words = "path_energy in the certificate is the share of Σ|work| + |stored| + dissipated that the balance work − stored − \
-                     dissipated leaves (trapezoidal rule over the steps)";
-        notes.push(words.into());
-    }
     if tracer.ending.status != Status::NoEquilibrium
         && let (Some(peak), Some(trough)) = (&tracer.limit.peak, &tracer.limit.trough)
     {

@@ -161,10 +161,14 @@ fn verify_range(case: &Case, problem: &PathProblem, state: &PathState, result: &
         .map(|peak| peak.factor)
         .collect();
     let ends = matches!(result.status, Status::Collapse | Status::LimitPoint);
-    let first = own.first().copied().or(result.load_factor.filter(|_| ends));
+    let first = own.first().copied().or(result.load_factor.filter(|_| ends)).filter(|_| !step.gravity);
     let has_factor = result.status != Status::Stands && result.load_factor.is_some();
-    let fits = !has_factor || path.first_limit_point == first;
-    let values = (path.first_limit_point, "the first entry of limit_points, or load_factor, is", first);
+    let fits = !(has_factor || step.gravity) || path.first_limit_point == first;
+    let reason = match step.gravity {
+        true => "while gravity is applied it must be",
+        false => "the first entry of limit_points, or load_factor, is",
+    };
+    let values = (path.first_limit_point, reason, first);
     findings.expect_entry(fits, "first_limit_point", values);
     if let Some(greatest) = result.load_factor.filter(|_| ends) {
         let rises = |factor: &f64| (factor - greatest) * (greatest - step.start) > 0.0 && !close(*factor, greatest);

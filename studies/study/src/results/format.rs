@@ -218,6 +218,9 @@ pub fn headline(result: &CaseResult, stages: &[Stage]) -> String {
         }
         (Status::NoEquilibrium, _) => "no equilibrium: the loads before the last stage cannot be carried".into(),
         (Status::Stands, None) => "stands: every stage reached its factor".into(),
+        (Status::LimitPoint, None) if let Some(last) = result.path.limit_points.last() => {
+            format!("limit point at {} of the gravity of stage \"{}\"", format_number(last.factor, 4), last.stage)
+        }
         (status, Some(factor)) if snaps.is_some() => {
             beside(format!("{}: carries {}", status_word(status).replace('_', " "), load(factor)))
         }

@@ -4,12 +4,13 @@ use super::case_result::CaseResult;
 use voussoir_core::limit::Status;
 
 /// Returns the load factor for comparisons: infinite if any load is carried or the case stands, −∞ if the dead load is
-/// not carried, `None` without a result.
+/// not carried (a limit point of it has no load factor), `None` without a result.
 pub fn load_rank(case: &CaseResult) -> Option<f64> {
     match case.status {
         Status::NoEquilibrium => Some(f64::NEG_INFINITY),
         Status::Unbounded | Status::Stands => Some(f64::INFINITY),
-        Status::Collapse | Status::LimitPoint => case.load_factor,
+        Status::Collapse => case.load_factor,
+        Status::LimitPoint => Some(case.load_factor.unwrap_or(f64::NEG_INFINITY)),
         // The proved lower bound is carried in any case. Without it, the upper bound is used.
         Status::Open => case.bounds.and_then(|[lower, upper]| lower.or(upper)),
         Status::Stalled => None,
@@ -40,5 +41,7 @@ mod tests {
         let infinite = blank(4, Status::Unbounded);
         assert_eq!(least_of([&infinite].into_iter()).map(|case| case.label.id), Some(4));
         assert!(least_of([&blank(0, Status::Stalled)].into_iter()).is_none());
+        let under_dead_load = blank(8, Status::LimitPoint);
+        assert_eq!(least_of([&case(1, 0.1), &under_dead_load].into_iter()).map(|case| case.label.id), Some(8));
     }
 }

@@ -10,8 +10,12 @@ use voussoir_core::path::{
 };
 
 /// Returns the factor of the first limit point of the load step at which the path ended. If the path reaches a mechanism
-/// first, the mechanism is the first limit point.
-pub(super) fn first_limit_point(solved: &PathAnswer) -> Option<f64> {
+/// first, the mechanism is the first limit point. `None` if the path ended while gravity was applied: like `load_factor`, it is
+/// a factor of loads.
+pub(super) fn first_limit_point(problem: &PathProblem, solved: &PathAnswer) -> Option<f64> {
+    if problem.load_steps[solved.load_step].gravity {
+        return None;
+    }
     let ends = matches!(solved.status, Status::Collapse | Status::LimitPoint);
     let first = solved.limit_points.iter().find(|peak| peak.load_step == solved.load_step);
     first.map(|peak| peak.factor).or(solved.factor.filter(|_| ends))

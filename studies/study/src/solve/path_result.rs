@@ -238,7 +238,8 @@ fn path_record(
     let name = |body: usize| assembly.bodies[body].name.clone();
     let displaced = displacements(assembly, problem, &solved.state.motion, input.settings.finite);
     let entry = |(body, displacement)| DisplacementEntry { body: name(body), displacement };
-    let (first, continuation) = (first_limit_point(&solved), limit_point_end(input.settings, problem, &solved));
+    let (first, continuation) =
+        (first_limit_point(problem, &solved), limit_point_end(input.settings, problem, &solved));
     let mut limit_points = limit_points(input.stages, problem, &solved.limit_points, history);
     if let Some(last) = limit_points.last_mut().filter(|_| continuation.is_some()) {
         // The states just beyond the end of a path depend on the length of its last step.

@@ -29,4 +29,4 @@ mod trace;
 pub use descent::{Control, Landing, land, stationary};
 pub use potential::{Derivatives, evaluate};
 pub use scene::{EnergyScene, Held, Place, SpringPoint};
-pub use trace::{Peak, Snap, State, Trace, TraceLimits, dead_load, load_path, settle};
+pub use trace::{Peak, Snap, State, Trace, TraceLimits, dead_load, load_path, settle, weigh};

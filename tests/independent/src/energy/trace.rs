@@ -7,8 +7,8 @@ use super::scene::{EnergyScene, Held};
 use nalgebra::DVector;
 
 /// Step over a point without a stable state nearby, large enough for the two sides of a bifurcation to differ: in
-/// shares of a settlement, and in spans.
-const SNAP_STEPS: [f64; 2] = [1e-3, 1e-6];
+/// shares of a settlement, of the load's displacement in spans, and in shares of gravity.
+const LEAPS: [f64; 3] = [1e-3, 1e-6, 1e-5];
 /// Greatest number of branches of settlements.
 const MOST_BRANCHES: usize = 4;
 
@@ -96,6 +96,8 @@ struct Motion<'a> {
     control: Control,
     /// Length of one unit of the parameter \[m\].
     unit: f64,
+    /// Step over a point without a stable state, in units.
+    leap: f64,
 }
 
 impl Motion<'_> {
@@ -227,8 +229,7 @@ impl Motion<'_> {
                         continue;
                     }
                     // Even the smallest step ends on another branch or fails: a kink, a bifurcation or a snap.
-                    let by = SNAP_STEPS[usize::from(matches!(self.control, Control::Displacement))];
-                    let (state, snap) = self.snap(&from, (by * self.unit).min(left));
+                    let (state, snap) = self.snap(&from, (self.leap * self.unit).min(left));
                     let kink = snap.twin.is_none() && snap.jump <= 1e-4 * self.scene.size;
                     let lost = !state.landing.converged() || !self.is_stable(&state.landing);
                     if !kink {
@@ -259,6 +260,25 @@ pub fn dead_load(scene: &EnergyScene) -> Landing {
     landing
 }
 
+/// Follows gravity from a thousandth of it to all of it, with the supports in their first positions. The parameter is the
+/// share of gravity. Returns the path, and the shares just below and above each
+/// state without a stable state nearby.
+pub fn weigh(scene: &EnergyScene) -> (Trace, Vec<[f64; 2]>) {
+    let held = move |share: f64| {
+        let mut held = scene.held(0, 0.0);
+        held.gravity *= share;
+        held
+    };
+    let first = 1e-3;
+    let landing = land(scene, &held(first), &DVector::zeros(scene.unknowns()), None, Control::Factor(0.0));
+    let motion = Motion { scene, held: Box::new(held), control: Control::Factor(0.0), unit: 1.0, leap: LEAPS[2] };
+    let limits = TraceLimits { largest: 0.02, ..TraceLimits::default() };
+    let trace = motion.follow(State { at: first, landing }, limits, &|_| false, 1.0);
+    let broken = trace.broken.as_ref().map(|_| [trace.last().at, trace.last().at + LEAPS[2]]);
+    let ends = trace.snaps.iter().map(|snap| [snap.at - LEAPS[2], snap.at]).chain(broken).collect();
+    (trace, ends)
+}
+
 /// Follows the settlements of all stages one after the other, from the dead load on, with constant loads. Each list is
 /// one branch with one trace for each stage with a settlement. There are several lists if the path bifurcates; the
 /// branch of least energy at the bifurcation comes first.
@@ -279,6 +299,7 @@ pub fn settle(scene: &EnergyScene, limits: TraceLimits) -> Vec<Vec<Trace>> {
             held: Box::new(move |share| scene.held(stage, share)),
             control: Control::Factor(0.0),
             unit: 1.0,
+            leap: LEAPS[0],
         };
         let trace = motion.follow(start, limits, &|_| false, 1.0);
         let landing = trace.last().landing.clone();
@@ -323,8 +344,13 @@ pub fn load_path(scene: &EnergyScene, from: &Landing, limits: TraceLimits) -> Tr
     let held = scene.settled_supports();
     let v = scene.load.normalize();
     let origin = v.dot(&from.q);
-    let motion =
-        Motion { scene, held: Box::new(move |_| held.clone()), control: Control::Displacement, unit: scene.span };
+    let motion = Motion {
+        scene,
+        held: Box::new(move |_| held.clone()),
+        control: Control::Displacement,
+        unit: scene.span,
+        leap: LEAPS[1],
+    };
     let landing = land(scene, &scene.settled_supports(), &from.q, None, Control::Displacement);
     let done = |trace: &Trace| {
         let Some(top) = trace.states.iter().max_by(|a, b| a.landing.factor.total_cmp(&b.landing.factor)) else {

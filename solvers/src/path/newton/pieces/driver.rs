@@ -460,8 +460,9 @@ impl<'d> Run<'d> {
     fn end_at_limit_point(&self, tracer: &mut Tracer, factor: f64) -> Option<LoadStepEnding> {
         if matches!(self.range.load_step.end, LoadStepEnd::Factor(_)) {
             tracer.ending.limit_point_end = Some(LimitPointEnd::Target);
-            let target = self.range.target;
-            let why = format!("the path has a limit point at factor {factor}, before the factor {target} of its stage");
+            let (target, load_step) = (self.range.target, self.range.load_step);
+            let of = if load_step.gravity { "gravity" } else { "its stage" };
+            let why = format!("the path has a limit point at factor {factor}, before the factor {target} of {of}");
             return Some(end_path(tracer, Status::LimitPoint, why));
         }
         if !tracer.in_force.strategy.passes_limit_points() {
