@@ -31,6 +31,31 @@ fn published(metadata: &Json) -> Vec<(&Json, PathBuf)> {
         .collect()
 }
 
+/// Returns the number of examples in the comments of a file: code without a language, or in Rust.
+fn examples(text: &str) -> usize {
+    let comment = |line: &str| line.trim_start().trim_start_matches("//!").trim_start_matches("///").trim().to_string();
+    let fences = text.lines().map(comment).filter(|line| line.starts_with("```"));
+    // Every second fence closes.
+    fences.step_by(2).filter(|fence| ["```", "```rust", "```no_run", "```compile_fail"].contains(&&**fence)).count()
+}
+
+/// Crates whose examples are not tested have none.
+#[test]
+fn crates_without_documentation_tests_have_no_examples() {
+    let metadata = metadata(&workspace());
+    let list = |value: &Json| value.as_array().expect("a list").clone();
+    let mut tested = 0;
+    for package in list(&metadata["packages"]).iter().filter(|package| package["source"].is_null()) {
+        let folder = Path::new(text(package, "manifest_path")).parent().expect("a folder").join("src");
+        let is_tested = list(&package["targets"]).iter().any(|target| target["doctest"] == true);
+        let mut found = 0;
+        each_source(&folder, &mut |_, text| found += examples(text));
+        assert!(is_tested || found == 0, "{}: {found} examples, but doctest = false", text(package, "name"));
+        tested += usize::from(is_tested);
+    }
+    assert_eq!(tested, 3, "core, plug and the command line have examples");
+}
+
 /// The path without `..`.
 fn plain(path: &Path) -> PathBuf {
     let mut out = PathBuf::new();
