@@ -12,7 +12,8 @@
 //!
 //! The reference of a scene is the answer that most runs share. `FAMILY` is one family, several with commas, or absent
 //! for all. Scenes with an even seed, and all of `finite`, have finite displacements; `KINEMATICS=finite` or `small`
-//! overrides this. `SOFTER=1000` divides all stiffnesses, so that many scenes do not carry their weight. `OUT` writes the study of each run that disagrees and its `default`; `ALL=1` writes every run.
+//! overrides this. `SOFTER=1000` divides all stiffnesses by 1000, so that many scenes do not carry their weight. `OUT`
+//! writes the study of each run that disagrees and its `default`; `ALL=1` writes every run.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use voussoir::core::limit::Status;

@@ -6,9 +6,6 @@ use super::potential::evaluate;
 use super::scene::{EnergyScene, Held};
 use nalgebra::DVector;
 
-/// Step over a point without a stable state nearby, large enough for the two sides of a bifurcation to differ: in
-/// shares of a settlement, of the load's displacement in spans, and in shares of gravity.
-const LEAPS: [f64; 3] = [1e-3, 1e-6, 1e-5];
 /// Greatest number of branches of settlements.
 const MOST_BRANCHES: usize = 4;
 
@@ -96,7 +93,7 @@ struct Motion<'a> {
     control: Control,
     /// Length of one unit of the parameter \[m\].
     unit: f64,
-    /// Step over a point without a stable state, in units.
+    /// Step over a point without a stable state nearby, in units; the two sides of a bifurcation differ after it.
     leap: f64,
 }
 
@@ -261,21 +258,20 @@ pub fn dead_load(scene: &EnergyScene) -> Landing {
 }
 
 /// Follows gravity from a thousandth of it to all of it, with the supports in their first positions. The parameter is the
-/// share of gravity. Returns the path, and the shares just below and above each
-/// state without a stable state nearby.
+/// share of gravity. Returns the path, and the shares just below and above each state without a stable state nearby.
 pub fn weigh(scene: &EnergyScene) -> (Trace, Vec<[f64; 2]>) {
     let held = move |share: f64| {
         let mut held = scene.held(0, 0.0);
         held.gravity *= share;
         held
     };
-    let first = 1e-3;
+    let (first, leap) = (1e-3, 1e-5);
     let landing = land(scene, &held(first), &DVector::zeros(scene.unknowns()), None, Control::Factor(0.0));
-    let motion = Motion { scene, held: Box::new(held), control: Control::Factor(0.0), unit: 1.0, leap: LEAPS[2] };
+    let motion = Motion { scene, held: Box::new(held), control: Control::Factor(0.0), unit: 1.0, leap };
     let limits = TraceLimits { largest: 0.02, ..TraceLimits::default() };
     let trace = motion.follow(State { at: first, landing }, limits, &|_| false, 1.0);
-    let broken = trace.broken.as_ref().map(|_| [trace.last().at, trace.last().at + LEAPS[2]]);
-    let ends = trace.snaps.iter().map(|snap| [snap.at - LEAPS[2], snap.at]).chain(broken).collect();
+    let broken = trace.broken.as_ref().map(|_| [trace.last().at, trace.last().at + leap]);
+    let ends = trace.snaps.iter().map(|snap| [snap.at - leap, snap.at]).chain(broken).collect();
     (trace, ends)
 }
 
@@ -299,7 +295,7 @@ pub fn settle(scene: &EnergyScene, limits: TraceLimits) -> Vec<Vec<Trace>> {
             held: Box::new(move |share| scene.held(stage, share)),
             control: Control::Factor(0.0),
             unit: 1.0,
-            leap: LEAPS[0],
+            leap: 1e-3,
         };
         let trace = motion.follow(start, limits, &|_| false, 1.0);
         let landing = trace.last().landing.clone();
@@ -349,7 +345,7 @@ pub fn load_path(scene: &EnergyScene, from: &Landing, limits: TraceLimits) -> Tr
         held: Box::new(move |_| held.clone()),
         control: Control::Displacement,
         unit: scene.span,
-        leap: LEAPS[1],
+        leap: 1e-6,
     };
     let landing = land(scene, &scene.settled_supports(), &from.q, None, Control::Displacement);
     let done = |trace: &Trace| {

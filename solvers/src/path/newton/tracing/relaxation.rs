@@ -7,12 +7,12 @@
 //!
 //! Each step is an equilibrium with the additional stiffness κ B. It is unique if κ is greater than the magnitude of
 //! the least, negative eigenvalue of K. A step at whose end κ is smaller is repeated with more damping, and so is a step
-//! whose energies are not in balance; the first one is repeated with a smaller push along the critical mode, because next
-//! to a bifurcation a stable state may be near. Friction keeps its history from step to step. In every step the potential falls by
-//! the dissipation of the wrenches and of friction. The descent therefore ends in the equilibrium to which the state
-//! would fall slowly, never in one beyond a rise of its energy. The end counts as an equilibrium if it holds without
-//! damping and has positive second-order work. The work of the viscous wrenches is the energy that a real fall releases:
-//! the decrease of the potential minus the work of friction.
+//! whose energies are not in balance. The first step is repeated with a smaller push along the critical mode instead:
+//! next to a bifurcation a stable state may be near. Friction keeps its history from step to step. In every step the
+//! potential falls by the dissipation of the wrenches and of friction. The descent therefore ends in the equilibrium to
+//! which the state would fall slowly, never in one beyond a rise of its energy. The end counts as an equilibrium if it
+//! holds without damping and has positive second-order work. The work of the viscous wrenches is the energy that a real
+//! fall releases: the decrease of the potential minus the work of friction.
 
 use super::descent_energy::{DescentState, descent_step, free_motions};
 use crate::path::newton::model::control::Control;
@@ -26,7 +26,7 @@ use crate::settings::SETTINGS;
 
 /// Greatest number of steps of a descent.
 const MAX_STEPS: usize = 400;
-/// Greatest number of successive increases of the damping.
+/// Greatest number of successive repetitions of a step.
 const MAX_FAILURES: u32 = 12;
 
 /// The end of a descent.
