@@ -254,6 +254,8 @@ fn an_arch_that_its_weight_snaps_through_ends_at_a_limit_point_of_gravity() {
         assert_close(limit.factor, 0.702285227, 1e-8);
         assert!(limit.gravity && result.path.first_limit_point.is_none());
         assert_eq!(result.path.end_is_checked, Some(true));
+        let words = voussoir::figures::format::headline(&result, &[]);
+        assert_eq!(words, "limit point at 0.7023 of the gravity of stage \"dead\"");
     }
 }
 
