@@ -275,7 +275,7 @@ impl PathChain {
         if self.structure.yields() {
             return Err("rates of blocks that yield are checked for one loading set only".into());
         }
-        let equations = RateEquations::new(&self.structure, &link.state, self.finite)?;
+        let equations = RateEquations::new(&self.structure, &link.state, self.finite);
         Ok((link, equations, self.modes(&link.state, &link.openings)))
     }
 

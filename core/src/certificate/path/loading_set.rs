@@ -235,7 +235,7 @@ impl PathChain {
             }
         }
         let contacts = structure.contacts.len();
-        let equations = RateEquations::new(&structure, &link.state, self.finite)?;
+        let equations = RateEquations::new(&structure, &link.state, self.finite);
         let (mut forces, mut gaps, mut factor) = (vec![[0.0; 2]; contacts], vec![[0.0; 2]; contacts], 0.0);
         for (index, gap) in gaps.iter_mut().enumerate() {
             let (Some(ahead), Some(behind)) = (tangents[index], behind[index]) else { continue };

@@ -7,11 +7,8 @@
 //! They are stored by columns, one for each rate of a force, of a motion and of λ. With small displacements E = Gᵀ, K =
 //! 0.
 
-use super::displaced_rates::residual_rates;
+use super::displaced_rates::{Moving, ResidualRates};
 use crate::path::{Contact, LoadStepEnd, PathProblem, PathRate, PathState};
-
-/// Greatest number of unknowns with finite displacements; each unknown needs one pass over all contact points.
-const MAX_FINITE_UNKNOWNS: usize = 3000;
 
 /// An entry of a column.
 type Entry = (usize, f64);
@@ -45,10 +42,7 @@ pub struct RateEquations {
 
 impl RateEquations {
     /// Derives the equations at a state.
-    ///
-    /// # Errors
-    /// With finite displacements, if there are too many unknowns.
-    pub fn new(problem: &PathProblem, state: &PathState, finite: bool) -> Result<Self, String> {
+    pub fn new(problem: &PathProblem, state: &PathState, finite: bool) -> Self {
         let step = &problem.load_steps[state.load_step];
         let mut settlements = vec![[0.0; 3]; problem.bodies.len()];
         for (body, motion) in &step.loading.settlements {
@@ -69,11 +63,11 @@ impl RateEquations {
             length: problem.length,
         };
         if finite {
-            equations.derive_finite(problem, state)?
+            equations.derive_finite(problem, state)
         } else {
             equations.derive_small(problem, state)
         }
-        Ok(equations)
+        equations
     }
 
     /// Derives the columns for small displacements.
@@ -138,37 +132,27 @@ impl RateEquations {
     }
 
     /// Derives the columns for finite displacements; each is a derivative with respect to one unknown.
-    fn derive_finite(&mut self, problem: &PathProblem, state: &PathState) -> Result<(), String> {
+    fn derive_finite(&mut self, problem: &PathProblem, state: &PathState) {
         let (contacts, bodies) = (problem.contacts.len(), problem.bodies.len());
-        if 2 * contacts + 3 * bodies > MAX_FINITE_UNKNOWNS {
-            return Err(format!("more than {MAX_FINITE_UNKNOWNS} unknowns: rates are not checked"));
-        }
+        let held = &self.held;
+        let column = |rates: ResidualRates| {
+            let free = rates.unbalanced.iter().filter(|(body, _)| !held[*body]);
+            let free = free.flat_map(|(body, wrench)| [0, 1, 2].map(|i| (3 * body + i, wrench[i].rate)));
+            let gap = rates.gaps.iter().flat_map(|(contact, gap)| [0, 1].map(|i| (2 * contact + i, gap[i].rate)));
+            let moves = |entry: &Entry| entry.1 != 0.0;
+            Column { equilibrium: free.filter(moves).collect(), gap: gap.filter(moves).collect() }
+        };
         let still =
             PathRate { factor: 0.0, force: vec![[0.0; 2]; contacts], gap: Vec::new(), motion: vec![[0.0; 3]; bodies] };
-        let column = |held: &[bool], along: &PathRate| {
-            let rates = residual_rates(problem, state, along);
-            let free = rates.unbalanced.as_flattened().iter().map(|d| d.rate).enumerate();
-            let free = free.filter(|(i, rate)| !held[i / 3] && *rate != 0.0);
-            let gap = rates.gaps.as_flattened().iter().map(|d| d.rate).enumerate().filter(|(_, rate)| *rate != 0.0);
-            Column { equilibrium: free.collect(), gap: gap.collect() }
+        let mut at_rest = Moving::new(problem, state, &still);
+        self.forces = (0..2 * contacts).map(|index| column(at_rest.by_force(index / 2, index % 2))).collect();
+        let of_motion = |index: usize| match held[index / 3] {
+            true => Column::default(),
+            false => column(at_rest.by_motion(index / 3, index % 3)),
         };
-        let mut along = still.clone();
-        for index in 0..2 * contacts {
-            along.force[index / 2][index % 2] = 1.0;
-            self.forces.push(column(&self.held, &along));
-            along.force[index / 2][index % 2] = 0.0;
-        }
-        for index in 0..3 * bodies {
-            if self.held[index / 3] {
-                self.motions.push(Column::default());
-                continue;
-            }
-            along.motion[index / 3][index % 3] = 1.0;
-            self.motions.push(column(&self.held, &along));
-            along.motion[index / 3][index % 3] = 0.0;
-        }
-        self.load = column(&self.held, &PathRate { factor: 1.0, motion: self.settlements.clone(), ..still });
-        Ok(())
+        self.motions = (0..3 * bodies).map(of_motion).collect();
+        let loaded = PathRate { factor: 1.0, motion: self.settlements.clone(), ..still };
+        self.load = column(Moving::new(problem, state, &loaded).rates());
     }
 
     /// Returns the sum of each row over all columns, and the sum of the sizes of its terms. Rows of equilibrium come

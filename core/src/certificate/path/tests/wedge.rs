@@ -49,7 +49,7 @@ fn proof() -> ModeTree {
 /// Returns the verdict of a proof at the slipping state under a force λ `live`.
 fn verdict(live: Vec2, tree: &ModeTree, active: bool) -> Result<usize, String> {
     let (problem, state) = (wedged(live), slipping());
-    let equations = RateEquations::new(&problem, &state, false).expect("equations");
+    let equations = RateEquations::new(&problem, &state, false);
     let modes = modes(&problem, &state, active);
     RateProblem { equations: &equations, modes: &modes }.check_none_rises(tree)
 }
@@ -127,7 +127,7 @@ fn a_tree_with_too_many_leaves_is_refused() {
 #[test]
 fn a_rate_is_checked_with_its_mode_and_its_sign() {
     let (problem, state) = (wedged(Vec2::new(-1.0, 0.0)), slipping());
-    let equations = RateEquations::new(&problem, &state, false).expect("equations");
+    let equations = RateEquations::new(&problem, &state, false);
     let modes = modes(&problem, &state, true);
     let rates = RateProblem { equations: &equations, modes: &modes };
     let [kxx, kxy] = stiffness();
