@@ -5,11 +5,12 @@ use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
+use std::sync::OnceLock;
 use voussoir_core::limit::Status;
 use voussoir_study::regular_file::open_regular;
 use voussoir_study::results::case_with_path::read_case;
 use voussoir_study::results::sealed_line::case_in;
-use voussoir_study::results::{FinishedCases, TakeCases};
+use voussoir_study::results::{CaseResult, FinishedCases, TakeCases};
 use voussoir_study::side_by_side::{in_order, threads};
 
 /// Greatest length of a line; a case of a million blocks has half a gigabyte.
@@ -54,6 +55,8 @@ struct Place {
 pub struct CaseLines {
     files: Vec<File>,
     places: Vec<Place>,
+    /// All cases, once they are read, if they are one batch.
+    read: OnceLock<Vec<CaseResult>>,
 }
 
 impl CaseLines {
@@ -61,6 +64,7 @@ impl CaseLines {
     /// lines: lines that were cut short, have a wrong checksum or do not contain a case. Blank lines and the first and
     /// last line of a part are not counted.
     pub fn add(&mut self, path: &Path, from: u64, take: &mut dyn FnMut(&LineHead) -> bool) -> io::Result<usize> {
+        self.read.take();
         let file = self.files.len() as u32;
         self.files.push(open_regular(path, MAX_FILE_BYTES)?);
         let mut reader = BufReader::with_capacity(1 << 16, open_regular(path, MAX_FILE_BYTES)?);
@@ -91,6 +95,7 @@ impl CaseLines {
 
     /// Keeps the lines for which `keep` is true, by their position in the order.
     pub fn retain(&mut self, keep: &[bool]) {
+        self.read.take();
         let mut keep = keep.iter();
         self.places.retain(|_| keep.next().copied().unwrap_or(false));
     }
@@ -98,6 +103,7 @@ impl CaseLines {
     /// Sorts the lines by id. If a case has several lines, the last one is kept. Returns the ids that had more than one
     /// line.
     pub fn sort(&mut self) -> Vec<usize> {
+        self.read.take();
         self.places.sort_by_key(|place| place.id);
         self.places.reverse();
         let mut doubles = Vec::new();
@@ -127,6 +133,23 @@ impl CaseLines {
         Ok(line)
     }
 
+    /// Returns all cases if they are one batch, which is read only once; otherwise `None`.
+    fn one_batch(&self) -> io::Result<Option<&[CaseResult]>> {
+        let bytes: usize = self.places.iter().map(|place| place.length as usize).sum();
+        if bytes >= BYTES_AT_ONCE || self.places.len() > AT_ONCE {
+            return Ok(None);
+        }
+        if self.read.get().is_none() {
+            let mut all = Vec::with_capacity(self.places.len());
+            self.hand_over(0..self.places.len(), &mut |cases| {
+                all.extend_from_slice(cases);
+                Ok(())
+            })?;
+            self.read.set(all).ok();
+        }
+        Ok(self.read.get().map(Vec::as_slice))
+    }
+
     /// Passes the cases at these positions to `take`, in batches.
     fn hand_over(&self, places: impl Iterator<Item = usize>, take: TakeCases) -> io::Result<()> {
         let (mut texts, mut bytes) = (Vec::new(), 0);
@@ -151,10 +174,17 @@ impl CaseLines {
 
 impl FinishedCases for CaseLines {
     fn each(&self, take: TakeCases) -> io::Result<()> {
-        self.hand_over(0..self.places.len(), take)
+        match self.one_batch()? {
+            Some(all) => take(all),
+            None => self.hand_over(0..self.places.len(), take),
+        }
     }
 
     fn each_of(&self, ids: &BTreeSet<usize>, take: TakeCases) -> io::Result<()> {
+        if let Some(all) = self.one_batch()? {
+            let own: Vec<CaseResult> = all.iter().filter(|case| ids.contains(&case.label.id)).cloned().collect();
+            return if own.is_empty() { Ok(()) } else { take(&own) };
+        }
         let place = |id: &usize| self.places.binary_search_by_key(id, |place| place.id).ok();
         self.hand_over(ids.iter().filter_map(place), take)
     }

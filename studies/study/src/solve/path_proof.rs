@@ -6,7 +6,7 @@
 
 use super::limit_points::asked_end;
 use crate::results::EndProof;
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use voussoir_core::certificate::{PathChain, ray_residual, tolerance};
 use voussoir_core::limit::Status;
 use voussoir_core::path::{
@@ -32,6 +32,8 @@ pub(super) struct PathProof<'a> {
     solved: &'a PathAnswer,
     /// True if a limit point is proved for one loading set only.
     one_loading_set: Cell<bool>,
+    /// States that are proved limit points; several questions need each proof.
+    proved: RefCell<Vec<PathState>>,
 }
 
 /// Returns 1 if a load step raises its factor, otherwise −1.
@@ -50,7 +52,7 @@ impl<'a> PathProof<'a> {
         settings: &'a PathSettings,
         solved: &'a PathAnswer,
     ) -> Self {
-        PathProof { chain, problem, settings, solved, one_loading_set: Cell::new(false) }
+        PathProof { chain, problem, settings, solved, one_loading_set: Cell::new(false), proved: RefCell::default() }
     }
 
     /// Checks the end that the solver claims.
@@ -150,12 +152,21 @@ impl<'a> PathProof<'a> {
 
     /// Checks that no rate raises the load at a state of the chain; if laws have a history, no rate of one loading set.
     fn limit_point(&self, state: &PathState) -> Result<(), String> {
-        let witnesses: Vec<&Witness> = self.witnesses(state).collect();
-        if !self.chain.has_history() {
-            return self.chain.check_none_rises(state, &witnesses);
+        let place = |own: &PathState| (own.load_step, own.factor);
+        let is_same =
+            |own: &PathState| place(own) == place(state) && own.force == state.force && own.motion == state.motion;
+        if self.proved.borrow().iter().any(is_same) {
+            return Ok(());
         }
-        self.one_loading_set.set(true);
-        self.chain.check_loading_set(state, &witnesses)
+        let witnesses: Vec<&Witness> = self.witnesses(state).collect();
+        if self.chain.has_history() {
+            self.one_loading_set.set(true);
+            self.chain.check_loading_set(state, &witnesses)?;
+        } else {
+            self.chain.check_none_rises(state, &witnesses)?;
+        }
+        self.proved.borrow_mut().push(state.clone());
+        Ok(())
     }
 
     /// Returns the witnesses at a state.
