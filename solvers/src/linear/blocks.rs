@@ -2,7 +2,7 @@
 //! other unknowns.
 //!
 //! The points of one joint are a group and are numbered consecutively. Groups on the same elastic body are coupled by a
-//! block, stored column by column, so that products, sums of rows and the assembly of factors run along columns. A
+//! block, stored column by column, so that products and the assembly of factors run along columns. A
 //! group that touches no elastic body has only a diagonal.
 
 use super::csr::CsrMatrix;
@@ -229,19 +229,6 @@ impl BlockMatrix {
             *size += (d * x).abs();
         }
     }
-
-    /// Computes out += wᵀ A.
-    fn add_weighted(&self, w: &[f64], out: &mut [f64]) {
-        for group in 0..self.pattern.groups() {
-            let w = &w[self.pattern.rows(group)];
-            if w.iter().any(|w| *w != 0.0) {
-                for (columns, block) in self.blocks(group) {
-                    super::dense::add_row_block(&mut out[columns], w, block);
-                }
-            }
-        }
-        out.iter_mut().zip(self.diagonal.iter().zip(w)).for_each(|(out, (d, w))| *out += d * w);
-    }
 }
 
 /// Rows of contact points over all unknowns: two rows per point.
@@ -288,21 +275,13 @@ impl GapRows {
         self.forces.add_product_and_sizes(&x[..self.len()], &mut out, &mut sizes);
         (out, sizes)
     }
-
-    /// Adds the sum of weighted rows.
-    pub fn add_weighted(&self, weights: &[f64], out: &mut [f64]) {
-        self.forces.add_weighted(weights, &mut out[..weights.len()]);
-        for (i, w) in weights.iter().enumerate().filter(|(_, w)| **w != 0.0) {
-            self.others.row(i).iter().for_each(|&(j, v)| out[j] += w * v);
-        }
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Products, sums of rows, rows and 2 × 2 blocks agree with the matrix given by entries.
+    /// Products, rows and 2 × 2 blocks agree with the matrix given by entries.
     #[test]
     fn blocks_are_the_matrix_entry_by_entry() {
         let pattern = Pattern::new(vec![0, 0, 1, 1, 1, 2, 3], [(0, 0), (1, 1), (0, 1), (1, 2), (2, 2)]);
@@ -326,7 +305,6 @@ mod tests {
         others.iter().enumerate().for_each(|(i, row)| row.iter().for_each(|&(j, v)| dense[i][j] = v));
         let rows = GapRows { forces, others: CsrMatrix::from_rows(&others) };
         let x: Vec<f64> = (0..size).map(|i| if i % 5 == 1 { 0.0 } else { value(i, 8) }).collect();
-        let w: Vec<f64> = (0..2 * points).map(|i| if (4..10).contains(&i) { 0.0 } else { value(i, 5) }).collect();
         let close = |a: f64, b: f64| (a - b).abs() < 1e-13;
         let (product, sizes) = rows.product_and_sizes(&x);
         for i in 0..2 * points {
@@ -338,8 +316,5 @@ mod tests {
             let own: Vec<(usize, f64)> = dense[i].iter().copied().enumerate().filter(|e| e.1 != 0.0).collect();
             assert_eq!(row, own);
         }
-        let mut sum = vec![0.0; size];
-        rows.add_weighted(&w, &mut sum);
-        assert!((0..size).all(|j| close(sum[j], (0..2 * points).map(|i| w[i] * dense[i][j]).sum())));
     }
 }

@@ -15,25 +15,24 @@
 //! SIAM J. Matrix Anal. Appl. 12, 469-483).
 
 use super::factorised::{Factorised, row_error};
-use super::inner;
+use super::{inner, largest};
 use crate::settings::SETTINGS;
+use std::cell::OnceCell;
 use std::rc::Rc;
 
 /// Greatest number of entries of a control row that is part of the matrix.
 const SPARSE: usize = 4;
 
-/// The last row of factorised equations.
-enum Last {
-    /// The control.
-    Control(Vec<(usize, f64)>),
-    /// An unknown that is held, with w.
-    Unknown(Vec<f64>),
-}
-
-/// Factorised equations without a control: they serve every control that is a border.
+/// Factorised equations with a row of few unknowns at the end: they serve this row as a control, and every control that is
+/// a border.
 pub struct BorderedFactors<E> {
     equations: E,
-    last: Last,
+    /// A control of few unknowns, or the row of a held unknown.
+    last: Vec<(usize, f64)>,
+    /// Number of unknowns, and of contact forces, which come first.
+    sizes: [usize; 2],
+    /// w; `None` if the last row hardly depends on it.
+    along: OnceCell<Option<Vec<f64>>>,
 }
 
 /// Factorised equations with a control.
@@ -62,27 +61,38 @@ impl<E: Factorised> BorderedFactors<E> {
         control: &[f64],
         mut factorise: impl FnMut(Vec<(usize, f64)>) -> Option<E>,
     ) -> Option<Self> {
-        let size = control.len();
-        let last = size - 1;
+        let sizes = [control.len(), 2 * contacts];
+        let with =
+            |equations: E, last: Vec<(usize, f64)>| BorderedFactors { equations, last, sizes, along: OnceCell::new() };
         if let Some(few) = few(control) {
-            let equations = factorise(few.clone())?;
-            return Some(BorderedFactors { equations, last: Last::Control(few) });
+            return Some(with(factorise(few.clone())?, few));
         }
-        let end: Vec<f64> = (0..size).map(|i| f64::from(u8::from(i == last))).collect();
-        let mut held = 2 * contacts + greatest(&control[2 * contacts..]);
-        for again in [true, false] {
-            let equations = factorise(vec![(held, 1.0)])?;
-            if let Some(w) = equations.apply(&end) {
-                let most = 2 * contacts + greatest(&w[2 * contacts..]);
-                if !again || w[held].abs() >= SETTINGS.fine * w[most].abs() {
-                    return Some(BorderedFactors { equations, last: Last::Unknown(w) });
-                }
-                held = most;
-            } else {
-                held = last;
-            }
+        let held = sizes[1] + greatest(&control[sizes[1]..]);
+        let first = with(factorise(vec![(held, 1.0)])?, vec![(held, 1.0)]);
+        if first.along().is_some() {
+            return Some(first);
         }
-        None
+        let moves = first.homogeneous();
+        let held = moves.map_or(sizes[0] - 1, |w| sizes[1] + greatest(&w[sizes[1]..]));
+        let again = with(factorise(vec![(held, 1.0)])?, vec![(held, 1.0)]);
+        let w = again.homogeneous()?;
+        Some(BorderedFactors { along: OnceCell::from(Some(w)), ..again })
+    }
+
+    /// Returns the solution of the equations above the last row for zero, of which this row is 1.
+    fn homogeneous(&self) -> Option<Vec<f64>> {
+        let size = self.sizes[0];
+        let end: Vec<f64> = (0..size).map(|i| f64::from(u8::from(i + 1 == size))).collect();
+        self.equations.apply(&end)
+    }
+
+    /// Returns w, if the last row depends on it.
+    fn along(&self) -> Option<&Vec<f64>> {
+        let depends = |w: &Vec<f64>| {
+            let own = self.last.iter().fold(0.0, |a: f64, (_, own)| a.max(own.abs()));
+            1.0 >= SETTINGS.distinct() * own * largest(&w[self.sizes[1]..])
+        };
+        self.along.get_or_init(|| self.homogeneous().filter(depends)).as_ref()
     }
 
     /// Returns the equations; their last row replaces the control.
@@ -92,30 +102,28 @@ impl<E: Factorised> BorderedFactors<E> {
 
     /// Returns true if the factors serve a control.
     pub fn serves(&self, control: &[f64]) -> bool {
-        match (&self.last, few(control)) {
-            (Last::Control(own), Some(few)) => *own == few,
-            (Last::Unknown(_), None) => true,
-            _ => false,
-        }
+        few(control).map_or_else(|| self.along().is_some(), |few| self.last == few)
     }
 
     /// Returns true if the factors serve a control of few unknowns, either directly or as a border with c·w ≠ 0.
     pub fn borders(&self, control: &[f64]) -> bool {
-        let Last::Unknown(w) = &self.last else { return self.serves(control) };
-        let size = control[greatest(control)].abs();
-        let along = inner(control, w).abs();
-        along >= SETTINGS.distinct() * size * w[greatest(w)].abs() && along != 0.0
+        self.serves(control)
+            || self.along().is_some_and(|w| {
+                let size = control[greatest(control)].abs();
+                let along = inner(control, w).abs();
+                along >= SETTINGS.distinct() * size * w[greatest(w)].abs() && along != 0.0
+            })
     }
 }
 
 impl<E: Factorised> BorderedSystem<E> {
     /// Adds a control that the factorised equations serve. `None` if it is orthogonal to w.
     pub fn new(held: Rc<BorderedFactors<E>>, control: &[f64]) -> Option<Self> {
-        let border = match &held.last {
-            Last::Control(_) => None,
-            Last::Unknown(w) => Some((control.to_vec(), Some(inner(control, w)).filter(|along| *along != 0.0)?)),
-        };
-        Some(BorderedSystem { held, border })
+        if few(control).is_some_and(|few| held.last == few) {
+            return Some(BorderedSystem { held, border: None });
+        }
+        let along = Some(inner(control, held.along()?)).filter(|along| *along != 0.0)?;
+        Some(BorderedSystem { held, border: Some((control.to_vec(), along)) })
     }
 
     /// Returns the equations above the control, with the control row or an unknown held in its place.
@@ -126,7 +134,7 @@ impl<E: Factorised> BorderedSystem<E> {
     /// Moves a solution z of the equations above the control along w until c·z has a value. z has the unknowns from
     /// `first`; the control has none before them.
     pub fn onto_control(&self, z: &mut [f64], first: usize, value: f64) {
-        let (Last::Unknown(w), Some((control, along))) = (&self.held.last, &self.border) else { return };
+        let (Some((control, along)), Some(w)) = (&self.border, self.held.along()) else { return };
         let t = (value - inner(&control[first..], z)) / along;
         z.iter_mut().zip(&w[first..]).for_each(|(z, w)| *z += t * w);
     }

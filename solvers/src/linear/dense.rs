@@ -44,20 +44,6 @@ fn add_columns_and_sizes<S: Simd>(_: S, out: &mut [f64], sizes: &mut [f64], a: &
     }
 }
 
-/// Computes out += wᵀ A, A stored column by column.
-pub fn add_row_block(out: &mut [f64], w: &[f64], a: &[f64]) {
-    if !w.is_empty() {
-        with_vectors!('a, add_row_columns(out: &'a mut [f64], w: &'a [f64], a: &'a [f64]) -> ());
-    }
-}
-
-#[inline(always)]
-fn add_row_columns<S: Simd>(_: S, out: &mut [f64], w: &[f64], a: &[f64]) {
-    for (out, column) in out.iter_mut().zip(a.chunks_exact(w.len())) {
-        *out += dot(w, column);
-    }
-}
-
 /// Adds A x and A y to two vectors; each entry of A is read once.
 #[inline(always)]
 fn add_to_two<S: Simd>(simd: S, (first, second): (&mut [f64], &mut [f64]), a: &[f64], (x, y): (&[f64], &[f64])) {

@@ -3,10 +3,10 @@
 use super::monitors::{Monitor, Monitors, What};
 use super::piece::Piece;
 use crate::contact::active_point::ActivePoint;
+use crate::contact::facet::dot;
 use crate::contact::mode::ContactMode;
 use crate::path::newton::model::state::{State, Tangent};
 use crate::path::newton::model::system::StepSystem;
-use crate::path::newton::quantities::control_row::add_weighted_gaps;
 use crate::path::newton::solve::limit_point_test::{
     AfterEvent, EventPoints, active_facets, largest_force, normalised, rate_after_event,
 };
@@ -56,26 +56,19 @@ fn flowing(system: &StepSystem, contact: usize, mode: ContactMode) -> Vec<u8> {
     }
 }
 
-/// Adds to a row the quantities that grow when a point changes from one mode to another: the multipliers of facets that
-/// begin to flow, the slack of facets that stop.
-fn add_entering(
-    system: &StepSystem,
-    (force, gap): (&mut [f64], &mut [f64]),
-    contact: usize,
-    [from, to]: [ContactMode; 2],
-) {
+/// Returns the sum of the rates of quantities that grow when a point changes from one mode to another: the multipliers of
+/// facets that begin to flow, the slack of facets that stop.
+fn entering(system: &StepSystem, rate: &Tangent, contact: usize, [from, to]: [ContactMode; 2]) -> f64 {
     let facets = system.law(contact).map_or(&[][..], |law| &law.facets);
     let [before, after] = [from, to].map(|mode| flowing(system, contact, mode));
     let u = system.units();
-    for f in after.iter().filter(|f| !before.contains(f)) {
+    let multiplier = |f: &u8| {
         let d = facets[*f as usize].flow;
-        let square = d[0] * d[0] + d[1] * d[1];
-        (0..2).for_each(|k| gap[2 * contact + k] -= d[k] / square / u.displacement);
-    }
-    for f in before.iter().filter(|f| !after.contains(f)) {
-        let a = facets[*f as usize].normal;
-        (0..2).for_each(|k| force[2 * contact + k] -= a[k]);
-    }
+        -dot(d, rate.gap[contact]) / dot(d, d) / u.displacement
+    };
+    let slack = |f: &u8| -dot(facets[*f as usize].normal, rate.force[contact]) / u.force;
+    let begin: f64 = after.iter().filter(|f| !before.contains(f)).map(multiplier).sum();
+    begin + before.iter().filter(|f| !after.contains(f)).map(slack).sum::<f64>()
 }
 
 /// Returns the rate with some modes, in the sense in which points enter them. `None` if there is none.
@@ -87,21 +80,13 @@ fn entering_rate(
     modes: &[ContactMode],
 ) -> Option<Tangent> {
     let equations = system.equations(state);
-    let mut row = vec![0.0; system.size()];
-    let mut by_gap = vec![0.0; 2 * state.gap.len()];
-    let stops_flowing = |c: usize| monitors.iter().any(|m| m.contact == c && matches!(m.what, What::Flow(_)));
-    for c in (0..modes.len()).filter(|c| modes[*c] != state.mode[*c]) {
-        if !stops_flowing(c) {
-            add_entering(system, (&mut row, &mut by_gap), c, [state.mode[c], modes[c]]);
-        }
-    }
-    add_weighted_gaps(system, &mut row, &by_gap, &equations);
-    if row.iter().all(|x| *x == 0.0) {
-        // A point that stops flowing has the same rate on both sides of the event.
-        row.copy_from_slice(&piece.row);
-    }
     let turned = State { mode: modes.to_vec(), ..state.clone() };
-    tangent_of_modes(system, &turned, &equations, &row, Accuracy::Fine)
+    let rate = tangent_of_modes(system, &turned, &equations, &piece.row, Accuracy::Fine)?;
+    let stops_flowing = |c: usize| monitors.iter().any(|m| m.contact == c && matches!(m.what, What::Flow(_)));
+    let enters = (0..modes.len()).filter(|c| modes[*c] != state.mode[*c] && !stops_flowing(*c));
+    // A point that stops flowing has the same rate on both sides of the event.
+    let sense: f64 = enters.map(|c| entering(system, &rate, c, [state.mode[c], modes[c]])).sum();
+    Some(if sense < 0.0 { rate.scaled(-1.0) } else { rate })
 }
 
 /// Returns true if a rate violates none of its modes immediately.

@@ -1,7 +1,6 @@
 //! The last row of the linear equations of a step: the gradient of its control.
 
 use crate::path::newton::model::control::Control;
-use crate::path::newton::model::equations::Equations;
 use crate::path::newton::model::state::State;
 use crate::path::newton::model::system::StepSystem;
 
@@ -23,15 +22,6 @@ pub fn control_value(system: &StepSystem, start: &State, state: &State, control:
         Control::Factor(target) => (state.factor - target) / system.units().factor,
         Control::Along { row, length } => along(system, start, state, row) - length,
     }
-}
-
-/// Adds weighted gaps to a row over the scaled unknowns.
-pub fn add_weighted_gaps(system: &StepSystem, row: &mut [f64], by_gap: &[f64], equations: &Equations) {
-    if by_gap.iter().all(|w| *w == 0.0) {
-        return;
-    }
-    let weights: Vec<f64> = by_gap.iter().map(|weight| weight * system.units().displacement).collect();
-    equations.gaps.add_weighted(&weights, row);
 }
 
 /// Returns row · (x − x_start) over the scaled motions and the scaled factor.
