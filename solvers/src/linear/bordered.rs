@@ -105,7 +105,7 @@ impl<E: Factorised> BorderedFactors<E> {
         few(control).map_or_else(|| self.along().is_some(), |few| self.last == few)
     }
 
-    /// Returns true if the factors serve a control of few unknowns, either directly or as a border with c·w ≠ 0.
+    /// Returns true if the factors serve a control, either directly or as a border with c·w ≠ 0.
     pub fn borders(&self, control: &[f64]) -> bool {
         self.serves(control)
             || self.along().is_some_and(|w| {

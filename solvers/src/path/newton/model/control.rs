@@ -10,6 +10,8 @@ pub enum Control {
     Factor(f64),
     /// Along a row over the scaled unknowns: row · (x − x_start) = length.
     Along { row: Rc<Vec<f64>>, length: f64 },
+    /// A quantity of a contact point that is zero: offset + by_force · r + by_gap · g \[units\].
+    Zero { contact: usize, offset: f64, by_force: [f64; 2], by_gap: [f64; 2] },
 }
 
 /// A monitor of a problem.

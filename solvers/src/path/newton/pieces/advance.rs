@@ -124,6 +124,7 @@ impl Step<'_, '_> {
         let rate = self.piece.rate_at(self.system, &state)?;
         let step = chord(self.start, &state);
         let moved = scaled_row(self.system, &step);
+        let length = inner(&moved, &self.piece.row);
         let away: f64 = moved.iter().zip(self.piece.row.iter()).map(|(x, t)| (x - length * t).powi(2)).sum();
         let error = away.sqrt() / length.abs().max(1e-300);
         if error > self.system.limits.branch + SETTINGS.inequality() / length.abs().max(1e-300) {
@@ -147,6 +148,13 @@ impl Step<'_, '_> {
         let size =
             before.abs().max(after.abs()).max(SETTINGS.same_rate() * end.factor.abs().max(self.system.units().factor));
         (gained - 0.5 * (before + after)).abs() / size
+    }
+
+    /// Computes the state at which the monitor that ends first by its rate, at a length, is zero.
+    fn landing(&mut self, low: &Trial, first: usize, length: f64) -> Option<Trial> {
+        let control = self.piece.monitors.0.get(first)?.control(self.system, self.start, &self.piece.tangent)?;
+        let found = self.controlled(&low.end, length, &control)?;
+        (found.end.length > 0.0 && found.end.error <= SETTINGS.most_error).then_some(found)
     }
 
     /// Computes the state at the target, if a step of a length reaches it by its rate and all modes hold there.
@@ -195,15 +203,26 @@ pub(super) fn advance(
     let mut step = Step { system, start, piece, watched };
     let readings = step.readings(start, &piece.tangent);
     let low = Trial { end: StepEnd::first(start, piece), readings };
-    let crossing = first_crossing(&low.readings);
+    let (first, crossing) = first_crossing(&low.readings);
     // Beyond the end of a branch of a law of tractions a state along the present tangent may not exist.
     let of_branch = step.branch_crossing(&low.readings);
+    let lands = crossing < of_branch && SETTINGS.beyond * crossing <= length;
     let length = length.min(if of_branch <= crossing { of_branch } else { SETTINGS.beyond * crossing });
     if let Some(end) = step.reaching_target(&low.end, length) {
         return Advance::Target(end);
     }
-    let Some(high) = step.trial(&low.end, length) else { return Advance::Failed };
     let violated = |trial: &Trial| trial.readings.iter().any(Reading::is_violated);
+    if lands && let Some(found) = step.landing(&low, first, crossing) {
+        if violated(&found) {
+            return locate(&mut step, low, found);
+        }
+        let monitors = found.readings.len() - 2;
+        let hits: Vec<usize> = (0..monitors).filter(|i| found.readings[*i].leaves()).collect();
+        if hits.contains(&first) && hidden_root(&low, &found, step.watched.sense.is_some()).is_none() {
+            return Advance::Event(found.end, hits);
+        }
+    }
+    let Some(high) = step.trial(&low.end, length) else { return Advance::Failed };
     if violated(&high) {
         return locate(&mut step, low, high);
     }
@@ -239,13 +258,14 @@ fn at_branch_end(step: &mut Step, low: Trial, mut high: Trial) -> Advance {
     Advance::Whole(high.end)
 }
 
-/// Returns the length at which the first monitor would be zero with constant rates.
-pub(super) fn first_crossing(readings: &[Reading]) -> f64 {
-    let crossing = |reading: &Reading| {
+/// Returns the first monitor that would be zero with constant rates, and the length up to there.
+pub(super) fn first_crossing(readings: &[Reading]) -> (usize, f64) {
+    let crossing = |(i, reading): (usize, &Reading)| {
         let rate = reading.rate.filter(|rate| *rate < 0.0 && reading.value > reading.tolerance)?;
-        Some(reading.value / -rate)
+        Some((i, reading.value / -rate))
     };
-    readings.iter().filter_map(crossing).fold(f64::INFINITY, f64::min)
+    let first = readings.iter().enumerate().filter_map(crossing).min_by(|a, b| a.1.total_cmp(&b.1));
+    first.unwrap_or((readings.len(), f64::INFINITY))
 }
 
 /// Locates the first event between a state at which all modes hold and one at which some do not.

@@ -51,7 +51,7 @@ pub(super) fn correct(system: &mut StepSystem, start: &State, guess: State, cont
         }
         let equations = linearised.equations(system, &state, slow);
         last = norm;
-        let row = control_row(system, control);
+        let row = control_row(system, control, &equations);
         let right: Vec<f64> = residual.iter().map(|x| -x).collect();
         system.count("newton_iterations", 1);
         system.report.iterations += 1;

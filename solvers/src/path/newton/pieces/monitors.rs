@@ -12,6 +12,7 @@
 
 use crate::contact::facet::{dot, norm, slack};
 use crate::contact::mode::ContactMode;
+use crate::path::newton::model::control::Control;
 use crate::path::newton::model::state::{State, Tangent};
 use crate::path::newton::model::system::StepSystem;
 use crate::path::newton::quantities::ahead::length_ahead;
@@ -166,6 +167,34 @@ impl Monitors {
 }
 
 impl Monitor {
+    /// Returns the control of a state at which the monitor is zero, in a step from `start`. `None` if its value is a rate
+    /// or the length up to the end of a branch.
+    pub fn control(&self, system: &StepSystem, start: &State, tangent: &Tangent) -> Option<Control> {
+        let (contact, u) = (self.contact, system.units());
+        let area = system.problem.contacts[contact].area;
+        match self.what {
+            What::Slack(f) => {
+                let facet = &system.law(contact)?.facets[f as usize];
+                let unit = norm(facet.normal) * u.force;
+                let by_force = facet.normal.map(|a| -a / unit);
+                Some(Control::Zero { contact, offset: slack(facet, [0.0; 2], area) / unit, by_force, by_gap: [0.0; 2] })
+            }
+            What::Opening => {
+                let by = self.opening(system, start, tangent).map(|by| by / u.displacement);
+                Some(Control::Zero { contact, offset: -dot(by, start.slip[contact]), by_force: [0.0; 2], by_gap: by })
+            }
+            What::Face { .. } | What::Flow(_) | What::Branch(_) => None,
+        }
+    }
+
+    /// Returns the opening of a point per unit of its gap.
+    fn opening(&self, system: &StepSystem, state: &State, tangent: &Tangent) -> [f64; 2] {
+        let gap = system.step_gap(state, state, self.contact);
+        let sense = if gap[1] == 0.0 { tangent.gap[self.contact][1] } else { gap[1] }.signum();
+        let facets = system.law(self.contact).map_or(&[][..], |law| &law.facets);
+        state.mode[self.contact].opening(facets, sense)
+    }
+
     /// Returns the length along a rate up to which the law of a point stays in a branch; negative if it has left it.
     fn read_branch(
         &self,
@@ -230,8 +259,7 @@ impl Monitor {
             }
             What::Opening => {
                 let gap = system.step_gap(state, state, c);
-                let sense = if gap[1] == 0.0 { rate[1] } else { gap[1] }.signum();
-                let by = mode.opening(facets, sense);
+                let by = self.opening(system, state, tangent);
                 Reading::of(dot(by, gap), Some(dot(by, rate)), [sizes.gap, sizes.gap_rate])
             }
             What::Face { forward } => {

@@ -1,16 +1,27 @@
 //! The last row of the linear equations of a step: the gradient of its control.
 
+use crate::contact::facet::dot;
 use crate::path::newton::model::control::Control;
+use crate::path::newton::model::equations::Equations;
 use crate::path::newton::model::state::State;
 use crate::path::newton::model::system::StepSystem;
 
-/// Returns the gradient of a control over the scaled unknowns.
-pub fn control_row(system: &StepSystem, control: &Control) -> Vec<f64> {
+/// Returns the gradient of a control over the scaled unknowns, with gaps linearised as in some equations.
+pub fn control_row(system: &StepSystem, control: &Control, equations: &Equations) -> Vec<f64> {
     match control {
         Control::Along { row, .. } => row.to_vec(),
         Control::Factor(_) => {
             let mut row = vec![0.0; system.size()];
             row[system.size() - 1] = 1.0;
+            row
+        }
+        Control::Zero { contact, by_force, by_gap, .. } => {
+            let mut row = vec![0.0; system.size()];
+            for (k, weight) in by_gap.iter().enumerate().filter(|(_, weight)| **weight != 0.0) {
+                let gap = equations.gaps.row(2 * contact + k);
+                gap.for_each(|(j, value)| row[j] += weight * system.units().displacement * value);
+            }
+            (0..2).for_each(|k| row[2 * contact + k] += by_force[k] * system.units().force);
             row
         }
     }
@@ -21,6 +32,9 @@ pub fn control_value(system: &StepSystem, start: &State, state: &State, control:
     match control {
         Control::Factor(target) => (state.factor - target) / system.units().factor,
         Control::Along { row, length } => along(system, start, state, row) - length,
+        Control::Zero { contact, offset, by_force, by_gap } => {
+            offset + dot(*by_force, state.force[*contact]) + dot(*by_gap, state.gap[*contact])
+        }
     }
 }
 

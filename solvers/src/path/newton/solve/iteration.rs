@@ -61,7 +61,7 @@ pub fn iterate(
         let equations =
             linearised.equations(system, &state, !changes.changed && norm > SETTINGS.contraction * last_norm);
         last_norm = norm;
-        let row = control_row(system, control);
+        let row = control_row(system, control, &equations);
         let right: Vec<f64> = residual.iter().map(|x| -x).collect();
         system.count("newton_iterations", 1);
         system.report.iterations += 1;

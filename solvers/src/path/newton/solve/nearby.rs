@@ -81,7 +81,7 @@ fn solve_nearby(
         return None;
     }
     let changed = |kept: &Kept| (0..state.mode.len()).filter(|c| kept.modes[*c] != state.mode[*c]).collect::<Vec<_>>();
-    let serving = all_kept(system).filter(|kept| kept.held.serves(control));
+    let serving = all_kept(system).filter(|kept| kept.held.borders(control));
     let counted = serving.map(|kept| (changed(kept), kept)).filter(|(changed, _)| changed.len() <= MAX_CHANGED_POINTS);
     let nearest = counted.min_by_key(|(changed, kept)| (!Rc::ptr_eq(&kept.equations, equations), changed.len()));
     let (changed, kept) = nearest.map(|(changed, kept)| (changed, kept.clone()))?;

@@ -82,7 +82,7 @@ pub fn wanted_modes(system: &mut StepSystem, start: &State, state: &State) -> (V
 /// Returns the tangent of a converged state with its modes held, per unit of the control's gradient.
 pub fn tangent_at(system: &mut StepSystem, state: &State, control: &Control, accuracy: Accuracy) -> Option<Tangent> {
     let equations = system.equations(state);
-    let row = control_row(system, control);
+    let row = control_row(system, control, &equations);
     tangent_of_modes(system, state, &equations, &row, accuracy)
 }
 

@@ -124,6 +124,8 @@ fn the_first_crossing_is_the_nearest_zero() {
     let rising = reading(0.1, Some(1.0));
     let zero = reading(0.0, Some(-1.0));
     let rate = reading(0.1, None);
-    assert_close(first_crossing(&[reading(2.0, Some(-4.0)), reading(3.0, Some(-1.0)), rising, zero, rate]), 0.5, 1e-15);
-    assert_eq!(first_crossing(&[rising, zero, rate]), f64::INFINITY);
+    let (first, length) = first_crossing(&[reading(3.0, Some(-1.0)), reading(2.0, Some(-4.0)), rising, zero, rate]);
+    assert_eq!(first, 1);
+    assert_close(length, 0.5, 1e-15);
+    assert_eq!(first_crossing(&[rising, zero, rate]).1, f64::INFINITY);
 }
