@@ -7,12 +7,13 @@
 
 use super::corrector::correct;
 use super::monitors::Reading;
-use super::piece::{Piece, scaled_row};
+use super::piece::Piece;
 use crate::linear::inner;
 use crate::path::newton::model::control::Control;
 use crate::path::newton::model::state::{State, Tangent, moved};
 use crate::path::newton::model::system::StepSystem;
 use crate::path::newton::quantities::ahead::length_ahead;
+use crate::path::newton::quantities::control_row::scaled_row;
 use crate::settings::SETTINGS;
 
 /// Number of points between the ends of a step at which a cubic is evaluated.
@@ -93,8 +94,9 @@ impl Step<'_, '_> {
         let unit = self.system.units().factor;
         let never = Reading::NEVER;
         let at_start = (self.piece.tangent.factor / unit).abs();
+        // The load is the same just beyond the turn, and no rate of the piece raises it there.
         all.push(self.watched.sense.map_or(never, |sense| Reading {
-            value: sense * rate.factor / unit,
+            value: sense * rate.factor / unit + SETTINGS.same_rate() * at_start,
             tolerance: (SETTINGS.active * at_start).max(SETTINGS.rounding),
             ..never
         }));

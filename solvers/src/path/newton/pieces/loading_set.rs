@@ -4,11 +4,12 @@
 //! loading set of a rate. A rate continues the path if the tangents just ahead along it are those with which it was
 //! computed.
 
-use super::piece::{Piece, scaled_row};
+use super::piece::Piece;
 use crate::linear::inner;
 use crate::path::newton::model::state::{State, Tangent};
 use crate::path::newton::model::system::StepSystem;
 use crate::path::newton::quantities::ahead::{facing_ahead, length_ahead};
+use crate::path::newton::quantities::control_row::scaled_row;
 use crate::path::newton::quantities::inelastic::plastic_power;
 use crate::path::newton::solve::nearby::Accuracy;
 use crate::path::newton::solve::tangent::tangent_of_modes;

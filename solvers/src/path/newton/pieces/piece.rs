@@ -4,23 +4,10 @@ use super::monitors::{Monitors, Reading};
 use crate::path::newton::model::control::Control;
 use crate::path::newton::model::state::{State, Tangent};
 use crate::path::newton::model::system::StepSystem;
+use crate::path::newton::quantities::control_row::scaled_row;
 use crate::path::newton::solve::nearby::Accuracy;
 use crate::path::newton::solve::tangent::tangent_at;
 use std::rc::Rc;
-
-/// Returns the motions and factor of a tangent over the scaled unknowns.
-pub(super) fn scaled_row(system: &StepSystem, tangent: &Tangent) -> Vec<f64> {
-    let u = system.units();
-    let first = 2 * system.scaled.contacts;
-    let mut row = vec![0.0; system.size()];
-    for (body, free) in system.scaled.free.iter().enumerate() {
-        let Some(free) = free else { continue };
-        let unit = u.motion();
-        (0..3).for_each(|k| row[first + 3 * free + k] = tangent.motion[body][k] / unit[k]);
-    }
-    row[system.size() - 1] = tangent.factor / u.factor;
-    row
-}
 
 /// A piece at one of its states.
 #[derive(Clone)]

@@ -3,7 +3,7 @@
 use crate::contact::facet::dot;
 use crate::path::newton::model::control::Control;
 use crate::path::newton::model::equations::Equations;
-use crate::path::newton::model::state::State;
+use crate::path::newton::model::state::{State, Tangent};
 use crate::path::newton::model::system::StepSystem;
 
 /// Returns the gradient of a control over the scaled unknowns, with gaps linearised as in some equations.
@@ -36,6 +36,20 @@ pub fn control_value(system: &StepSystem, start: &State, state: &State, control:
             offset + dot(*by_force, state.force[*contact]) + dot(*by_gap, state.gap[*contact])
         }
     }
+}
+
+/// Returns the motions and factor of a tangent over the scaled unknowns.
+pub fn scaled_row(system: &StepSystem, tangent: &Tangent) -> Vec<f64> {
+    let u = system.units();
+    let first = 2 * system.scaled.contacts;
+    let mut row = vec![0.0; system.size()];
+    for (body, free) in system.scaled.free.iter().enumerate() {
+        let Some(free) = free else { continue };
+        let unit = u.motion();
+        (0..3).for_each(|k| row[first + 3 * free + k] = tangent.motion[body][k] / unit[k]);
+    }
+    row[system.size() - 1] = tangent.factor / u.factor;
+    row
 }
 
 /// Returns row · (x − x_start) over the scaled motions and the scaled factor.

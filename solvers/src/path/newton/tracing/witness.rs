@@ -3,7 +3,10 @@
 use crate::path::dual_vector::{self, MOST_FACETS, Response};
 use crate::path::newton::model::state::{State, Tangent};
 use crate::path::newton::model::system::StepSystem;
+use crate::path::newton::quantities::control_row::scaled_row;
 use crate::path::newton::solve::limit_point_test::{active_set, rate_problem, responses_of, without_factor};
+use crate::path::newton::solve::nearby::Accuracy;
+use crate::path::newton::solve::tangent::tangent_of_modes;
 use crate::path::system::System;
 use crate::rate::problem::RateProblem;
 use voussoir_core::path::{FarkasVector, ModeTree, PathRate, PathState, RateClaim, Witness};
@@ -20,7 +23,12 @@ pub fn none_rises(
     if system.limits.remembers {
         return vec![beyond(seen, rate)];
     }
-    let trees = std::iter::once(by_rate(rate)).chain(by_search(system, state, direction));
+    // Behind a turn the path follows a chord.
+    let row = scaled_row(system, rate);
+    let equations = system.equations(state);
+    let own = tangent_of_modes(system, state, &equations, &row, Accuracy::Fine);
+    let by_rate = own.as_ref().map(by_rate);
+    let trees = by_rate.into_iter().chain(by_search(system, state, direction));
     trees.map(|tree| Witness { state: seen.clone(), claim: RateClaim::NoneRises(tree) }).collect()
 }
 
