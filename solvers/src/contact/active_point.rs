@@ -36,7 +36,8 @@ fn independent(f: &Facet, g: &Facet) -> bool {
 }
 
 /// Adds the facets that pass through a corner of two active ones. Slacks are exact to rounding only: a force can be without
-/// slack on both facets of friction and not on the facet of opening, which meets them.
+/// slack on both facets of friction and not on the facet of opening, which meets them. A facet without a bound passes
+/// through no corner.
 pub fn complete_corners(facets: &[Facet], active: &mut Vec<usize>) {
     let (few, tolerance) = (active.clone(), SETTINGS.admissible);
     let pairs = few.iter().enumerate().flat_map(|(k, i)| few[k + 1..].iter().map(move |j| (&facets[*i], &facets[*j])));
@@ -46,7 +47,8 @@ pub fn complete_corners(facets: &[Facet], active: &mut Vec<usize>) {
         let corner = [f.bound * b[1] - g.bound * a[1], a[0] * g.bound - b[0] * f.bound].map(|x| x / determinant);
         let meets =
             |f: &Facet| slack(f, corner, 1.0).abs() <= tolerance * (f.bound.abs() + norm(f.normal) * norm(corner));
-        active.extend((0..facets.len()).filter(|k| !few.contains(k) && meets(&facets[*k])));
+        let bounded = (0..facets.len()).filter(|k| facets[*k].bound.is_finite());
+        active.extend(bounded.filter(|k| !few.contains(k) && meets(&facets[*k])));
     }
     active.sort_unstable();
     active.dedup();
@@ -165,5 +167,6 @@ mod tests {
         assert_eq!(completed(0.5, [0.0; 3], vec![2]), [2]);
         assert_eq!(completed(0.5, [1.0, 2.0, 2.0], vec![0, 1]), [0, 1]);
         assert_eq!(completed(0.0, [0.0; 3], vec![1, 2]), [1, 2]);
+        assert_eq!(completed(0.0, [0.0, f64::INFINITY, 0.0], vec![0, 2]), [0, 2]);
     }
 }

@@ -81,7 +81,8 @@ pub(super) fn active_facets(
         let corner = [(p * b[1] - q * a[1]) / determinant, (a[0] * q - b[0] * p) / determinant];
         for (index, facet) in facets.iter().enumerate() {
             let size = facet.bound.abs() + length(facet.normal) * length(corner);
-            if !active.contains(&index) && (dot(facet.normal, corner) - facet.bound).abs() <= ALONG * size {
+            let meets = (dot(facet.normal, corner) - facet.bound).abs() <= ALONG * size;
+            if facet.bound.is_finite() && meets && !active.contains(&index) {
                 active.push(index);
             }
         }

@@ -29,7 +29,7 @@ const DENSE: usize = 400;
 pub fn by_active_set(trace: &mut Trace, load: &Load, active: &[usize]) -> Continued {
     if active.len() > DENSE {
         return Next::Lost(format!(
-            "the rate problem at λ = {:.9} has {} contact points in its active set, and neither the active set on the whole system nor the path with strength solved it: newton_path may",
+            "at λ = {:.9} {} contact points may change their modes, and no rate was found: neither by an active set on the whole system nor by the path with strength",
             trace.state.factor,
             active.len()
         ))
