@@ -96,15 +96,19 @@ pub(super) fn is_admissible(system: &StepSystem, state: &State, modes: &[Contact
     !monitors.read(system, &turned, &turned, rate).iter().any(|reading| reading.leaves())
 }
 
-/// Returns the rates with which the only point of an event enters a new mode; all others keep theirs.
-fn crossings(system: &mut StepSystem, state: &State, piece: &Piece, hits: &[Monitor]) -> Vec<Start> {
+/// Returns the rates with which the only point of an event enters a new mode; all others keep theirs. On a path that
+/// falls, a point that flows could have stopped before the event, unless its flow ends there: such a rate only unloads.
+fn crossings(system: &mut StepSystem, state: &State, piece: &Piece, hits: &[Monitor], rises: bool) -> Vec<Start> {
     let contact = hits[0].contact;
     let closes = hits.iter().any(|hit| hit.what == What::Opening);
+    let stops = rises || hits.iter().any(|hit| matches!(hit.what, What::Flow(_)));
+    let flows = system.law(contact).is_some_and(|law| !law.opens(state.mode[contact]));
     let mut found: Vec<Start> = Vec::new();
     for mode in candidates(system, state, contact, closes) {
         let mut modes = state.mode.clone();
         modes[contact] = normalised(system, contact, mode);
-        if modes[contact] == state.mode[contact] {
+        let only_unloads = modes[contact] == ContactMode::Stick && flows && !stops;
+        if modes[contact] == state.mode[contact] || only_unloads {
             continue;
         }
         if let Some(rate) = entering_rate(system, state, piece, hits, &modes)
@@ -145,7 +149,7 @@ pub(super) fn after_event(
     (direction, rises): (f64, bool),
 ) -> NextPiece {
     let single = hits.iter().all(|m| m.contact == hits[0].contact);
-    let mut crossing = if single { crossings(system, state, piece, hits) } else { Vec::new() }.into_iter();
+    let mut crossing = if single { crossings(system, state, piece, hits, rises) } else { Vec::new() }.into_iter();
     if let (Some(start), None) = (crossing.next(), crossing.next())
         && (!rises || start.0.factor * direction > 0.0)
     {
