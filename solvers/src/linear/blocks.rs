@@ -9,6 +9,7 @@ use super::csr::CsrMatrix;
 use nalgebra::{DMatrix, Matrix2};
 use std::ops::Range;
 use std::sync::Arc;
+use voussoir_core::linear::vectors;
 
 /// The pattern of coupled groups.
 #[derive(Debug, Default)]
@@ -208,7 +209,8 @@ impl BlockMatrix {
         for group in 0..self.pattern.groups() {
             let out = &mut out[self.pattern.rows(group)];
             for (columns, block) in self.blocks(group) {
-                super::dense::add_block(out, block, &x[columns]);
+                let rows = out.len();
+                vectors::add_product(out, rows, block, &x[columns]);
             }
         }
         out.iter_mut().zip(self.diagonal.iter().zip(x)).for_each(|(out, (d, x))| *out += d * x);

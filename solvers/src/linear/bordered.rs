@@ -62,19 +62,19 @@ impl<E: Factorised> BorderedFactors<E> {
         mut factorise: impl FnMut(Vec<(usize, f64)>) -> Option<E>,
     ) -> Option<Self> {
         let sizes = [control.len(), 2 * contacts];
-        let with =
-            |equations: E, last: Vec<(usize, f64)>| BorderedFactors { equations, last, sizes, along: OnceCell::new() };
+        let mut with = |last: Vec<(usize, f64)>| {
+            let equations = factorise(last.clone())?;
+            Some(BorderedFactors { equations, last, sizes, along: OnceCell::new() })
+        };
         if let Some(few) = few(control) {
-            return Some(with(factorise(few.clone())?, few));
+            return with(few);
         }
-        let held = sizes[1] + greatest(&control[sizes[1]..]);
-        let first = with(factorise(vec![(held, 1.0)])?, vec![(held, 1.0)]);
+        let first = with(vec![(sizes[1] + greatest(&control[sizes[1]..]), 1.0)])?;
         if first.along().is_some() {
             return Some(first);
         }
-        let moves = first.homogeneous();
-        let held = moves.map_or(sizes[0] - 1, |w| sizes[1] + greatest(&w[sizes[1]..]));
-        let again = with(factorise(vec![(held, 1.0)])?, vec![(held, 1.0)]);
+        let held = first.homogeneous().map_or(sizes[0] - 1, |w| sizes[1] + greatest(&w[sizes[1]..]));
+        let again = with(vec![(held, 1.0)])?;
         let w = again.homogeneous()?;
         Some(BorderedFactors { along: OnceCell::from(Some(w)), ..again })
     }
@@ -100,26 +100,24 @@ impl<E: Factorised> BorderedFactors<E> {
         &self.equations
     }
 
-    /// Returns true if the factors serve a control.
+    /// Returns true if the factors serve a control, either directly or as a border with c·w ≠ 0.
     pub fn serves(&self, control: &[f64]) -> bool {
-        few(control).map_or_else(|| self.along().is_some(), |few| self.last == few)
+        let borders = |w: &Vec<f64>| {
+            let (along, size) = (inner(control, w).abs(), largest(control) * largest(w));
+            along >= SETTINGS.distinct() * size && along != 0.0
+        };
+        self.is_last(control) || self.along().is_some_and(borders)
     }
 
-    /// Returns true if the factors serve a control, either directly or as a border with c·w ≠ 0.
-    pub fn borders(&self, control: &[f64]) -> bool {
-        self.serves(control)
-            || self.along().is_some_and(|w| {
-                let size = control[greatest(control)].abs();
-                let along = inner(control, w).abs();
-                along >= SETTINGS.distinct() * size * w[greatest(w)].abs() && along != 0.0
-            })
+    fn is_last(&self, control: &[f64]) -> bool {
+        few(control).is_some_and(|few| self.last == few)
     }
 }
 
 impl<E: Factorised> BorderedSystem<E> {
     /// Adds a control that the factorised equations serve. `None` if it is orthogonal to w.
     pub fn new(held: Rc<BorderedFactors<E>>, control: &[f64]) -> Option<Self> {
-        if few(control).is_some_and(|few| held.last == few) {
+        if held.is_last(control) {
             return Some(BorderedSystem { held, border: None });
         }
         let along = Some(inner(control, held.along()?)).filter(|along| *along != 0.0)?;

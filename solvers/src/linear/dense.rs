@@ -9,12 +9,6 @@ pub fn add_product(out: &mut [f64], a: &DMatrix<f64>, x: &[f64]) {
     vectors::add_product(out, a.nrows(), a.as_slice(), x);
 }
 
-/// Computes out += A x, A stored column by column.
-pub fn add_block(out: &mut [f64], a: &[f64], x: &[f64]) {
-    let rows = out.len();
-    vectors::add_product(out, rows, a, x);
-}
-
 /// Computes out += A x, A stored column by column, and adds the absolute values of the terms to `sizes`.
 pub fn add_block_and_sizes((out, sizes): (&mut [f64], &mut [f64]), a: &[f64], x: &[f64]) {
     if !out.is_empty() {

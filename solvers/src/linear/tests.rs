@@ -205,7 +205,7 @@ fn a_control_beside_the_equations_serves_at_a_limit_point() {
     assert!(distance(&x, &solved(with_last_row(&singular, &control), &right())) < 1e-11);
 }
 
-/// Factors with a control of few unknowns serve it and all dense controls; those for a dense control hold an unknown.
+/// Factors serve every control that changes along the path: it is their last row, or a border.
 #[test]
 fn factors_say_which_controls_they_serve() {
     let above: Entries = entries().into_iter().filter(|e| e.0 + 1 < SIZE).collect();
@@ -220,8 +220,8 @@ fn factors_say_which_controls_they_serve() {
     let of_other: Vec<f64> = (0..SIZE).map(|j| f64::from(u8::from(j + 2 == SIZE))).collect();
     let full: Vec<f64> = (0..SIZE).map(|j| value(3, j)).collect();
     let [few, many] = [factors(&of_factor), factors(&full)];
-    assert!(few.serves(&of_factor) && !few.serves(&of_other) && few.serves(&full));
-    assert!(many.serves(&full) && many.borders(&of_factor) && many.borders(&of_other));
+    assert!(few.serves(&of_factor) && few.serves(&of_other) && few.serves(&full));
+    assert!(many.serves(&full) && many.serves(&of_factor) && many.serves(&of_other));
 }
 
 /// Rows of a sparse matrix add repeated entries, in any order, short or long.

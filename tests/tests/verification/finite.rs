@@ -334,12 +334,13 @@ curve = true
 const RIGID: f64 = REFERENCE_ARCH;
 
 /// The tolerance of a study is the accuracy of its states: a loose tolerance saves iterations and keeps the peak within
-/// it; a tight one has the same peak as the default.
+/// it; a tight one has the same peak as the default. In a stiff bridge the first iteration is exact to rounding.
 #[test]
 fn the_tolerance_of_a_study_is_that_of_its_states() {
     let of = |tolerance: &str| {
         let kinematics = "kinematics = \"finite\"";
-        let text = changed(&Bridge::default().study(), kinematics, &format!("{kinematics}\ntolerance = {tolerance}"));
+        let soft = Bridge { young_modulus: 1e8, ..Bridge::default() };
+        let text = changed(&soft.study(), kinematics, &format!("{kinematics}\ntolerance = {tolerance}"));
         let result = answered(&text);
         (result.load_factor.expect("a peak"), result.counters["newton_iterations"])
     };

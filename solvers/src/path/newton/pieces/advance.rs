@@ -1,7 +1,8 @@
 //! A step along a piece, which ends at the first event if there is one in it.
 //!
-//! The values and rates of monitors are known at both ends of a step. A monitor that is negative at the end has a root
-//! in the step. A monitor that is positive at both ends may have two roots if its Hermite cubic is negative between
+//! A step ends at the state at which the monitor that ends first by its rate is zero, if no other one is negative there.
+//! Otherwise the values and rates of monitors are known at both ends of a step. A monitor that is negative at the end has
+//! a root in the step. A monitor that is positive at both ends may have two roots if its Hermite cubic is negative between
 //! them; the step then ends there. A root is bracketed, and located by the roots of cubics to the tolerance of the
 //! monitor.
 

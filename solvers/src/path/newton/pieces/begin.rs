@@ -52,7 +52,7 @@ fn rate_from_nothing(tracer: &mut Tracer, target: f64, direction: f64) -> Result
 /// Returns the rate at the present state in some modes, if they admit it.
 fn rate_in(tracer: &mut Tracer, modes: Vec<ContactMode>, target: f64, direction: f64) -> Option<Start> {
     let state = State { mode: modes, ..tracer.state.clone() };
-    let rate = tangent_at(&mut tracer.system, &state, &Control::Factor(target), Accuracy::Rounding)?.scaled(direction);
+    let rate = tangent_at(&mut tracer.system, &state, &Control::Factor(target), Accuracy::Fine)?.scaled(direction);
     is_admissible(&tracer.system, &state, &state.mode, &rate).then_some((rate, state.mode))
 }
 

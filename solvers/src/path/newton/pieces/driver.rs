@@ -274,7 +274,7 @@ impl<'d> Run<'d> {
             if facing.yields() && !next.yields() {
                 return None;
             }
-            let rate = tangent_at(&mut tracer.system, &next, &control, Accuracy::Rounding)?;
+            let rate = tangent_at(&mut tracer.system, &next, &control, Accuracy::Fine)?;
             let turns = self.goes_up(tracer, &rate) != self.rises;
             let short = share <= CORNER_STEPS[1] || !turns;
             (short && step_energy(tracer, &next).holds).then_some((share, next, rate))

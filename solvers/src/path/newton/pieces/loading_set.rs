@@ -173,7 +173,7 @@ fn dissipating_rate(system: &mut StepSystem, state: &State, arrival: &Piece) -> 
 /// Returns the rate with the tangents of a state, of size 1.
 fn rate_of(system: &mut StepSystem, state: &State, row: &[f64]) -> Option<Unit> {
     let equations = system.equations(state);
-    let rate = tangent_of_modes(system, state, &equations, row, Accuracy::Rounding)?;
+    let rate = tangent_of_modes(system, state, &equations, row, Accuracy::Fine)?;
     Unit::of(system, &rate)
 }
 

@@ -150,17 +150,17 @@ pub(super) fn after_event(
 ) -> NextPiece {
     let single = hits.iter().all(|m| m.contact == hits[0].contact);
     let mut crossing = if single { crossings(system, state, piece, hits, rises) } else { Vec::new() }.into_iter();
-    if let (Some(start), None) = (crossing.next(), crossing.next())
-        && (!rises || start.0.factor * direction > 0.0)
+    if let (Some((rate, modes)), None) = (crossing.next(), crossing.next())
+        && (!rises || rate.factor * direction > 0.0)
     {
-        return leading(start, 0, None);
+        return NextPiece::Goes { rate, modes, twins: 0, open: None };
     }
     system.count("rate_problems", 1);
     let sense = if rises { 1.0 } else { -1.0 };
     match rate_after_event(system, state, &event_points(hits), (direction, sense)) {
         AfterEvent::Goes { rate, modes, twins, none_rises } => {
             let open = (!none_rises).then(|| "it is not decided whether a rate has a growing factor".to_string());
-            leading((rate, modes), twins, open)
+            NextPiece::Goes { rate, modes, twins, open }
         }
         AfterEvent::Nothing => NextPiece::Nothing {
             why: "no rate of equilibrium leads on from the event".into(),
@@ -171,8 +171,4 @@ pub(super) fn after_event(
             NextPiece::Nothing { why: format!("the rate is not decided: {why}"), none_rises, proved: false }
         }
     }
-}
-
-fn leading((rate, modes): Start, twins: usize, open: Option<String>) -> NextPiece {
-    NextPiece::Goes { rate, modes, twins, open }
 }

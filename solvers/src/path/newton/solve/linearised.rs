@@ -89,17 +89,6 @@ pub fn all_kept<'s>(system: &'s StepSystem<'_>) -> impl Iterator<Item = &'s Rc<K
     system.cache.factors.held().filter(move |kept| kept.damping == damping && kept.directions == directions)
 }
 
-/// Returns the kept factors of these equations in the state's modes that serve a control.
-pub fn kept<'s>(
-    system: &'s StepSystem,
-    state: &State,
-    equations: &Rc<Equations>,
-    serves: impl Fn(&BorderedFactors<ModeEquations>) -> bool,
-) -> Option<&'s Rc<Kept>> {
-    let same = |kept: &&Rc<Kept>| Rc::ptr_eq(&kept.equations, equations) && kept.modes == state.mode;
-    all_kept(system).filter(same).find(|kept| serves(&kept.held))
-}
-
 /// Returns the factorised linear equations of the modes, and true if they were kept: if modes alone determine them,
 /// factors of the same modes and equations are reused.
 pub fn factorised(
@@ -108,7 +97,8 @@ pub fn factorised(
     equations: &Rc<Equations>,
     row: &[f64],
 ) -> Option<(Rc<BorderedFactors<ModeEquations>>, bool)> {
-    if let Some(kept) = kept(system, state, equations, |held| held.serves(row)) {
+    let same = |kept: &&Rc<Kept>| Rc::ptr_eq(&kept.equations, equations) && kept.modes == state.mode;
+    if let Some(kept) = all_kept(system).filter(same).find(|kept| kept.held.serves(row)) {
         return Some((kept.held.clone(), true));
     }
     let (damping, directions) = (damping(system), directions(system));

@@ -8,7 +8,7 @@
 //! B: the factorised equations; A: the equations to solve; D: the difference A − B in the rows i of points with other
 //! modes. If the residual does not decrease fast enough, the factors are too different.
 
-use super::linearised::{all_kept, chain_rows, factorised, solve_linear};
+use super::linearised::{all_kept, chain_rows, solve_linear};
 use crate::linear::bordered::BorderedSystem;
 use crate::linear::chain::{ChainFactors, ChainRows};
 use crate::linear::factorised::Factorised;
@@ -47,10 +47,8 @@ struct Nearby<'k> {
 pub enum Accuracy {
     /// Sufficient for Newton's method and for signs of rates.
     Rough,
-    /// To rounding, with any nearby factors.
+    /// To rounding.
     Fine,
-    /// To rounding, with factors of the state itself if its second-order work is needed later.
-    Rounding,
 }
 
 /// Solves the modes' linear equations, with nearby factors if there are any, and returns true if they are solved.
@@ -61,9 +59,6 @@ pub fn solve(
     (control, right): (&[f64], &[f64]),
     accuracy: Accuracy,
 ) -> Option<(Vec<f64>, bool)> {
-    if accuracy == Accuracy::Rounding && system.limits.nearby {
-        factorised(system, state, equations, control)?;
-    }
     let left = if accuracy == Accuracy::Rough { SETTINGS.admissible } else { SETTINGS.ulps() };
     let found = solve_nearby(system, state, equations, (control, right), left);
     found.map(|x| (x, true)).or_else(|| solve_linear(system, state, equations, control, right))
@@ -81,7 +76,7 @@ fn solve_nearby(
         return None;
     }
     let changed = |kept: &Kept| (0..state.mode.len()).filter(|c| kept.modes[*c] != state.mode[*c]).collect::<Vec<_>>();
-    let serving = all_kept(system).filter(|kept| kept.held.borders(control));
+    let serving = all_kept(system).filter(|kept| kept.held.serves(control));
     let counted = serving.map(|kept| (changed(kept), kept)).filter(|(changed, _)| changed.len() <= MAX_CHANGED_POINTS);
     let nearest = counted.min_by_key(|(changed, kept)| (!Rc::ptr_eq(&kept.equations, equations), changed.len()));
     let (changed, kept) = nearest.map(|(changed, kept)| (changed, kept.clone()))?;
@@ -175,6 +170,7 @@ impl<'k> Nearby<'k> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::linearised::factorised;
     use super::*;
     use crate::contact::mode::ContactMode;
     use crate::path::newton::model::loads::StagedLoads;

@@ -1,7 +1,7 @@
 //! Second-order work of a converged state: the flexibility of its bodies with the contact modes held, computed column
 //! by column from the factorised equations.
 
-use super::linearised::{factorised, kept};
+use super::linearised::factorised;
 use super::nearby::Accuracy;
 use super::tangent::tangent_at;
 use crate::contact::facet::slack;
@@ -11,6 +11,7 @@ use crate::path::newton::model::control::Control;
 use crate::path::newton::model::factors::ModeEquations;
 use crate::path::newton::model::state::State;
 use crate::path::newton::model::system::StepSystem;
+use crate::path::newton::quantities::control_row::control_row;
 use crate::path::newton::quantities::measure::increment_along;
 use crate::path::stability::{SecondOrderWork, over_weak_points, work_by_responses};
 use crate::settings::SETTINGS;
@@ -30,12 +31,8 @@ pub fn second_order_work(system: &mut StepSystem, state: &State) -> Option<Secon
 
 fn held_factor(system: &mut StepSystem, state: &State) -> Option<BorderedSystem<ModeEquations>> {
     let equations = system.equations(state);
-    let mut row = vec![0.0; system.size()];
-    row[system.size() - 1] = 1.0;
-    let held = match kept(system, state, &equations, |held| held.borders(&row)) {
-        Some(kept) => kept.held.clone(),
-        None => factorised(system, state, &equations, &row)?.0,
-    };
+    let row = control_row(system, &Control::Factor(state.factor), &equations);
+    let (held, _) = factorised(system, state, &equations, &row)?;
     BorderedSystem::new(held, &row)
 }
 
@@ -92,7 +89,7 @@ pub fn stability(system: &mut StepSystem, state: &State, settles: bool) -> State
         return StateStability { under_load, under_control: under_load, sufficient_only };
     }
     let mut controlled = |state: &State, work: &Option<SecondOrderWork>| {
-        let rate = tangent_at(system, state, &Control::Factor(state.factor), Accuracy::Rounding)?;
+        let rate = tangent_at(system, state, &Control::Factor(state.factor), Accuracy::Fine)?;
         let yields = increment_along(system, state, &rate).displacement;
         work.as_ref().map(|work| work.stable_under_control(yields))
     };

@@ -86,13 +86,6 @@ pub fn tangent_at(system: &mut StepSystem, state: &State, control: &Control, acc
     tangent_of_modes(system, state, &equations, &row, accuracy)
 }
 
-/// Returns the right-hand side of a rate per unit of the last row.
-fn per_row(system: &StepSystem) -> Vec<f64> {
-    let mut right = vec![0.0; system.size()];
-    right[system.size() - 1] = 1.0;
-    right
-}
-
 /// Returns the tangent of a state with its modes held, per unit of `row`.
 pub fn tangent_of_modes(
     system: &mut StepSystem,
@@ -101,7 +94,8 @@ pub fn tangent_of_modes(
     row: &[f64],
     accuracy: Accuracy,
 ) -> Option<Tangent> {
-    let right = per_row(system);
+    let mut right = vec![0.0; system.size()];
+    *right.last_mut()? = 1.0;
     let (x, _) = solve(system, state, equations, (row, &right), accuracy).filter(|(_, solved)| *solved)?;
     Some(tangent_from(system, &x, state, equations))
 }

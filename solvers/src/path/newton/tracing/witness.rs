@@ -1,14 +1,16 @@
 //! Witnesses for the certificate: proofs at a state that no rate raises the load, or that none continues the path.
 
 use crate::path::dual_vector::{self, MOST_FACETS, Response};
+use crate::path::newton::model::control::Control;
 use crate::path::newton::model::state::{State, Tangent};
 use crate::path::newton::model::system::StepSystem;
 use crate::path::newton::quantities::control_row::scaled_row;
 use crate::path::newton::solve::limit_point_test::{active_set, rate_problem, responses_of, without_factor};
 use crate::path::newton::solve::nearby::Accuracy;
-use crate::path::newton::solve::tangent::tangent_of_modes;
+use crate::path::newton::solve::tangent::tangent_at;
 use crate::path::system::System;
 use crate::rate::problem::RateProblem;
+use std::rc::Rc;
 use voussoir_core::path::{FarkasVector, ModeTree, PathRate, PathState, RateClaim, Witness};
 
 /// Returns proofs that no rate raises the load at a state that an observer has `seen`: by the rate with a constant
@@ -24,11 +26,9 @@ pub fn none_rises(
         return vec![beyond(seen, rate)];
     }
     // Behind a turn the path follows a chord.
-    let row = scaled_row(system, rate);
-    let equations = system.equations(state);
-    let own = tangent_of_modes(system, state, &equations, &row, Accuracy::Fine);
-    let by_rate = own.as_ref().map(by_rate);
-    let trees = by_rate.into_iter().chain(by_search(system, state, direction));
+    let along = Control::Along { row: Rc::new(scaled_row(system, rate)), length: 0.0 };
+    let own = tangent_at(system, state, &along, Accuracy::Fine).map(|own| by_rate(&own));
+    let trees = own.into_iter().chain(by_search(system, state, direction));
     trees.map(|tree| Witness { state: seen.clone(), claim: RateClaim::NoneRises(tree) }).collect()
 }
 

@@ -28,6 +28,6 @@ fn second_step(problem: &PathProblem) -> (StepSystem<'_>, State) {
 
 /// The piece of a state on which its modes hold and the factor grows.
 fn piece_at(system: &mut StepSystem, state: &State) -> Piece {
-    let rate = tangent_at(system, state, &Control::Factor(1.0), Accuracy::Rounding).expect("a rate");
+    let rate = tangent_at(system, state, &Control::Factor(1.0), Accuracy::Fine).expect("a rate");
     Piece::new(system, state, &rate).expect("a piece")
 }
