@@ -52,6 +52,12 @@ impl PathState {
     pub fn inelastic(&self, body: usize) -> Option<&Yielded> {
         self.yielded.get(body).and_then(Option::as_ref)
     }
+
+    /// Returns true if two records describe one state: load step, factor, forces and motions are equal.
+    pub fn is_same(&self, other: &PathState) -> bool {
+        let place = |own: &PathState| (own.load_step, own.factor);
+        place(self) == place(other) && self.force == other.force && self.motion == other.motion
+    }
 }
 
 /// An event at a contact point.

@@ -32,6 +32,11 @@ impl ContactMode {
         }
     }
 
+    /// Returns true if the mode dissipates: a facet flows that does not open.
+    pub fn slides(self, facets: &[Facet]) -> bool {
+        facets.iter().enumerate().any(|(f, facet)| self.flows_on(f) && facet.mode != FacetMode::Opening)
+    }
+
     /// Returns the directions of ġ, one per unknown.
     pub fn flows(self, facets: &[Facet]) -> Vec<[f64; 2]> {
         self.by_facet(|f| facets[f].flow.map(|d| -d))

@@ -2,8 +2,8 @@
 //! other unknowns.
 //!
 //! The points of one joint are a group and are numbered consecutively. Groups on the same elastic body are coupled by a
-//! block, stored column by column, so that products and the assembly of factors run along columns. A
-//! group that touches no elastic body has only a diagonal.
+//! block, stored column by column, so that products and the assembly of factors run along columns. A group that touches no
+//! elastic body has only a diagonal.
 
 use super::csr::CsrMatrix;
 use nalgebra::{DMatrix, Matrix2};

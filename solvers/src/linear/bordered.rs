@@ -31,7 +31,7 @@ pub struct BorderedFactors<E> {
     last: Vec<(usize, f64)>,
     /// Number of unknowns, and of contact forces, which come first.
     sizes: [usize; 2],
-    /// w; `None` if the last row hardly depends on it.
+    /// w; `None` if the last row hardly changes along it.
     along: OnceCell<Option<Vec<f64>>>,
 }
 
@@ -86,13 +86,13 @@ impl<E: Factorised> BorderedFactors<E> {
         self.equations.apply(&end)
     }
 
-    /// Returns w, if the last row depends on it.
+    /// Returns w, if the last row changes along it.
     fn along(&self) -> Option<&Vec<f64>> {
-        let depends = |w: &Vec<f64>| {
+        let changes = |w: &Vec<f64>| {
             let own = self.last.iter().fold(0.0, |a: f64, (_, own)| a.max(own.abs()));
             1.0 >= SETTINGS.distinct() * own * largest(&w[self.sizes[1]..])
         };
-        self.along.get_or_init(|| self.homogeneous().filter(depends)).as_ref()
+        self.along.get_or_init(|| self.homogeneous().filter(changes)).as_ref()
     }
 
     /// Returns the equations; their last row replaces the control.

@@ -9,7 +9,6 @@
 use super::problem::{Rate, RateProblem};
 use crate::contact::mode::ContactMode;
 use crate::settings::SETTINGS;
-use voussoir_core::law::FacetMode;
 
 /// An active contact point at the end of the piece before the event.
 #[derive(Debug, Clone, Copy)]
@@ -60,7 +59,7 @@ impl Arrival {
 
     /// True if a point of the event takes a mode that the event makes possible.
     pub fn enters(&self, problem: &RateProblem, rate: &Rate) -> bool {
-        let sliding = |k: usize| slides(problem, k, self.points[k].mode);
+        let sliding = |k: usize| self.points[k].mode.slides(problem.points[k].facets);
         let kept = |k: usize, was: ContactMode, is: ContactMode| was == is || sliding(k) && is == ContactMode::Stick;
         self.points.iter().zip(&rate.modes).enumerate().any(|(k, (point, mode))| {
             point.hit && (!kept(k, point.mode, *mode) || point.stops && *mode == ContactMode::Stick)
@@ -71,16 +70,5 @@ impl Arrival {
     pub fn dissipation(&self, rate: &Rate) -> f64 {
         let points = self.points.iter().zip(&rate.gaps);
         -points.map(|(point, gap)| point.force[0] * gap[0] + point.force[1] * gap[1]).sum::<f64>()
-    }
-}
-
-/// True if a mode dissipates: it slides or crushes.
-fn slides(problem: &RateProblem, k: usize, mode: ContactMode) -> bool {
-    let facets = problem.points[k].facets;
-    let yields = |f: u8| facets.get(f as usize).is_some_and(|facet| facet.mode != FacetMode::Opening);
-    match mode {
-        ContactMode::Stick | ContactMode::Open => false,
-        ContactMode::Facet(i) => yields(i),
-        ContactMode::Corner(i, j) => yields(i) || yields(j),
     }
 }

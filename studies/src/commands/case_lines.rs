@@ -55,7 +55,7 @@ struct Place {
 pub struct CaseLines {
     files: Vec<File>,
     places: Vec<Place>,
-    /// All cases, once they are read, if they are one batch.
+    /// All cases after the first reading, if they fit in one batch.
     read: OnceLock<Vec<CaseResult>>,
 }
 
@@ -133,7 +133,7 @@ impl CaseLines {
         Ok(line)
     }
 
-    /// Returns all cases if they are one batch, which is read only once; otherwise `None`.
+    /// Returns all cases if they fit in one batch, which is read only once; otherwise `None`.
     fn one_batch(&self) -> io::Result<Option<&[CaseResult]>> {
         let bytes: usize = self.places.iter().map(|place| place.length as usize).sum();
         if bytes >= BYTES_AT_ONCE || self.places.len() > AT_ONCE {
@@ -175,15 +175,14 @@ impl CaseLines {
 impl FinishedCases for CaseLines {
     fn each(&self, take: TakeCases) -> io::Result<()> {
         match self.one_batch()? {
-            Some(all) => take(all),
+            Some(all) => all.each(take),
             None => self.hand_over(0..self.places.len(), take),
         }
     }
 
     fn each_of(&self, ids: &BTreeSet<usize>, take: TakeCases) -> io::Result<()> {
         if let Some(all) = self.one_batch()? {
-            let own: Vec<CaseResult> = all.iter().filter(|case| ids.contains(&case.label.id)).cloned().collect();
-            return if own.is_empty() { Ok(()) } else { take(&own) };
+            return all.each_of(ids, take);
         }
         let place = |id: &usize| self.places.binary_search_by_key(id, |place| place.id).ok();
         self.hand_over(ids.iter().filter_map(place), take)

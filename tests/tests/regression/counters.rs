@@ -81,9 +81,24 @@ fn an_event_of_rigid_voussoirs_costs_little() {
     }
 }
 
+/// With finite displacements an event costs one state: its equations are assembled and factorised once.
+#[test]
+fn an_event_with_finite_displacements_costs_one_state() {
+    for joint in [friction(0.6), "law = \"coulomb\"\nfriction = 0.6".into()] {
+        let (mesh, solver) = ("elements = [1, 4]\norder = 2".into(), "newton_path\"\nkinematics = \"finite");
+        let ring = Arch { material: elastic(5e9, 0.3), mesh, joint, solver, ..peers_ring(13) };
+        let counters = answered(&ring.study()).counters;
+        let [events, states] = ["events", "states"].map(|what| counters[what]);
+        assert!(events > 100 && 4 * counters["assemblies"] <= 5 * states, "{counters:?}");
+        assert!(
+            4 * counters["factorisations"] <= 5 * states && counters["newton_iterations"] <= 2 * states,
+            "{counters:?}"
+        );
+    }
+}
+
 /// Three spans on two piers with fill, 60 blocks on compliant joints. The first rate of all 1048 contact points comes from
-/// the path with strength: facets that the fill's law has besides those without slack do not take part. The load is that
-/// of limit analysis.
+/// the path with strength, in which facets with slack do not take part. The load is that of limit analysis.
 #[test]
 fn a_bridge_of_sixty_blocks_costs_little() {
     let text = |stiffness: &str, solver: &str| {

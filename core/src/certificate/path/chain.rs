@@ -66,11 +66,6 @@ pub(super) fn greatest_force(state: &PathState) -> f64 {
     state.force.iter().map(|r| length(*r)).fold(0.0, f64::max)
 }
 
-/// Returns true if two records describe one state.
-pub(super) fn is_same(a: &PathState, b: &PathState) -> bool {
-    a.load_step == b.load_step && a.factor == b.factor && a.force == b.force && a.motion == b.motion
-}
-
 /// Returns true if a load step has no load, no settlement, no duration and no field that changes, so that its factor has no effect.
 fn is_idle(problem: &PathProblem, step: &LoadStep) -> bool {
     !step.period.passes()
@@ -140,7 +135,7 @@ impl PathChain {
 
     /// Adds a located peak between two states, which the observer has not received, if it follows from one of them.
     pub fn add_peak(&mut self, state: &PathState) {
-        if self.links.iter().any(|link| is_same(&link.state, state)) {
+        if self.links.iter().any(|link| link.state.is_same(state)) {
             return;
         }
         let mut beside = (0..self.links.len()).rev().filter(|at| self.is_beside(*at, state));
@@ -271,7 +266,7 @@ impl PathChain {
     /// Returns a state of the chain with the equations of its rates and the modes of its points.
     pub(super) fn at(&self, own: &PathState) -> Result<(&Link, RateEquations, Vec<Vec<ModeCone>>), String> {
         let link =
-            self.links.iter().rev().find(|link| is_same(&link.state, own)).ok_or("the state is not on the path")?;
+            self.links.iter().rev().find(|link| link.state.is_same(own)).ok_or("the state is not on the path")?;
         if self.structure.yields() {
             return Err("rates of blocks that yield are checked for one loading set only".into());
         }
@@ -348,7 +343,7 @@ impl PathChain {
     /// Names the first part of the last witness that is wrong.
     pub fn check_none_rises(&self, state: &PathState, witnesses: &[&Witness]) -> Result<(), String> {
         let own =
-            |witness: &&&Witness| is_same(&witness.state, state) && matches!(witness.claim, RateClaim::NoneRises(_));
+            |witness: &&&Witness| witness.state.is_same(state) && matches!(witness.claim, RateClaim::NoneRises(_));
         let mut found = Err("no witness that no rate raises the load".to_string());
         let mut witnesses = witnesses.iter().filter(own).peekable();
         if witnesses.peek().is_none() {

@@ -1,7 +1,7 @@
 //! Ends of a path at its last state: no rate continues it, or a joint is lost.
 
 use super::arrival::Arrival;
-use super::chain::{Link, PathChain, greatest_force, is_same, midway};
+use super::chain::{Link, PathChain, greatest_force, midway};
 use super::none_rises::{RateProblem, Refuted};
 use crate::path::{PathState, RateClaim, Witness};
 
@@ -44,7 +44,7 @@ impl PathChain {
         let (rates, arrival) = (RateProblem { equations: &equations, modes: &modes }, self.arrival([before, last]));
         let rising = if arrival.falls { Refuted::RisingNew(&arrival) } else { Refuted::Rising };
         let mut found = Err("no witness that no rate continues the path".to_string());
-        for witness in witnesses.iter().filter(|witness| is_same(&witness.state, &last.state)) {
+        for witness in witnesses.iter().filter(|witness| witness.state.is_same(&last.state)) {
             if let RateClaim::NoneContinues(trees) = &witness.claim {
                 let checks = [
                     (&trees.rises, rising),

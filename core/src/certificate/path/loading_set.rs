@@ -9,7 +9,7 @@
 //!
 //! The multipliers are the solution of one linear system. They are checked like the multipliers of a witness.
 
-use super::chain::{Link, PathChain, deformation, greatest_force, is_same};
+use super::chain::{Link, PathChain, deformation, greatest_force};
 use super::claims::length;
 use super::none_rises::{Products, RateProblem, Refuted};
 use super::point_modes::{ModeCone, dot};
@@ -110,9 +110,9 @@ impl PathChain {
     /// Names the first part of the last witness that is wrong.
     pub fn check_loading_set(&self, state: &PathState, witnesses: &[&Witness]) -> Result<(), String> {
         let link =
-            self.links.iter().rev().find(|link| is_same(&link.state, state)).ok_or("the state is not on the path")?;
+            self.links.iter().rev().find(|link| link.state.is_same(state)).ok_or("the state is not on the path")?;
         let mut found = Err("no rate just beyond the state".to_string());
-        for witness in witnesses.iter().filter(|witness| is_same(&witness.state, state)) {
+        for witness in witnesses.iter().filter(|witness| witness.state.is_same(state)) {
             if let RateClaim::Rate(rate) = &witness.claim {
                 found = self.check_beyond(link, rate);
             }

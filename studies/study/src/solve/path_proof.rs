@@ -32,7 +32,7 @@ pub(super) struct PathProof<'a> {
     solved: &'a PathAnswer,
     /// True if a limit point is proved for one loading set only.
     one_loading_set: Cell<bool>,
-    /// States that are proved limit points; several questions need each proof.
+    /// States that are already proved to be limit points: several checks need each proof.
     proved: RefCell<Vec<PathState>>,
 }
 
@@ -152,10 +152,7 @@ impl<'a> PathProof<'a> {
 
     /// Checks that no rate raises the load at a state of the chain; if laws have a history, no rate of one loading set.
     fn limit_point(&self, state: &PathState) -> Result<(), String> {
-        let place = |own: &PathState| (own.load_step, own.factor);
-        let is_same =
-            |own: &PathState| place(own) == place(state) && own.force == state.force && own.motion == state.motion;
-        if self.proved.borrow().iter().any(is_same) {
+        if self.proved.borrow().iter().any(|own| own.is_same(state)) {
             return Ok(());
         }
         let witnesses: Vec<&Witness> = self.witnesses(state).collect();

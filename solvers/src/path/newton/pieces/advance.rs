@@ -95,7 +95,7 @@ impl Step<'_, '_> {
         let unit = self.system.units().factor;
         let never = Reading::NEVER;
         let at_start = (self.piece.tangent.factor / unit).abs();
-        // The load is the same just beyond the turn, and no rate of the piece raises it there.
+        // Just beyond the turn the load is the same to rounding, and no rate of the piece raises it.
         all.push(self.watched.sense.map_or(never, |sense| Reading {
             value: sense * rate.factor / unit + SETTINGS.same_rate() * at_start,
             tolerance: (SETTINGS.active * at_start).max(SETTINGS.rounding),
@@ -153,7 +153,7 @@ impl Step<'_, '_> {
         (gained - 0.5 * (before + after)).abs() / size
     }
 
-    /// Computes the state at which the monitor that ends first by its rate, at a length, is zero.
+    /// Computes the state at which a monitor is zero: the one that ends first by the rates, about `length` away.
     fn landing(&mut self, low: &Trial, first: usize, length: f64) -> Option<Trial> {
         let control = self.piece.monitors.0.get(first)?.control(self.system, self.start, &self.piece.tangent)?;
         let found = self.controlled(&low.end, length, &control)?;

@@ -96,18 +96,18 @@ pub(super) fn is_admissible(system: &StepSystem, state: &State, modes: &[Contact
     !monitors.read(system, &turned, &turned, rate).iter().any(|reading| reading.leaves())
 }
 
-/// Returns the rates with which the only point of an event enters a new mode; all others keep theirs. On a path that
-/// falls, a point that flows could have stopped before the event, unless its flow ends there: such a rate only unloads.
+/// Returns the rates with which the only point of an event enters a new mode; all others keep theirs. Rates of a falling
+/// path that only unload are left out, as in [`Arrival`](crate::rate::arrival::Arrival).
 fn crossings(system: &mut StepSystem, state: &State, piece: &Piece, hits: &[Monitor], rises: bool) -> Vec<Start> {
     let contact = hits[0].contact;
     let closes = hits.iter().any(|hit| hit.what == What::Opening);
     let stops = rises || hits.iter().any(|hit| matches!(hit.what, What::Flow(_)));
-    let flows = system.law(contact).is_some_and(|law| !law.opens(state.mode[contact]));
+    let slides = system.law(contact).is_some_and(|law| state.mode[contact].slides(&law.facets));
     let mut found: Vec<Start> = Vec::new();
     for mode in candidates(system, state, contact, closes) {
         let mut modes = state.mode.clone();
         modes[contact] = normalised(system, contact, mode);
-        let only_unloads = modes[contact] == ContactMode::Stick && flows && !stops;
+        let only_unloads = modes[contact] == ContactMode::Stick && slides && !stops;
         if modes[contact] == state.mode[contact] || only_unloads {
             continue;
         }

@@ -25,7 +25,7 @@ pub fn none_rises(
     if system.limits.remembers {
         return vec![beyond(seen, rate)];
     }
-    // Behind a turn the path follows a chord.
+    // Behind a turn the path follows a chord; the proof needs the rate.
     let along = Control::Along { row: Rc::new(scaled_row(system, rate)), length: 0.0 };
     let own = tangent_at(system, state, &along, Accuracy::Fine).map(|own| by_rate(&own));
     let trees = own.into_iter().chain(by_search(system, state, direction));
