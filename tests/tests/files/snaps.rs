@@ -222,6 +222,34 @@ fn every_change_of_a_limit_point_is_found() {
     found((&whole, &both), "/first_limit_point", both["cases"][0]["load_factor"].clone());
 }
 
+/// On joints that are 200 times softer the ring does not carry its weight: the limit point is a share of gravity, and no
+/// load factor. Nothing else is believed.
+#[test]
+fn every_change_of_a_limit_point_of_gravity_is_found() {
+    let soft = changed(&changed(RING, "2.15436e8", "1e6"), "1.82783e8", "1e6");
+    let (study, original) = results(&soft);
+    assert_eq!(findings(&study, &original), Vec::<String>::new());
+    let case = &original["cases"][0];
+    assert_eq!((case["status"].as_str(), &case["limit_points"][0]["gravity"]), (Some("limit_point"), &json!(true)));
+    let share = number(&case["limit_points"][0]["factor"]);
+    let found = |change: &dyn Fn(&mut Value), what: &str| {
+        let mut forged = original.clone();
+        change(&mut forged["cases"][0]);
+        assert!(!findings(&study, &forged).is_empty(), "{what} was not found");
+    };
+    for key in ["load_factor", "first_limit_point"] {
+        found(&|case| case[key] = json!(share), key);
+    }
+    for status in ["collapse", "no_equilibrium", "stands", "unbounded"] {
+        found(&|case| case["status"] = json!(status), status);
+    }
+    found(&|case| case["continuation"] = Value::Null, "no continuation");
+    found(&|case| case["limit_points"][0]["factor"] = json!(share * (1.0 + 1e-6)), "another share of gravity");
+    found(&|case| case["limit_points"][0]["gravity"] = json!(false), "a factor of loads");
+    found(&|case| case["limit_points"][0]["stage"] = json!("live"), "another stage");
+    found(&|case| case["limit_points"] = json!([]), "no limit point");
+}
+
 #[test]
 fn an_optimum_is_one_of_first_limit_points_if_displacements_are_finite() {
     let search = "kind = \"optimise\"\n[optimise]\nparameter = \"scene.width\"\nfrom = 1.0\nto = 1.1\nscan = 3\ntolerance = 0.9\n";
