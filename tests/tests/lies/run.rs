@@ -7,6 +7,8 @@ use voussoir::core::limit::Status;
 use voussoir::core::plugin::PluginKind;
 use voussoir::results::CaseResult;
 use voussoir::solve_case;
+use voussoir_tests::answered;
+use voussoir_tests::family::{Family, Form, family_scene};
 
 /// Silences the panics of dishonest solvers.
 pub fn quiet() {
@@ -130,6 +132,23 @@ fn unloading_is_no_fall() {
         }
     }
     assert!(told_of > 0);
+}
+
+/// An elastic structure whose load moves back at a limit point at which a joint opens does not unload: its end is proved. The
+/// way back from there is still refused.
+#[test]
+fn an_elastic_snap_back_is_proved_and_its_way_back_is_refused() {
+    let _counted = COUNTED.lock();
+    let lie = "unloads_behind_its_limit_point";
+    for seed in [12001, 12012, 12034] {
+        let scene = family_scene(Family::Finite, seed);
+        let honest = answered(&scene.study(Form::Given, ""));
+        assert_eq!((honest.status, honest.path.end_is_checked), (Status::Collapse, Some(true)), "{:?}", honest.notes);
+        let before = told(PluginKind::PathSolver, lie);
+        let result = answered(&scene.study(Form::Given, &liar(PluginKind::PathSolver, "newton_path", lie)));
+        assert!(told(PluginKind::PathSolver, lie) > before, "{seed}");
+        assert_ne!(result.status, Status::Collapse, "{seed}: {:?}", result.notes);
+    }
 }
 
 /// An honest solver from another project is accepted if its states and witnesses prove the end.

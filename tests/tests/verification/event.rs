@@ -10,6 +10,7 @@ use voussoir::core::path::{
 use voussoir::solvers::path::event::EventPath;
 use voussoir::solvers::path::newton::NewtonPath;
 use voussoir_tests::by_hand::{self, contact, dry_friction, ground, load_step};
+use voussoir_tests::family::{Family, Form, family_scene};
 use voussoir_tests::known::REFERENCE_ARCH;
 use voussoir_tests::seen::Record;
 use voussoir_tests::{Arch, Wall, answered, assert_close, changed, elastic, first_case, friction, small_displacements};
@@ -480,5 +481,15 @@ fn stages_of_exact_paths_say_whether_they_are_stable_as_newtons_do() {
         assert_eq!(exact, stepped);
         assert_eq!(exact[0].stable_under_load, decided.then_some(true), "{exact:?}");
         assert!(exact[0].stability.is_some() && (!decided || exact[1].stable_under_control == Some(true)), "{exact:?}");
+    }
+}
+
+/// Mechanisms and rays of joints that cannot slide are proved, also if open points hardly move in them: their rates are
+/// rounding, which closes no gap.
+#[test]
+fn open_points_that_hardly_move_do_not_close() {
+    for (seed, status) in [(12013, Status::Collapse), (12031, Status::Unbounded), (12073, Status::Collapse)] {
+        let result = answered(&family_scene(Family::Random, seed).study(Form::Given, ""));
+        assert_eq!((result.status, result.path.end_is_checked), (status, Some(true)), "{seed}: {:?}", result.notes);
     }
 }

@@ -263,6 +263,30 @@ impl PathChain {
         self.links.iter().map(|link| &link.state)
     }
 
+    /// Returns true if a contact point opens or closes at a state, by its number in the chain: the point carries a force on one
+    /// of the pieces before and after the state and is open on the other.
+    pub fn opens_or_closes_at(&self, at: usize) -> bool {
+        let Some([before, here, after]) = at.checked_sub(1).and_then(|first| self.links.get(first..first + 3)) else {
+            return false;
+        };
+        let [arrival, departure] = [[before, here], [here, after]].map(|ends| self.contact_on_piece(ends));
+        arrival.iter().zip(&departure).any(|(a, b)| *a == -*b && *a != 0.0)
+    }
+
+    /// Returns for every contact point 1 if it is open on the piece between two states, −1 if it carries a force, otherwise 0.
+    fn contact_on_piece(&self, [from, to]: [&Link; 2]) -> Vec<f64> {
+        let state = midway(&self.structure, &from.state, &to.state);
+        let rounding = if self.finite { 512.0 * f64::EPSILON * self.structure.length } else { 0.0 };
+        let (slack, closed) = (ACTIVE * greatest_force(&state), CLOSED * deformation(&state) + rounding);
+        let points = state.force.iter().zip(from.openings.iter().zip(&to.openings));
+        let of = |(force, (a, b)): (&[f64; 2], (&f64, &f64))| match 0.5 * (a + b) > closed {
+            true => 1.0,
+            false if force[0] > slack => -1.0,
+            false => 0.0,
+        };
+        points.map(of).collect()
+    }
+
     /// Returns a state of the chain with the equations of its rates and the modes of its points.
     pub(super) fn at(&self, own: &PathState) -> Result<(&Link, RateEquations, Vec<Vec<ModeCone>>), String> {
         let link =

@@ -125,10 +125,11 @@ impl RateProblem<'_> {
         self.check_closing(problem, rate)
     }
 
-    /// Checks that rates close no open point.
+    /// Checks that rates close no open point. A point whose gap changes by rounding only does not close.
     fn check_closing(&self, problem: &PathProblem, rate: &PathRate) -> Result<(), String> {
         let least = RATE * greatest(&rate.gap);
-        for (contact, modes) in self.modes.iter().enumerate() {
+        let moving = self.modes.iter().enumerate().filter(|(contact, _)| length(rate.gap[*contact]) > least);
+        for (contact, modes) in moving {
             let closing = closing_rate(&problem.contacts[contact], modes, rate.gap[contact]);
             if closing > least {
                 return Err(format!("contact point {contact} is open and closes"));

@@ -225,23 +225,24 @@ impl<'a> PathProof<'a> {
     fn check_falls(&self) -> Result<(), String> {
         self.maxima().into_iter().try_for_each(|state| self.limit_point(state))?;
         let states: Vec<&PathState> = self.chain.states().collect();
-        let mut was_elastic = false;
-        for pair in states.windows(2) {
+        // True if nothing dissipates on the piece before a state, and true if the load falls on it.
+        let (mut was_elastic, mut fell) = (false, false);
+        for (at, pair) in states.windows(2).enumerate() {
             let [before, after] = [pair[0], pair[1]];
             let change = (after.factor - before.factor) * sense(&self.problem.load_steps[after.load_step]);
             let falls = before.load_step == after.load_step && change < -SAME * before.factor.abs();
-            let goes_on = !falls || self.goes_on(before, after);
-            if !goes_on && !was_elastic {
+            let elastic_branch = was_elastic && (fell || self.chain.opens_or_closes_at(at));
+            if falls && !elastic_branch && !self.goes_on(before, after) {
                 return Err(format!("behind the factor {} the structure may only unload", before.factor));
             }
-            was_elastic = falls && self.dissipation(before, after) <= DISSIPATES;
+            (was_elastic, fell) = (self.dissipation(before, after) <= DISSIPATES, falls);
         }
         Ok(())
     }
 
     /// Returns true if the load does not fall by unloading: friction dissipates, or the load moves on. If all sliding has stopped
-    /// and the structure is stable, the load moves back as it falls, and nothing dissipates. An elastic branch with a falling load
-    /// can be followed only forwards.
+    /// and the structure is stable, the load moves back as it falls, and nothing dissipates. From an elastic piece the structure
+    /// unloads only along this piece: a point that opens or closes begins another one.
     fn goes_on(&self, before: &PathState, after: &PathState) -> bool {
         let moved = (after.displacement - before.displacement) * sense(&self.problem.load_steps[after.load_step]);
         moved > 0.0 || self.dissipation(before, after) > DISSIPATES
