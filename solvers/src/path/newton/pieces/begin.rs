@@ -6,8 +6,8 @@ use crate::contact::mode::ContactMode;
 use crate::path::event::first_modes;
 use crate::path::newton::model::control::Control;
 use crate::path::newton::model::state::State;
-use crate::path::newton::solve::limit_point_test::{LimitPointTest, limit_point_test};
 use crate::path::newton::solve::nearby::Accuracy;
+use crate::path::newton::solve::rate_after_event::rising_rate;
 use crate::path::newton::solve::step::solve_step;
 use crate::path::newton::solve::tangent::tangent_at;
 use crate::path::newton::tracing::commit::commit;
@@ -67,16 +67,15 @@ fn first_rate(tracer: &mut Tracer, target: f64, direction: f64) -> Result<Start,
         return Ok(found);
     }
     tracer.system.count("rate_problems", 1);
-    let unknown = match limit_point_test(&mut tracer.system, &state, direction) {
-        LimitPointTest::Tangent(rate, modes) => return Ok((rate, modes)),
-        LimitPointTest::None => {
+    match rising_rate(&mut tracer.system, &state, direction) {
+        Ok(Some(found)) => Ok(found),
+        Ok(None) => {
             tracer.limit.proven = Some(factor);
-            return Err((Status::LimitPoint, format!("at factor {factor} no rate of equilibrium has a growing load")));
+            Err((Status::LimitPoint, format!("at factor {factor} no rate of equilibrium has a growing load")))
         }
-        LimitPointTest::Unknown(why) => why,
-    };
-    Err((
-        Status::Stalled,
-        format!("at factor {factor} no rate of equilibrium under the growing load was found: {unknown}"),
-    ))
+        Err(why) => Err((
+            Status::Stalled,
+            format!("at factor {factor} no rate of equilibrium under the growing load was found: {why}"),
+        )),
+    }
 }

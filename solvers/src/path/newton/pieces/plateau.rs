@@ -2,9 +2,11 @@
 
 use super::advance::{Advance, StepEnd, Watched, advance};
 use super::piece::Piece;
+use crate::linear::largest;
 use crate::path::newton::model::state::State;
 use crate::path::newton::quantities::measure::{fastest, increment_between};
-use crate::path::newton::solve::limit_point_test::{LimitPointTest, active_set, limit_point_test};
+use crate::path::newton::solve::active_set::active_set;
+use crate::path::newton::solve::rate_after_event::rising_rate;
 use crate::path::newton::tracing::tracer::Tracer;
 use crate::settings::SETTINGS;
 
@@ -69,10 +71,10 @@ pub(super) fn plateau(tracer: &mut Tracer, piece: &Piece, direction: f64, flows:
     if flows || remembers && active_set(&tracer.system, &start, &[]).contacts.is_empty() {
         return Some(Plateau { moved, unproved: None });
     }
-    match limit_point_test(&mut tracer.system, &start, direction) {
-        LimitPointTest::None => Some(Plateau { moved, unproved: None }),
-        LimitPointTest::Unknown(why) => Some(Plateau { moved, unproved: (!remembers).then_some(why) }),
-        LimitPointTest::Tangent(..) => None,
+    match rising_rate(&mut tracer.system, &start, direction) {
+        Ok(None) => Some(Plateau { moved, unproved: None }),
+        Err(why) => Some(Plateau { moved, unproved: (!remembers).then_some(why) }),
+        Ok(Some(_)) => None,
     }
 }
 
@@ -86,12 +88,12 @@ pub(super) fn stood_still(tracer: &Tracer, next: &State) -> bool {
 
 /// Returns true if factor and forces of two states are the same.
 fn is_same(tracer: &Tracer, start: &State, state: &State) -> bool {
-    let largest = start.force.iter().flatten().fold(0.0, |a: f64, r| a.max(r.abs()));
     let pairs = start.force.iter().flatten().zip(state.force.iter().flatten());
     let change = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     // If the load has fallen to zero, both are rounding of their values at the limit point.
     let peak = tracer.limit.peak.as_ref().map_or(0.0, |peak| peak.factor.abs());
-    let carried = largest.max(tracer.system.units().force * peak / tracer.system.units().factor);
+    let carried =
+        largest(start.force.as_flattened()).max(tracer.system.units().force * peak / tracer.system.units().factor);
     change <= SETTINGS.active * carried
         && (start.factor - state.factor).abs() <= SETTINGS.active * start.factor.abs().max(peak)
 }

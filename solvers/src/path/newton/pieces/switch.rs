@@ -5,12 +5,12 @@ use super::piece::Piece;
 use crate::contact::active_point::ActivePoint;
 use crate::contact::facet::dot;
 use crate::contact::mode::ContactMode;
+use crate::linear::largest;
 use crate::path::newton::model::state::{State, Tangent};
 use crate::path::newton::model::system::StepSystem;
-use crate::path::newton::solve::limit_point_test::{
-    AfterEvent, EventPoints, active_facets, largest_force, normalised, rate_after_event,
-};
+use crate::path::newton::solve::active_set::active_facets;
 use crate::path::newton::solve::nearby::Accuracy;
+use crate::path::newton::solve::rate_after_event::{AfterEvent, EventPoints, normalised, rate_after_event};
 use crate::path::newton::solve::tangent::tangent_of_modes;
 use voussoir_core::law::FacetMode;
 
@@ -35,7 +35,8 @@ pub(super) enum NextPiece {
 /// Returns the modes that a point of an event may enter.
 fn candidates(system: &StepSystem, state: &State, contact: usize, closes: bool) -> Vec<ContactMode> {
     let Some(law) = system.law(contact) else { return Vec::new() };
-    let Some((active, open)) = active_facets(system, state, contact, (largest_force(state), closes)) else {
+    let Some((active, open)) = active_facets(system, state, contact, (largest(state.force.as_flattened()), closes))
+    else {
         return Vec::new();
     };
     let apex = open.is_none() && ActivePoint::is_apex(&law.facets, &active);

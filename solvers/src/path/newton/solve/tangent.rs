@@ -2,6 +2,7 @@
 
 use super::nearby::{Accuracy, solve};
 use crate::contact::mode::ContactMode;
+use crate::linear::largest;
 use crate::path::newton::model::control::Control;
 use crate::path::newton::model::equations::Equations;
 use crate::path::newton::model::state::{State, Tangent};
@@ -52,10 +53,10 @@ pub fn gap_rounding(system: &StepSystem, state: &State) -> f64 {
 /// associated, the nearest mode need not be that of the return.
 pub fn wanted_modes(system: &mut StepSystem, start: &State, state: &State) -> (Vec<ContactMode>, bool) {
     system.count("law_evaluations", state.gap.len() as u64);
-    let largest = state.force.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max);
+    let greatest = largest(state.force.as_flattened());
     let unit = system.units().force;
-    let weak = largest <= system.limits.weak * unit;
-    let largest = largest.max(if weak { SETTINGS.residual() * unit } else { unit });
+    let weak = greatest <= system.limits.weak * unit;
+    let greatest = greatest.max(if weak { SETTINGS.residual() * unit } else { unit });
     let rounding = gap_rounding(system, state);
     let mut holds = true;
     let modes = (0..state.gap.len())
@@ -65,10 +66,10 @@ pub fn wanted_modes(system: &mut StepSystem, start: &State, state: &State) -> (V
                 // In a solution any ρ > 0 gives the same modes, unless rounding of a gap becomes a force.
                 let stiffness = system.stiffness(c);
                 let noise = rounding * stiffness[0].max(stiffness[1]);
-                let rho = stiffness.map(|k| k * (SETTINGS.mode * largest / noise).min(1.0));
+                let rho = stiffness.map(|k| k * (SETTINGS.mode * greatest / noise).min(1.0));
                 let gap = system.step_gap(start, state, c);
                 let z = [state.force[c][0] - rho[0] * gap[0], state.force[c][1] - rho[1] * gap[1]];
-                let tolerance = noise.clamp(1e-11 * largest, SETTINGS.mode * largest);
+                let tolerance = noise.clamp(1e-11 * greatest, SETTINGS.mode * greatest);
                 let area = system.problem.contacts[c].area;
                 let mode = law.mode(state.mode[c], z, rho, area, tolerance);
                 holds &= mode != state.mode[c] || law.violation(mode, z, rho, area) <= tolerance;

@@ -5,8 +5,10 @@ use crate::path::newton::model::control::Control;
 use crate::path::newton::model::state::{State, Tangent};
 use crate::path::newton::model::system::StepSystem;
 use crate::path::newton::quantities::control_row::scaled_row;
-use crate::path::newton::solve::limit_point_test::{active_set, rate_problem, responses_of, without_factor};
+use crate::path::newton::solve::active_set::active_set;
 use crate::path::newton::solve::nearby::Accuracy;
+use crate::path::newton::solve::rate_after_event::rate_problem;
+use crate::path::newton::solve::responses::Responses;
 use crate::path::newton::solve::tangent::tangent_at;
 use crate::path::system::System;
 use crate::rate::problem::RateProblem;
@@ -72,10 +74,10 @@ fn search<T>(
     }
     system.count("factorisations", 1);
     let equations = system.equations(state);
-    let responses = responses_of(system, state, &active, &equations, direction)?;
-    let problem = rate_problem(system, &active, &responses);
+    let responses = Responses::new(system, state, &active, &equations, direction)?;
+    let problem = rate_problem(system, &active, &responses.unit);
     let mut programs = 0;
-    let response = |gaps: &[[f64; 2]], factor: f64| Some(without_factor(&responses, gaps, factor));
     let unit = direction * system.units().factor;
+    let response = |gaps: &[[f64; 2]], factor: f64| responses.combined(gaps, factor);
     prove((&problem, &system.scaled), (&active.contacts, unit), &mut programs, &response)
 }
