@@ -10,7 +10,7 @@ use voussoir_study::caught::caught;
 use voussoir_study::checks::Agreement;
 use voussoir_study::checks::{meaning, misfits};
 use voussoir_study::results::sealed_line::case_in;
-use voussoir_study::results::stored_path::{PATH_PROOFS, PathLine, StoredPath};
+use voussoir_study::results::stored_path::{PATH_PROOFS, PathEntry, PathLine, StoredPath};
 use voussoir_study::results::{CaseResult, OutputEntry};
 use voussoir_study::study::Case;
 
@@ -78,7 +78,7 @@ impl<'a> PathProofLines<'a> {
     /// Returns a case with its stored path, if it has a line. Cases must be requested in order of id.
     pub fn attached_to(&mut self, mut case: CaseResult) -> CaseResult {
         let line = self.of(case.label.id).filter(|own| own.line.case_hash == case.label.case_hash);
-        case.stored_path = line.map(|own| Arc::new(own.line.path));
+        case.stored_path = line.map(|own| PathEntry::Numbers(Arc::new(own.line.path)));
         case
     }
 

@@ -20,7 +20,7 @@ impl CaseTable for PathProofs {
     }
 
     fn add(&mut self, case: &CaseResult, out: &mut dyn Write) -> io::Result<()> {
-        let Some(path) = case.stored_path.as_deref() else { return Ok(()) };
+        let Some(path) = &case.stored_path else { return Ok(()) };
         let line = PathLine { id: case.label.id, case_hash: case.label.case_hash.clone(), path };
         out.write_all(&sealed_text(&serde_json::to_vec(&line)?))
     }

@@ -7,10 +7,9 @@ use super::load_factor_error::LoadFactorError;
 use super::output_entry::OutputEntry;
 use super::proof_fields::{ProofFields, SpaceProof};
 use super::sensitivity::SensitivityEntry;
-use super::stored_path::StoredPath;
+use super::stored_path::PathEntry;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
-use std::sync::Arc;
 use voussoir_core::certificate::{Certificate, Hinge, Mechanism};
 use voussoir_core::limit::{BracketPoint, Counters, Greatest, LowerProof, Status};
 use voussoir_core::path::LimitPointEnd;
@@ -210,7 +209,7 @@ pub struct CaseResult {
     /// The states and witnesses that prove the end of the path, if they are stored. They are not written to
     /// results.json.
     #[serde(skip)]
-    pub stored_path: Option<Arc<StoredPath>>,
+    pub stored_path: Option<PathEntry>,
 }
 
 impl CaseResult {

@@ -2,7 +2,9 @@
 //!
 //! Values that follow from these numbers and the study are not stored: gaps, openings, modes, residuals.
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
+use serde_json::value::RawValue;
+use std::sync::Arc;
 use voussoir_core::limit::Status;
 use voussoir_core::path::{FarkasVector, PathRate, PointMode};
 
@@ -19,6 +21,38 @@ pub struct PathLine<P> {
     pub case_hash: String,
     /// Its path: a [`StoredPath`].
     pub path: P,
+}
+
+/// The stored path of a case: its numbers, or the text of a journal or a part. The text is longer than all other results of the
+/// case, and most readers only copy it.
+#[derive(Debug, Clone)]
+pub enum PathEntry {
+    /// The numbers.
+    Numbers(Arc<StoredPath>),
+    /// Their JSON.
+    Text(Arc<RawValue>),
+}
+
+impl PathEntry {
+    /// Returns the numbers.
+    ///
+    /// # Errors
+    /// If the text is not a stored path.
+    pub fn numbers(&self) -> serde_json::Result<Arc<StoredPath>> {
+        match self {
+            PathEntry::Numbers(path) => Ok(path.clone()),
+            PathEntry::Text(text) => serde_json::from_str(text.get()).map(Arc::new),
+        }
+    }
+}
+
+impl Serialize for PathEntry {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            PathEntry::Numbers(path) => path.serialize(serializer),
+            PathEntry::Text(text) => text.serialize(serializer),
+        }
+    }
 }
 
 /// The states of a path and the proof of its end.

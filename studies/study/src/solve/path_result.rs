@@ -17,6 +17,7 @@ use super::symmetric::symmetric;
 use crate::results::convert::{field_entries, motion_entries};
 use crate::results::inelastic_state;
 use crate::results::path_state::{carried, mechanism_of, open_hinges, small};
+use crate::results::stored_path::PathEntry;
 use crate::results::thrust_line::thrust_line;
 use crate::results::{
     BranchEntry, CaseResult, DisplacementEntry, EndProof, EventEntry, PathRecord, Proof, ProofFields, StabilityEntry,
@@ -185,7 +186,7 @@ pub(super) fn path_result(
             end_proof,
             ..path_record(input, problem, solved, checker, &progress.history)
         },
-        stored_path: stored.filter(|_| status.is_answer()).map(Arc::new),
+        stored_path: stored.filter(|_| status.is_answer()).map(|path| PathEntry::Numbers(Arc::new(path))),
         ..CaseResult::empty()
     }
 }
