@@ -3,7 +3,7 @@
 use super::case_result::CaseResult;
 use super::stored_path::PathEntry;
 use serde::{Serialize, Serializer};
-use serde_json::value::RawValue;
+use std::sync::Arc;
 
 /// The text between a case and its stored path, which is its last value. In a JSON string its quotes would be escaped.
 const PATH_KEY: &[u8] = b",\"stored_path\":";
@@ -26,17 +26,16 @@ impl Serialize for CaseWithPath<'_> {
     }
 }
 
-/// Reads a case with the text of its stored path.
+/// Reads a case with the text of its stored path, which is not examined.
 ///
 /// # Errors
-/// If the text is not a case. A path that is not JSON is left out.
+/// If the text is not a case.
 pub fn read_case(text: &[u8]) -> serde_json::Result<CaseResult> {
     let key = text.windows(PATH_KEY.len()).position(|own| own == PATH_KEY);
     let Some(key) = key.filter(|_| text.ends_with(b"}")) else { return serde_json::from_slice(text) };
     let path = &text[key + PATH_KEY.len()..text.len() - 1];
     let mut case: CaseResult = serde_json::from_slice(&[&text[..key], b"}"].concat())?;
-    let path: Option<Box<RawValue>> = serde_json::from_slice(path).ok();
-    case.stored_path = path.map(|path| PathEntry::Text(path.into()));
+    case.stored_path = str::from_utf8(path).ok().map(|path| PathEntry::Text(Arc::from(path)));
     Ok(case)
 }
 
@@ -44,7 +43,6 @@ pub fn read_case(text: &[u8]) -> serde_json::Result<CaseResult> {
 mod tests {
     use super::*;
     use crate::results::stored_path::StoredPath;
-    use std::sync::Arc;
     use voussoir_core::limit::Status;
 
     /// A case is read as it was written, with its path, also if a text in it looks like the key of the path.

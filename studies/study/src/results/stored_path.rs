@@ -2,6 +2,7 @@
 //!
 //! Values that follow from these numbers and the study are not stored: gaps, openings, modes, residuals.
 
+use serde::ser::Error;
 use serde::{Deserialize, Serialize, Serializer};
 use serde_json::value::RawValue;
 use std::sync::Arc;
@@ -29,8 +30,8 @@ pub struct PathLine<P> {
 pub enum PathEntry {
     /// The numbers.
     Numbers(Arc<StoredPath>),
-    /// Their JSON.
-    Text(Arc<RawValue>),
+    /// Their JSON, which is checked when it is used.
+    Text(Arc<str>),
 }
 
 impl PathEntry {
@@ -41,7 +42,7 @@ impl PathEntry {
     pub fn numbers(&self) -> serde_json::Result<Arc<StoredPath>> {
         match self {
             PathEntry::Numbers(path) => Ok(path.clone()),
-            PathEntry::Text(text) => serde_json::from_str(text.get()).map(Arc::new),
+            PathEntry::Text(text) => serde_json::from_str(text).map(Arc::new),
         }
     }
 }
@@ -50,7 +51,9 @@ impl Serialize for PathEntry {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self {
             PathEntry::Numbers(path) => path.serialize(serializer),
-            PathEntry::Text(text) => text.serialize(serializer),
+            PathEntry::Text(text) => {
+                serde_json::from_str::<&RawValue>(text).map_err(S::Error::custom)?.serialize(serializer)
+            }
         }
     }
 }

@@ -59,7 +59,8 @@ pub struct Scene {
 const PASSING: [f64; 2] = [0.05, 0.1];
 
 impl Scene {
-    /// Creates the scene: rigid blocks under gravity (stage 1) and growing point loads (stage 2), compliant joints.
+    /// Creates the scene: rigid blocks under gravity (stage 1) and growing point loads or accelerations (stage 2), compliant
+    /// joints. Blocks that are bonded to the ground belong to it.
     pub fn of_case(case: &Case) -> Scene {
         let assembly = &case.assembly;
         let gravity = case.stages[0].gravity.expect("the first stage is gravity");
@@ -68,13 +69,21 @@ impl Scene {
         for (index, body) in assembly.bodies.iter().enumerate() {
             let (area, centre) = area_and_centre(&body.vertices);
             centres.push(centre);
-            if body.fixed {
+            let on_ground = |joint: &Joint| {
+                let sides = [joint.minus, joint.plus];
+                let bonded = assembly.law(joint).is_none() && sides.contains(&index);
+                bonded && sides.iter().any(|side| assembly.bodies[*side].fixed)
+            };
+            if body.fixed || assembly.joints.iter().any(on_ground) {
                 continue;
             }
             rows[index] = Some(3 * blocks.len());
-            let weight = gravity * (area * assembly.width * assembly.material(index).density());
+            let mass = area * assembly.width * assembly.material(index).density();
+            let weight = gravity * mass;
             let forces = case.stages[1].forces.iter().filter(|force| force.body == index);
-            let forces = forces.map(|force| (force.force, force.point - centre)).collect();
+            let forces = forces.map(|force| (force.force, force.point - centre));
+            let pushed = case.stages[1].accelerations.iter().map(|acceleration| (acceleration * mass, Point::zeros()));
+            let forces = forces.chain(pushed).collect();
             blocks.push(Block { centre, weight, forces });
         }
         let free = assembly.bodies.iter().flat_map(|body| &body.vertices);
@@ -121,7 +130,7 @@ fn contacts(
     size: f64,
     (rows, centres): (&[Option<usize>], &[Point]),
 ) -> Vec<Contact> {
-    let law = assembly.law(joint).expect("no bonded joints");
+    let Some(law) = assembly.law(joint) else { return Vec::new() };
     let stiffness = law.stiffness().expect("joints are compliant");
     let facets = law.facets().expect("friction");
     let sliding = facets.iter().find(|facet| facet.normal[1] != 0.0).expect("friction");
