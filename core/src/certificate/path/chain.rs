@@ -269,20 +269,21 @@ impl PathChain {
         let Some([before, here, after]) = at.checked_sub(1).and_then(|first| self.links.get(first..first + 3)) else {
             return false;
         };
-        let [arrival, departure] = [[before, here], [here, after]].map(|ends| self.contact_on_piece(ends));
-        arrival.iter().zip(&departure).any(|(a, b)| *a == -*b && *a != 0.0)
+        let [arrival, departure] = [[before, here], [here, after]].map(|ends| self.open_on_piece(ends));
+        let differs = |(before, after): (&Option<bool>, &Option<bool>)| before.zip(*after).is_some_and(|(a, b)| a != b);
+        arrival.iter().zip(&departure).any(differs)
     }
 
-    /// Returns for every contact point 1 if it is open on the piece between two states, −1 if it carries a force, otherwise 0.
-    fn contact_on_piece(&self, [from, to]: [&Link; 2]) -> Vec<f64> {
+    /// Returns for every contact point true if it is open on the piece between two states, false if it carries a force, otherwise
+    /// `None`.
+    fn open_on_piece(&self, [from, to]: [&Link; 2]) -> Vec<Option<bool>> {
         let state = midway(&self.structure, &from.state, &to.state);
         let rounding = if self.finite { 512.0 * f64::EPSILON * self.structure.length } else { 0.0 };
         let (slack, closed) = (ACTIVE * greatest_force(&state), CLOSED * deformation(&state) + rounding);
         let points = state.force.iter().zip(from.openings.iter().zip(&to.openings));
-        let of = |(force, (a, b)): (&[f64; 2], (&f64, &f64))| match 0.5 * (a + b) > closed {
-            true => 1.0,
-            false if force[0] > slack => -1.0,
-            false => 0.0,
+        let of = |(force, (a, b)): (&[f64; 2], (&f64, &f64))| {
+            let open = 0.5 * (a + b) > closed;
+            (open || force[0] > slack).then_some(open)
         };
         points.map(of).collect()
     }
