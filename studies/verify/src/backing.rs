@@ -35,9 +35,11 @@ pub fn backing(study: &Study, result: &CaseResult) -> Result<Backing, Vec<String
             Err(vec!["case_hash differs from the hash of this case of the study".into()])
         }
         Some(case) => match verify_case(&case, result) {
-            // A path that cannot be read proves nothing.
-            findings if findings.is_empty() => match result.stored_path.as_ref().and_then(|own| own.numbers().ok()) {
-                Some(path) => check_stored_path(&case, result, &path).map(|_| Backing::Proved).map_err(|why| vec![why]),
+            findings if findings.is_empty() => match &result.stored_path {
+                Some(path) => {
+                    let path = path.numbers().map_err(|why| vec![format!("its stored path cannot be read: {why}")])?;
+                    check_stored_path(&case, result, &path).map(|_| Backing::Proved).map_err(|why| vec![why])
+                }
                 None => Ok(backing_of(&case, result)),
             },
             findings => Err(findings),

@@ -170,7 +170,7 @@ impl PathChain {
         self.check_displacement(&state)?;
         let sizes = [deformation(&state), greatest_force(&state)];
         let [size, force] = [0, 1].map(|i| sizes[i].max(last.sizes[i]));
-        let rounding = if self.finite { 512.0 * f64::EPSILON * problem.length } else { 0.0 };
+        let rounding = self.rounding();
         let allowed = Allowed { slack: ACTIVE * force, opening: CLOSED * size + rounding };
         let mut openings = Vec::with_capacity(last.openings.len());
         let (mut drift, mut active) = (0.0f64, Vec::new());
@@ -263,8 +263,8 @@ impl PathChain {
         self.links.iter().map(|link| &link.state)
     }
 
-    /// Returns true if a contact point opens or closes at a state, by its number in the chain: the point carries a force on one
-    /// of the pieces before and after the state and is open on the other.
+    /// Returns true if a contact point opens or closes at a state, by its number in the chain: the point is pressed on one of the
+    /// pieces before and after the state and open on the other.
     pub fn opens_or_closes_at(&self, at: usize) -> bool {
         let Some([before, here, after]) = at.checked_sub(1).and_then(|first| self.links.get(first..first + 3)) else {
             return false;
@@ -274,12 +274,10 @@ impl PathChain {
         arrival.iter().zip(&departure).any(differs)
     }
 
-    /// Returns for every contact point true if it is open on the piece between two states, false if it carries a force, otherwise
-    /// `None`.
+    /// Returns for every contact point true if it is open on the piece between two states, false if it is pressed, otherwise `None`.
     fn open_on_piece(&self, [from, to]: [&Link; 2]) -> Vec<Option<bool>> {
         let state = midway(&self.structure, &from.state, &to.state);
-        let rounding = if self.finite { 512.0 * f64::EPSILON * self.structure.length } else { 0.0 };
-        let (slack, closed) = (ACTIVE * greatest_force(&state), CLOSED * deformation(&state) + rounding);
+        let [slack, closed] = self.tolerances(&state);
         let points = state.force.iter().zip(from.openings.iter().zip(&to.openings));
         let of = |(force, (a, b)): (&[f64; 2], (&f64, &f64))| {
             let open = 0.5 * (a + b) > closed;
@@ -299,10 +297,19 @@ impl PathChain {
         Ok((link, equations, self.modes(&link.state, &link.openings)))
     }
 
+    /// Returns the rounding error of gaps \[m\].
+    fn rounding(&self) -> f64 {
+        if self.finite { 512.0 * f64::EPSILON * self.structure.length } else { 0.0 }
+    }
+
+    /// Returns the greatest slack of active facets \[N\] and the greatest opening of closed points \[m\] at a state.
+    fn tolerances(&self, state: &PathState) -> [f64; 2] {
+        [ACTIVE * greatest_force(state), CLOSED * deformation(state) + self.rounding()]
+    }
+
     /// Returns the modes that all points may have at a state.
     pub(super) fn modes(&self, state: &PathState, openings: &[f64]) -> Vec<Vec<ModeCone>> {
-        let rounding = if self.finite { 512.0 * f64::EPSILON * self.structure.length } else { 0.0 };
-        let (slack, closed) = (ACTIVE * greatest_force(state), CLOSED * deformation(state) + rounding);
+        let [slack, closed] = self.tolerances(state);
         let points = self.structure.contacts.iter().zip(&state.force).zip(openings);
         points.map(|((contact, force), opening)| point_modes(contact, *force, *opening > closed, slack)).collect()
     }

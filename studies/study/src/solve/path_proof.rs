@@ -221,7 +221,8 @@ impl<'a> PathProof<'a> {
         found
     }
 
-    /// Checks that every state after which the load falls is a limit point, and that the load never falls by unloading only.
+    /// Checks that every state after which the load falls is a limit point, and that the load never falls by unloading only. From an
+    /// elastic piece the structure unloads only along this piece: a point that opens or closes begins another one.
     fn check_falls(&self) -> Result<(), String> {
         self.maxima().into_iter().try_for_each(|state| self.limit_point(state))?;
         let states: Vec<&PathState> = self.chain.states().collect();
@@ -241,8 +242,7 @@ impl<'a> PathProof<'a> {
     }
 
     /// Returns true if the load does not fall by unloading: friction dissipates, or the load moves on. If all sliding has stopped
-    /// and the structure is stable, the load moves back as it falls, and nothing dissipates. From an elastic piece the structure
-    /// unloads only along this piece: a point that opens or closes begins another one.
+    /// and the structure is stable, the load moves back as it falls, and nothing dissipates.
     fn goes_on(&self, before: &PathState, after: &PathState) -> bool {
         let moved = (after.displacement - before.displacement) * sense(&self.problem.load_steps[after.load_step]);
         moved > 0.0 || self.dissipation(before, after) > DISSIPATES
