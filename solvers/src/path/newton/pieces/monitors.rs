@@ -187,10 +187,11 @@ impl Monitor {
         }
     }
 
-    /// Returns the opening of a point per unit of its gap.
+    /// Returns the opening of a point per unit of its gap. A point whose slip is rounding slips in the sense of the tangent.
     fn opening(&self, system: &StepSystem, state: &State, tangent: &Tangent) -> [f64; 2] {
         let gap = system.step_gap(state, state, self.contact);
-        let sense = if gap[1] == 0.0 { tangent.gap[self.contact][1] } else { gap[1] }.signum();
+        let has_slipped = gap[1].abs() > SETTINGS.together * gap_rounding(system, state);
+        let sense = if has_slipped { gap[1] } else { tangent.gap[self.contact][1] }.signum();
         let facets = system.law(self.contact).map_or(&[][..], |law| &law.facets);
         state.mode[self.contact].opening(facets, sense)
     }
