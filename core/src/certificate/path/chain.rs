@@ -21,6 +21,8 @@ use std::sync::Arc;
 const DRIFT: f64 = 1e-7;
 /// Greatest opening of closed points, as a share of the greatest displacement.
 const CLOSED: f64 = 1e-9;
+/// Least slip, as a share of the greatest change of a gap.
+const SLIPS: f64 = 1e-6;
 /// Relative difference below which factors are equal.
 const SAME_FACTOR: f64 = 1e-9;
 /// Greatest error of the displacement of the load, relative to the greatest motion.
@@ -272,6 +274,15 @@ impl PathChain {
         let [arrival, departure] = [[before, here], [here, after]].map(|ends| self.open_on_piece(ends));
         let differs = |(before, after): (&Option<bool>, &Option<bool>)| before.zip(*after).is_some_and(|(a, b)| a != b);
         arrival.iter().zip(&departure).any(differs)
+    }
+
+    /// Returns true if a pressed contact point slips on the piece behind a state, by its number in the chain.
+    pub fn slips_after(&self, at: usize) -> bool {
+        let Some([from, to]) = self.links.get(at..at + 2) else { return false };
+        let moved = from.state.gap.iter().zip(&to.state.gap).map(|(a, b)| [b[0] - a[0], b[1] - a[1]]);
+        let least = SLIPS * moved.clone().flatten().fold(0.0, |greatest: f64, x| greatest.max(x.abs()));
+        let slips = |(open, by): (&Option<bool>, [f64; 2])| *open == Some(false) && by[1].abs() > least;
+        self.open_on_piece([from, to]).iter().zip(moved).any(slips)
     }
 
     /// Returns for every contact point true if it is open on the piece between two states, false if it is pressed, otherwise `None`.

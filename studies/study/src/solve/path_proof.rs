@@ -221,31 +221,43 @@ impl<'a> PathProof<'a> {
         found
     }
 
-    /// Checks that every state after which the load falls is a limit point, and that the load never falls by unloading only. From an
-    /// elastic piece the structure unloads only along this piece: a point that opens or closes begins another one.
+    /// Checks that every state after which the load falls is a limit point, and that the load never falls by unloading only. From any
+    /// state the structure can unload: all sliding stops, and no point opens or closes. A point that does begins another piece.
     fn check_falls(&self) -> Result<(), String> {
         self.maxima().into_iter().try_for_each(|state| self.limit_point(state))?;
         let states: Vec<&PathState> = self.chain.states().collect();
-        // True if nothing dissipates on the piece before a state, and true if the load falls on it.
-        let (mut was_elastic, mut fell) = (false, false);
-        for (at, pair) in states.windows(2).enumerate() {
-            let [before, after] = [pair[0], pair[1]];
-            let change = (after.factor - before.factor) * sense(&self.problem.load_steps[after.load_step]);
-            let falls = before.load_step == after.load_step && change < -SAME * before.factor.abs();
-            let elastic_branch = was_elastic && (fell || self.chain.opens_or_closes_at(at));
-            if falls && !elastic_branch && !self.goes_on(before, after) {
-                return Err(format!("behind the factor {} the structure may only unload", before.factor));
-            }
-            (was_elastic, fell) = (self.dissipation(before, after) <= DISSIPATES, falls);
+        let goes_on_falling = |at: usize| at > 0 && self.falls(&states, at - 1) && !self.flows(&states, at - 1);
+        let unloads = |at: &usize| {
+            self.falls(&states, *at)
+                && !(self.goes_on(&states, *at) || goes_on_falling(*at) || self.chain.opens_or_closes_at(*at))
+        };
+        match (0..states.len().saturating_sub(1)).find(unloads) {
+            Some(at) => Err(format!("behind the factor {} the structure may only unload", states[at].factor)),
+            None => Ok(()),
         }
-        Ok(())
     }
 
-    /// Returns true if the load does not fall by unloading: friction dissipates, or the load moves on. If all sliding has stopped
-    /// and the structure is stable, the load moves back as it falls, and nothing dissipates.
-    fn goes_on(&self, before: &PathState, after: &PathState) -> bool {
-        let moved = (after.displacement - before.displacement) * sense(&self.problem.load_steps[after.load_step]);
-        moved > 0.0 || self.dissipation(before, after) > DISSIPATES
+    /// Returns the growth of a quantity on the piece behind a state, in the sense of its load step.
+    fn growth(&self, states: &[&PathState], at: usize, of: fn(&PathState) -> f64) -> f64 {
+        (of(states[at + 1]) - of(states[at])) * sense(&self.problem.load_steps[states[at + 1].load_step])
+    }
+
+    /// Returns true if the load falls on the piece behind a state.
+    fn falls(&self, states: &[&PathState], at: usize) -> bool {
+        states[at].load_step == states[at + 1].load_step
+            && self.growth(states, at, |own| own.factor) < -SAME * states[at].factor.abs()
+    }
+
+    /// Returns true if the load does not fall by unloading behind a state: the structure flows, or the load moves on. If all sliding
+    /// has stopped and the structure is stable, the load moves back as it falls, and nothing flows.
+    fn goes_on(&self, states: &[&PathState], at: usize) -> bool {
+        self.growth(states, at, |own| own.displacement) > 0.0 || self.flows(states, at)
+    }
+
+    /// Returns true if friction dissipates on the piece behind a state, or if a point slips with associated flow, which does not
+    /// dissipate.
+    fn flows(&self, states: &[&PathState], at: usize) -> bool {
+        self.dissipation(states[at], states[at + 1]) > DISSIPATES || self.chain.slips_after(at)
     }
 
     /// Returns the dissipation between two states, relative to the work of contact forces and of the load.
