@@ -146,6 +146,10 @@ fn parts_that_do_not_fit_are_refused() {
     case["case_hash"] = "0".repeat(32).into();
     change(&whole.replacen(lines[1], sealed(&case).trim_end(), 1));
     refused(&["merge", "parts"], &["differs from the hash of this case"]);
+    let mut case = serde_json::from_str::<Value>(lines[1]).expect("a line")["case"].take();
+    case["stored_path"] = serde_json::json!({ "states": 7 });
+    change(&whole.replacen(lines[1], sealed(&case).trim_end(), 1));
+    refused(&["merge", "parts"], &["stored path"]);
     change(&whole);
     std::fs::rename(&path, at.join(part(2)).join("unfinished.jsonl")).expect("renamed");
     refused(&["merge", "parts"], &["is not finished: run it again with --resume"]);

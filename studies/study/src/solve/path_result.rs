@@ -80,7 +80,7 @@ pub(super) fn path_result(
     chain.add_peak(&solved.state);
     let proof = PathProof::new(&chain, problem, input.settings, &solved);
     let end = proof.end();
-    let end_proof = end.as_ref().ok().copied();
+    let (end_proof, unproved) = (end.as_ref().ok().copied(), end.as_ref().err().cloned());
     let stored = end_proof.and_then(|_| stored(&chain, &solved, input.stored_numbers));
     if believed {
         progress.add_peak(&solved.state);
@@ -117,6 +117,9 @@ pub(super) fn path_result(
     let end_proof = end_proof.filter(|_| status.is_answer());
     if end_proof == Some(EndProof::LoadingSet) {
         notes.push(LOADING_SET.into());
+    }
+    if let Some(why) = unproved.filter(|_| status.is_answer()) {
+        notes.push(format!("the end of the path relies on its solver, because its states do not prove it: {why}"));
     }
     solved.status = status;
     add_last_limit_point(&mut solved);
