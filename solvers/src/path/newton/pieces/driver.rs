@@ -6,7 +6,7 @@ use super::corner::corner;
 use super::corrector::correct;
 use super::end::end_of_range;
 use super::loading_set::{LoadingRate, bond_rate, loading_rate};
-use super::monitors::{Monitor, What};
+use super::monitors::{MAX_BISECTIONS, Monitor, What};
 use super::other_branches::note_other_branches;
 use super::piece::Piece;
 use super::plateau::{Plateau, plateau, stands_still, stood_still};
@@ -519,9 +519,11 @@ impl<'d> Run<'d> {
         let mut work = instability(&mut tracer.system, &end.state)?;
         let start = tracer.state.clone();
         let (mut low, mut high) = (StepEnd::first(&start, &self.piece), end.clone());
-        while high.length - low.length > SETTINGS.admissible * end.length {
+        // In a very short step a state is not found as near to a requested length as the bracket is narrow.
+        for _ in 0..MAX_BISECTIONS {
+            let wide = high.length - low.length > SETTINGS.admissible * end.length;
             // At the bifurcation itself the equations are singular.
-            let middle = [0.5, 0.4, 0.6].into_iter().find_map(|share| {
+            let middle = [0.5, 0.4, 0.6].into_iter().filter(|_| wide).find_map(|share| {
                 let length = low.length + share * (high.length - low.length);
                 state_at(&mut tracer.system, (&start, &self.piece), &[&low, &high], length)
             });
@@ -549,13 +551,8 @@ impl<'d> Run<'d> {
             Departure::Falls => {
                 let (load_step, factor) = (tracer.in_force.load_step, here.factor);
                 self.standing.unstable = true;
-                tracer.record.branchings.push(Branching {
-                    load_step,
-                    factor,
-                    snaps: false,
-                    released: 0.0,
-                    twins: false,
-                });
+                let branching = Branching { load_step, factor, snaps: false, released: 0.0, twins: false };
+                tracer.record.branchings.push(branching);
                 tracer.record.notes.push(format!(
                     "at factor {factor} the equilibrium becomes unstable under its loads, and no stable one is near: a bifurcation"
                 ));
@@ -726,11 +723,8 @@ impl<'d> Run<'d> {
         note_peak(tracer, Some(&self.piece.tangent), self.range.direction);
         if let Some(why) = found.unproved {
             tracer.limit.unproven = Some(why);
-            return end_path(
-                tracer,
-                Status::Stalled,
-                "the load stands still, which is not proved to be its greatest".into(),
-            );
+            let why = "the load stands still, which is not proved to be its greatest".to_string();
+            return end_path(tracer, Status::Stalled, why);
         }
         if !found.moved.into_iter().all(|state| commit(tracer, state)) {
             return LoadStepEnding::Ended;
