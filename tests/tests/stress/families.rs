@@ -333,6 +333,16 @@ fn points_that_open_stay_open() {
     }
 }
 
+/// A path that leaves the same unstable state again repeats itself: its greatest load is known.
+#[test]
+fn a_path_that_returns_has_ended() {
+    let scene = family_scene(Family::Random, 12322);
+    for lines in ["", "solver = \"newton_path\"\ncontinuation = { strategy = \"displacement_control\" }"] {
+        let answer = Answer::of(solve_case(&first_case(&scene.study(Form::Given, lines))));
+        assert!(answer.status == Status::Collapse && same(answer.load, 92.547_002_4), "{}", answer.shown());
+    }
+}
+
 /// Many scenes have the same answer in all forms and with all strategies. The test prints a table.
 #[test]
 #[ignore = "a minute for 100 scenes; FAMILY, CASES and FIRST choose the scenes"]

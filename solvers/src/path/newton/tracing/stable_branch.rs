@@ -28,13 +28,8 @@ pub fn leave_unstable(tracer: &mut Tracer, state: &State, work: &SecondOrderWork
     let found = relaxations(&mut tracer.system, state, work);
     let Some((chosen, twins)) = choose(tracer, found) else { return Departure::Falls };
     let Relaxation { before, next, released, dissipated, .. } = chosen;
-    tracer.record.branchings.push(Branching {
-        load_step: tracer.in_force.load_step,
-        factor: state.factor,
-        snaps,
-        released,
-        twins,
-    });
+    let branching = Branching { load_step: tracer.in_force.load_step, factor: state.factor, snaps, released, twins };
+    tracer.record.branchings.push(branching);
     let what = if snaps { "snaps" } else { "becomes unstable, and leaves its branch" };
     tracer.record.notes.push(format!(
         "at factor {} the structure {what}: damped descent sets free {released:.3e} J{}",
