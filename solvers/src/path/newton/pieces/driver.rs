@@ -510,10 +510,10 @@ impl<'d> Run<'d> {
     /// Returns the first state of a step that is unstable under its loads, on a rising branch above all limit points,
     /// with its second-order work, and true if a shorter step may locate it better.
     fn first_unstable(&self, tracer: &mut Tracer, end: &StepEnd) -> Option<(StepEnd, SecondOrderWork, bool)> {
-        let factor = end.state.factor;
-        let mut own = tracer.limit.proven_peaks.iter().filter(|peak| peak.load_step == tracer.in_force.load_step);
-        let above = own.all(|peak| (factor - peak.factor) * self.range.direction > 0.0);
-        if self.standing.unstable || !self.rises || !above || end.length == 0.0 {
+        let own = tracer.limit.proven_peaks.iter().filter(|peak| peak.load_step == tracer.in_force.load_step);
+        let greatest = own.map(|peak| peak.factor * self.range.direction).fold(f64::NEG_INFINITY, f64::max);
+        let above = |state: &State| state.factor * self.range.direction > greatest;
+        if self.standing.unstable || !self.rises || !above(&end.state) || end.length == 0.0 {
             return None;
         }
         let mut work = instability(&mut tracer.system, &end.state)?;
@@ -528,7 +528,7 @@ impl<'d> Run<'d> {
                 state_at(&mut tracer.system, (&start, &self.piece), &[&low, &high], length)
             });
             let Some(middle) = middle else { break };
-            match instability(&mut tracer.system, &middle.state) {
+            match above(&middle.state).then(|| instability(&mut tracer.system, &middle.state)).flatten() {
                 Some(here) => (work, high) = (here, middle),
                 None => low = middle,
             }

@@ -3,19 +3,9 @@
 use crate::path::newton::tracing::tracer::{LoadStepEnding, Tracer, end_path, is_above};
 use crate::settings::SETTINGS;
 use voussoir_core::limit::Status;
-use voussoir_core::path::{Branching, LoadStep};
+use voussoir_core::path::LoadStep;
 
-/// Returns true if the path has left the same unstable state twice: from there it repeats itself.
-fn returns(tracer: &Tracer) -> bool {
-    let near = |a: f64, b: f64, share: f64| (a - b).abs() <= share * a.abs();
-    let Some((last, earlier)) = tracer.record.branchings.split_last() else { return false };
-    let same = |own: &Branching| {
-        near(own.factor, last.factor, SETTINGS.admissible) && near(own.released, last.released, SETTINGS.fine)
-    };
-    last.released > 0.0 && earlier.iter().any(|own| own.load_step == last.load_step && same(own))
-}
-
-/// Returns the ending of a path that has reached the end of its requested range, or that repeats itself.
+/// Returns the ending of a path that has reached the end of its requested range.
 pub(super) fn end_of_range(
     tracer: &mut Tracer,
     load_step: &LoadStep,
@@ -50,7 +40,7 @@ pub(super) fn end_of_range(
                 || least.is_some_and(|least| (factor - least) * direction <= 0.0)
         }
     };
-    if !(done || returns(tracer)) {
+    if !done {
         return None;
     }
     if is_above(direction, greatest, factor) {
