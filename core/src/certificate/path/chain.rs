@@ -21,7 +21,7 @@ use std::sync::Arc;
 const DRIFT: f64 = 1e-7;
 /// Greatest opening of closed points, as a share of the greatest displacement.
 const CLOSED: f64 = 1e-9;
-/// Least slip, as a share of the greatest change of a gap.
+/// Least slip, as a share of the greatest change of a gap or a displacement.
 const SLIPS: f64 = 1e-6;
 /// Relative difference below which factors are equal.
 const SAME_FACTOR: f64 = 1e-9;
@@ -280,7 +280,8 @@ impl PathChain {
     pub fn slips_after(&self, at: usize) -> bool {
         let Some([from, to]) = self.links.get(at..at + 2) else { return false };
         let moved = from.state.gap.iter().zip(&to.state.gap).map(|(a, b)| [b[0] - a[0], b[1] - a[1]]);
-        let least = SLIPS * moved.clone().flatten().fold(0.0, |greatest: f64, x| greatest.max(x.abs()));
+        let motions = from.state.motion.iter().zip(&to.state.motion).map(|(a, b)| [b[0] - a[0], b[1] - a[1]]);
+        let least = SLIPS * moved.clone().chain(motions).flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
         let slips = |(open, by): (&Option<bool>, [f64; 2])| *open == Some(false) && by[1].abs() > least;
         self.open_on_piece([from, to]).iter().zip(moved).any(slips)
     }

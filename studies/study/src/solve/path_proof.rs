@@ -221,16 +221,15 @@ impl<'a> PathProof<'a> {
         found
     }
 
-    /// Checks that every state after which the load falls is a limit point, and that the load never falls by unloading only. From any
-    /// state the structure can unload: all sliding stops, and no point opens or closes. A point that does begins another piece.
+    /// Checks that every state after which the load falls is a limit point, and that the load never falls by unloading only. From an
+    /// elastic piece the structure unloads only along this piece: a point that opens or closes begins another one.
     fn check_falls(&self) -> Result<(), String> {
         self.maxima().into_iter().try_for_each(|state| self.limit_point(state))?;
         let states: Vec<&PathState> = self.chain.states().collect();
-        let goes_on_falling = |at: usize| at > 0 && self.falls(&states, at - 1) && !self.flows(&states, at - 1);
-        let unloads = |at: &usize| {
-            self.falls(&states, *at)
-                && !(self.goes_on(&states, *at) || goes_on_falling(*at) || self.chain.opens_or_closes_at(*at))
+        let elastic_branch = |at: usize| {
+            at > 0 && !self.flows(&states, at - 1) && (self.falls(&states, at - 1) || self.chain.opens_or_closes_at(at))
         };
+        let unloads = |at: &usize| self.falls(&states, *at) && !self.goes_on(&states, *at) && !elastic_branch(*at);
         match (0..states.len().saturating_sub(1)).find(unloads) {
             Some(at) => Err(format!("behind the factor {} the structure may only unload", states[at].factor)),
             None => Ok(()),
@@ -254,8 +253,8 @@ impl<'a> PathProof<'a> {
         self.growth(states, at, |own| own.displacement) > 0.0 || self.flows(states, at)
     }
 
-    /// Returns true if friction dissipates on the piece behind a state, or if a point slips with associated flow, which does not
-    /// dissipate.
+    /// Returns true if friction dissipates on the piece behind a state, or if a pressed point slips there: with associated flow, slip
+    /// does not dissipate.
     fn flows(&self, states: &[&PathState], at: usize) -> bool {
         self.dissipation(states[at], states[at + 1]) > DISSIPATES || self.chain.slips_after(at)
     }
