@@ -56,7 +56,7 @@ STUDIES = {
     ),
     "finite displacements after a settlement": (
         with_(
-            scene=JOINTED,
+            scene={**JOINTED, "voussoirs": 7},
             joints={"dry": SOFT},
             stages=[DEAD, SPREAD, LIVE],
             solver={"solver": "newton_path", "kinematics": "finite"},
