@@ -1,7 +1,7 @@
 //! Factorisation L U of unsymmetric sparse matrices.
 
 use super::entries::Entries;
-use faer::linalg::solvers::Solve;
+use faer::linalg::solvers::{PartialPivLu, Solve};
 use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
 use faer::sparse::{SparseColMat, SymbolicSparseColMat};
 use faer::{Mat, MatMut};
@@ -11,8 +11,16 @@ use std::sync::{Mutex, PoisonError};
 /// L U of a square sparse matrix with partial pivoting, with the matrix itself for refinement.
 pub struct SparseLu {
     matrix: SparseColMat<usize, f64>,
-    factors: Lu<usize, f64>,
+    factors: Factors,
 }
+
+enum Factors {
+    Sparse(Lu<usize, f64>),
+    Full(PartialPivLu<f64>),
+}
+
+/// If more than one entry in so many is stored, the factors are nearly full, and the matrix is factorised as a full one.
+const FULL: usize = 8;
 
 /// The pattern of a matrix and the order of elimination that keeps its factors sparse. Matrices with the same pattern
 /// share it, whatever their values.
@@ -91,7 +99,7 @@ fn by_columns(size: usize, entries: &[(usize, usize, f64)]) -> SparseColMat<usiz
 }
 
 impl SparseLu {
-    /// Factorises a matrix. `None` if its pattern is singular.
+    /// Factorises a matrix. `None` if its pattern is found to be singular.
     pub fn new(size: usize, entries: &Entries) -> Option<Self> {
         SparseLu::analysed(size, entries, &mut Analysis::default())
     }
@@ -99,22 +107,27 @@ impl SparseLu {
     /// Factorises a matrix with the analysis of one of the same pattern; if the pattern differs, the analysis is
     /// replaced. `None` as for [`SparseLu::new`].
     pub fn analysed(size: usize, entries: &Entries, analysis: &mut Analysis) -> Option<Self> {
-        let matrix = by_columns(size, entries);
-        let order = analysis.of(&matrix)?;
-        SparseLu::ordered(matrix, order)
+        SparseLu::ordered(by_columns(size, entries), |matrix| analysis.of(matrix))
     }
 
     /// Factorises a matrix with an analysis that several threads share; it is locked only while it is read. `None` as for
     /// [`SparseLu::new`].
     pub fn analysed_together(size: usize, entries: &Entries, analysis: &Mutex<Analysis>) -> Option<Self> {
-        let matrix = by_columns(size, entries);
         // A thread that has panicked cannot leave half an analysis: the analysis is replaced as a whole.
-        let order = analysis.lock().unwrap_or_else(PoisonError::into_inner).of(&matrix)?;
-        SparseLu::ordered(matrix, order)
+        SparseLu::ordered(by_columns(size, entries), |matrix| {
+            analysis.lock().unwrap_or_else(PoisonError::into_inner).of(matrix)
+        })
     }
 
-    fn ordered(matrix: SparseColMat<usize, f64>, order: SymbolicLu<usize>) -> Option<Self> {
-        let factors = Lu::try_new_with_symbolic(order, matrix.as_ref()).ok()?;
+    fn ordered(
+        matrix: SparseColMat<usize, f64>,
+        order: impl FnOnce(&SparseColMat<usize, f64>) -> Option<SymbolicLu<usize>>,
+    ) -> Option<Self> {
+        let factors = if FULL * matrix.val().len() > matrix.nrows() * matrix.ncols() {
+            Factors::Full(matrix.to_dense().partial_piv_lu())
+        } else {
+            Factors::Sparse(Lu::try_new_with_symbolic(order(&matrix)?, matrix.as_ref()).ok()?)
+        };
         Some(SparseLu { matrix, factors })
     }
 
@@ -157,7 +170,10 @@ impl SparseLu {
     }
 
     fn in_place(&self, x: MatMut<'_, f64>) {
-        self.factors.solve_in_place(x);
+        match &self.factors {
+            Factors::Sparse(factors) => factors.solve_in_place(x),
+            Factors::Full(factors) => factors.solve_in_place(x),
+        }
     }
 }
 
@@ -165,11 +181,12 @@ impl SparseLu {
 mod tests {
     use super::*;
 
-    /// Repeated entries in any order are added, and matrices with one pattern share its analysis.
+    /// Repeated entries in any order are added, full and sparse matrices are solved, and matrices with one sparse pattern share
+    /// its analysis.
     #[test]
     fn entries_add_up_and_a_pattern_is_analysed_once() {
-        let entries = |scale: f64| -> Entries {
-            vec![
+        let entries = |scale: f64, size: usize| -> Entries {
+            let three = [
                 (2, 0, 1.0),
                 (0, 0, scale),
                 (1, 2, 4.0),
@@ -179,23 +196,28 @@ mod tests {
                 (1, 2, -1.0),
                 (2, 0, 1.5),
                 (1, 1, 1.0),
-            ]
+            ];
+            three.into_iter().chain((3..size).map(|i| (i, i, 1.0))).collect()
         };
-        let mut analysis = Analysis::default();
-        for scale in [2.0, -0.25] {
-            let factors = SparseLu::analysed(3, &entries(scale), &mut analysis).unwrap();
-            assert!(analysis.0.as_ref().is_some_and(|known| known.rows.len() == 6));
-            let x = factors.solve(&[vec![1.0, 2.0, 3.0]], 1).unwrap().swap_remove(0);
-            let rows =
-                [(scale + 1.0) * x[0] + 0.5 * x[2] - 1.0, x[1] + 3.0 * x[2] - 2.0, 2.5 * x[0] - 2.0 * x[1] - 3.0];
-            assert!(rows.iter().all(|r| r.abs() < 1e-14), "{rows:?}");
-            let there = DMatrix::from_column_slice(3, 1, &[1.0, -1.0, 2.0]);
-            let left = factors.left(&[vec![1.0, 2.0, 3.0]], &there).swap_remove(0);
-            assert_eq!(left, [1.0 - (scale + 1.0) - 1.0, 2.0 + 1.0 - 6.0, 3.0 - 2.5 - 2.0]);
+        for (size, pattern) in [(3, None), (24, Some(6 + 21))] {
+            let stored = |analysis: &Analysis| analysis.0.as_ref().map(|known| known.rows.len());
+            let mut analysis = Analysis::default();
+            let padded = |three: [f64; 3]| three.into_iter().chain((3..size).map(|_| 0.0)).collect::<Vec<f64>>();
+            for scale in [2.0, -0.25] {
+                let factors = SparseLu::analysed(size, &entries(scale, size), &mut analysis).unwrap();
+                assert_eq!(stored(&analysis), pattern);
+                let x = factors.solve(&[padded([1.0, 2.0, 3.0])], 1).unwrap().swap_remove(0);
+                let rows =
+                    [(scale + 1.0) * x[0] + 0.5 * x[2] - 1.0, x[1] + 3.0 * x[2] - 2.0, 2.5 * x[0] - 2.0 * x[1] - 3.0];
+                assert!(rows.iter().all(|r| r.abs() < 1e-14), "{rows:?}");
+                let there = DMatrix::from_column_slice(size, 1, &padded([1.0, -1.0, 2.0]));
+                let left = factors.left(&[padded([1.0, 2.0, 3.0])], &there).swap_remove(0);
+                assert_eq!(left, padded([1.0 - (scale + 1.0) - 1.0, 2.0 + 1.0 - 6.0, 3.0 - 2.5 - 2.0]));
+            }
+            let mut other = entries(1.0, size);
+            other.push((0, 1, 1.0));
+            assert!(SparseLu::analysed(size, &other, &mut analysis).is_some());
+            assert_eq!(stored(&analysis), pattern.map(|count| count + 1));
         }
-        let mut other = entries(1.0);
-        other.push((0, 1, 1.0));
-        assert!(SparseLu::analysed(3, &other, &mut analysis).is_some());
-        assert!(analysis.0.is_some_and(|known| known.rows.len() == 7));
     }
 }
