@@ -33,6 +33,12 @@ impl TractionPoint {
         dissipated: 0.0,
         supplied: 0.0,
     };
+
+    /// Returns true if all its numbers are finite.
+    pub fn is_finite(&self) -> bool {
+        let own = [self.stored, self.dissipated, self.supplied];
+        self.traction.iter().chain(self.tangent.as_flattened()).chain(&own).all(|v| v.is_finite())
+    }
 }
 
 /// A law that computes the traction from the gap: a pure function of the gap g = (g_n, g_t) \[m\] (g_n > 0 is open) and

@@ -16,7 +16,7 @@ use super::point_modes::{ModeCone, dot};
 use super::rate_equations::{Column, RateEquations};
 use crate::law::Facet;
 use crate::linear::{Entries, SparseLu};
-use crate::path::{FarkasVector, LawStep, PathProblem, PathRate, PathState, PointMode, RateClaim, Witness};
+use crate::path::{FarkasVector, LawStep, PathProblem, PathRate, PathState, PointMode, RateClaim, Responses, Witness};
 use nalgebra::DMatrix;
 use std::sync::Arc;
 
@@ -166,23 +166,18 @@ impl PathChain {
     /// Returns the tangents A T of responses at a share of a rate from a state, and the energy that they dissipate
     /// \[J\].
     fn tangents(&self, link: &Link, rate: &PathRate, share: f64) -> Result<(Vec<Option<Matrix>>, f64), String> {
-        let (mut at, mut dissipated) = (0, 0.0);
+        let gap = |(gap, rate): (&[f64; 2], &[f64; 2])| [0, 1].map(|k| gap[k] + share * rate[k]);
+        let gaps: Vec<[f64; 2]> = link.state.gap.iter().zip(&rate.gap).map(gap).collect();
+        let responses = Responses::new(&self.structure);
         let step = LawStep::from(&self.structure, &link.state);
-        let of = |(index, contact): (usize, &crate::path::Contact)| {
-            let Some(law) = contact.law.response() else { return Ok(None) };
-            let before = &link.history.memory[at..at + law.state_size()];
-            at += law.state_size();
-            let mut after = before.to_vec();
-            let gap = [0, 1].map(|k| link.state.gap[index][k] + share * rate.gap[index][k]);
-            let point = law
-                .respond_point(gap, &step.context(&self.structure, index), before, &mut after)
-                .map_err(|why| why.to_string())?;
-            dissipated += contact.area * point.dissipated;
-            Ok(Some(point.tangent.map(|row| row.map(|t| contact.area * t))))
-        };
-        let tangents: Result<Vec<Option<Matrix>>, String> =
-            self.structure.contacts.iter().enumerate().map(of).collect();
-        Ok((tangents?, dissipated))
+        let (points, _) = responses.update(&gaps, &link.history.memory, &step)?;
+        let (mut tangents, mut dissipated) = (vec![None; points.len()], 0.0);
+        for contact in responses.points() {
+            let (area, point) = (self.structure.contacts[contact].area, &points[contact]);
+            dissipated += area * point.dissipated;
+            tangents[contact] = Some(point.tangent.map(|row| row.map(|t| area * t)));
+        }
+        Ok((tangents, dissipated))
     }
 
     /// Returns the yielding blocks, linearised at a share of a rate from a state.

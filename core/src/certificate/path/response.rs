@@ -2,7 +2,7 @@
 
 use crate::certificate::MechanismPlace;
 use crate::law::TractionPoint;
-use crate::path::{LawStep, PathProblem, PathState};
+use crate::path::{LawStep, PathProblem, PathState, Responses};
 
 /// Results of contact points, and the states of all responses after them.
 type Updated = (Vec<(usize, TractionPoint)>, Vec<f64>);
@@ -10,20 +10,12 @@ type Updated = (Vec<(usize, TractionPoint)>, Vec<f64>);
 /// Updates every contact point with a response once in a step of laws, from the state `before`. Returns contact points with results, and
 /// the states after them. `None` if `before` has the wrong length or an update fails.
 pub(super) fn updated(problem: &PathProblem, gaps: &[[f64; 2]], before: &[f64], step: &LawStep) -> Option<Updated> {
-    let (mut after, mut points) = (before.to_vec(), Vec::new());
     if before.len() != problem.memory_size() || step.previous_gap.len() != gaps.len() {
         return None;
     }
-    let mut at = 0;
-    for (contact, gap) in gaps.iter().enumerate().take(problem.contacts.len()) {
-        let Some(law) = problem.response(contact) else { continue };
-        let place = at..at + law.state_size();
-        at = place.end;
-        let point =
-            law.respond_point(*gap, &step.context(problem, contact), &before[place.clone()], &mut after[place]).ok()?;
-        points.push((contact, point));
-    }
-    Some((points, after))
+    let responses = Responses::new(problem);
+    let (points, after) = responses.update(gaps, before, step).ok()?;
+    Some((responses.points().map(|contact| (contact, points[contact])).collect(), after))
 }
 
 /// Returns the difference between forces and the forces of responses, relative to the greatest contact force, and the

@@ -2,9 +2,9 @@
 
 use super::scenes::{point, structure};
 use crate::certificate::path::chain::PathChain;
-use crate::law::{InterfaceResponse, PointContext, TractionPoint, UpdateBranch, UpdateFailure};
+use crate::law::{Facet, InterfaceResponse, PointContext, TractionPoint, UpdateBranch, UpdateFailure};
 use crate::model::geometry::Vec2;
-use crate::path::{PathProblem, PathRate, PathState, PointLaw, RateClaim, Witness};
+use crate::path::{LawStep, PathProblem, PathRate, PathState, PointLaw, RateClaim, Responses, Witness};
 use std::sync::Arc;
 
 /// Stiffness \[Pa/m\], strength \[Pa\] and slope of the falling branch \[Pa/m\] in tension.
@@ -175,4 +175,29 @@ fn a_bond_that_hardens_has_no_limit_point() {
             assert!(verdict(&hardening, &state, rate(velocity, [-slope; 2])).is_err(), "{opening} {velocity:?}");
         }
     }
+}
+
+/// Points of two laws in any order have the results and the states that each has alone; other points are zero.
+#[test]
+fn laws_are_asked_together_and_say_what_they_say_alone() {
+    let [soft, hard] = [2e5, -1e5].map(|slope| Arc::new(Bond { slope }));
+    let [a, b] = [&soft, &hard].map(|law| PointLaw::Response(law.clone()));
+    let facets = PointLaw::Facets(Facet::friction(0.5, 0.0, 0.0).to_vec().into());
+    let at = |(k, law): (usize, PointLaw)| point(Vec2::new(k as f64, 0.0), Vec2::new(0.0, 1.0), law, [0.0; 2]);
+    let points = [a.clone(), b.clone(), facets, a, b].into_iter().enumerate().map(at).collect();
+    let problem = structure(Vec2::zeros(), points, Vec2::new(0.0, 1.0));
+    let gaps: Vec<[f64; 2]> = (1..=5).map(|k| [k as f64 * PEAK, 1e-6 * k as f64]).collect();
+    let (before, step) = ([3.5 * PEAK; 4], LawStep::instant(&gaps, Vec::new()));
+    let responses = Responses::new(&problem);
+    let (found, after) = responses.update(&gaps, &before, &step).expect("finite results");
+    let asked: Vec<(usize, [f64; 2])> = [4, 2, 0].map(|c| (c, gaps[c])).into();
+    let some = responses.at(&asked, &before, &step);
+    for (place, (contact, law)) in [(0, &soft), (1, &hard), (3, &soft), (4, &hard)].into_iter().enumerate() {
+        let mut new = [0.0];
+        let alone =
+            law.respond_point(gaps[contact], &PointContext::default(), &before[..1], &mut new).expect("a result");
+        assert_eq!((found[contact], after[place]), (alone, new[0]), "point {contact}");
+    }
+    assert_eq!((found[2], responses.count()), (TractionPoint::ZERO, 4));
+    assert_eq!(some, [Some(found[4]), None, Some(found[0])]);
 }

@@ -10,7 +10,7 @@ use super::kinematics::{gradient, hessian};
 use super::limits::Limits;
 use super::loads::StagedLoads;
 use super::state::State;
-use super::tractions::{Responses, TractionUpdates};
+use super::tractions::{TractionUpdates, update};
 use crate::contact::mode::ContactMode;
 use crate::contact::yield_polygon::YieldPolygon;
 use crate::linear::condensed::Elimination;
@@ -21,7 +21,7 @@ use std::collections::VecDeque;
 use std::rc::Rc;
 use voussoir_core::law::TractionPoint;
 use voussoir_core::limit::Counters;
-use voussoir_core::path::{LawStep, PathProblem};
+use voussoir_core::path::{LawStep, PathProblem, Responses};
 
 /// Laws of the contact points.
 pub struct Laws {
@@ -91,7 +91,7 @@ fn softening(problem: &PathProblem, responses: &Responses) -> Result<Vec<[f64; 2
     let closed = vec![[0.0; 2]; problem.contacts.len()];
     // Without fields: a pressure of water may open a joint before any load presses it.
     let step = LawStep::instant(&closed, Vec::new());
-    let untouched = responses.update(&closed, &problem.untouched(), &step)?;
+    let untouched = update(responses, &closed, &problem.untouched(), &step)?;
     let of_point = |(point, c): (&TractionPoint, &voussoir_core::path::Contact)| {
         [0, 1].map(|k| {
             let stiffness = -point.tangent[k][k] * c.area;
@@ -205,7 +205,7 @@ impl<'a> StepSystem<'a> {
         };
         // The update of undeformed joints has succeeded in `new`.
         let step = LawStep::instant(&state.gap, first_fields(self.problem));
-        if let Ok(updates) = self.laws.responses.update(&state.gap, &state.updates.memory, &step) {
+        if let Ok(updates) = update(&self.laws.responses, &state.gap, &state.updates.memory, &step) {
             state.updates = updates;
         }
         state

@@ -8,6 +8,7 @@ use super::piece::Piece;
 use crate::linear::inner;
 use crate::path::newton::model::state::{State, Tangent};
 use crate::path::newton::model::system::StepSystem;
+use crate::path::newton::model::tractions::at;
 use crate::path::newton::quantities::ahead::{facing_ahead, length_ahead};
 use crate::path::newton::quantities::control_row::scaled_row;
 use crate::path::newton::quantities::inelastic::plastic_power;
@@ -181,11 +182,12 @@ fn rate_of(system: &mut StepSystem, state: &State, row: &[f64]) -> Option<Unit> 
 fn dissipation(system: &StepSystem, state: &State, ahead: &State, rate: &Tangent) -> f64 {
     let length = length_ahead(system, state);
     let mut sum = length * plastic_power(system, ahead, rate);
-    for c in system.laws.responses.points() {
-        let gap = [0, 1].map(|k| state.gap[c][k] + length * rate.gap[c][k]);
-        if let Some(point) = system.laws.responses.at(c, gap, &state.updates.memory, &system.instant(state)) {
-            sum += system.problem.contacts[c].area * point.dissipated;
-        }
+    let gap = |c: usize| (c, [0, 1].map(|k| state.gap[c][k] + length * rate.gap[c][k]));
+    let asked: Vec<(usize, [f64; 2])> = system.laws.responses.points().map(gap).collect();
+    let points = at(&system.laws.responses, &asked, &state.updates.memory, &system.instant(state));
+    let areas = asked.iter().map(|(c, _)| system.problem.contacts[*c].area);
+    for (point, area) in points.into_iter().zip(areas).filter_map(|(point, area)| Some((point?, area))) {
+        sum += area * point.dissipated;
     }
     sum
 }

@@ -15,14 +15,16 @@ use crate::contact::mode::ContactMode;
 use crate::path::newton::model::control::Control;
 use crate::path::newton::model::state::{State, Tangent};
 use crate::path::newton::model::system::StepSystem;
+use crate::path::newton::model::tractions::at;
 use crate::path::newton::quantities::ahead::length_ahead;
 use crate::path::newton::quantities::measure::fastest;
 use crate::path::newton::solve::tangent::gap_rounding;
 use crate::settings::SETTINGS;
 use voussoir_core::law::{FacetMode, UpdateBranch};
 
-/// Greatest number of doublings of a length in the search for the end of a branch.
-const MAX_DOUBLINGS: usize = 40;
+/// Growth of a length in the search for the end of a branch, and its greatest number of repetitions.
+const GROWTH: f64 = 16.0;
+const MAX_GROWTHS: usize = 10;
 /// Number of bisections between two of them.
 pub(super) const MAX_BISECTIONS: usize = 50;
 
@@ -99,6 +101,8 @@ pub(super) struct Monitors(pub Vec<Monitor>);
 struct Sizes {
     force: f64,
     gap: f64,
+    /// Rounding of gaps.
+    rounding: f64,
     force_rate: f64,
     gap_rate: f64,
 }
@@ -157,12 +161,134 @@ impl Monitors {
         let gap_rounding = SETTINGS.rounding * fastest(system, &tangent.motion);
         let sizes = Sizes {
             force: (rounding * rigidity).clamp(SETTINGS.inequality() * force, SETTINGS.mode * force),
+            rounding,
             gap: rounding.max(SETTINGS.inequality() * force / rigidity.max(1e-300)).max(of_blocks),
             force_rate: (SETTINGS.active * greatest(&tangent.force).max(1e-6 * gap_rate * u.force / u.displacement))
                 .max(gap_rounding * rigidity),
             gap_rate: (SETTINGS.active * gap_rate).max(gap_rounding),
         };
-        self.0.iter().map(|monitor| monitor.read(system, (start, state), tangent, &sizes)).collect()
+        let mut readings: Vec<Reading> =
+            self.0.iter().map(|monitor| monitor.read(system, state, tangent, &sizes)).collect();
+        self.read_branches(system, (start, state), tangent, &sizes, &mut readings);
+        readings
+    }
+
+    /// Reads the branches of laws: the lengths along the rate up to which the laws stay in them, negative where a law has left its
+    /// branch (see [`Search`]). The searches of all points go on together, so that each law is asked for all of them at once.
+    fn read_branches(
+        &self,
+        system: &StepSystem,
+        (start, state): (&State, &State),
+        tangent: &Tangent,
+        sizes: &Sizes,
+        readings: &mut [Reading],
+    ) {
+        let (ahead, step) = (length_ahead(system, start), system.instant(start));
+        let search = |(monitor, reading)| Search::of(monitor, reading, (state, tangent), sizes, ahead);
+        let mut searches: Vec<Search> = self.0.iter().zip(readings).filter_map(search).collect();
+        let ask = |searches: &mut [&mut Search], length: fn(&Search) -> f64, then: fn(&mut Search, bool)| {
+            let asked: Vec<(usize, [f64; 2])> = searches.iter().map(|s| (s.contact, s.at(length(s)))).collect();
+            let points = at(&system.laws.responses, &asked, &start.updates.memory, &step);
+            for (search, point) in searches.iter_mut().zip(points) {
+                let is_in = point.is_none_or(|point| point.branch == search.branch);
+                then(search, is_in);
+            }
+        };
+        // Nearer than the place of the tangents the branch may be rounding, or a point may not have entered it yet.
+        let is_new =
+            |s: &&mut Search| !std::ptr::eq(start, state) && state.updates.points[s.contact].branch != s.branch;
+        let mut new: Vec<&mut Search> = searches.iter_mut().filter(is_new).collect();
+        ask(&mut new, |s| s.between[1], |s, is_in| s.sense = if is_in { 1.0 } else { -1.0 });
+        // Only the nearest end is needed, and those next to the state; of others a length is known before which they do not lie.
+        let (mut open, mut between): (Vec<&mut Search>, Vec<&mut Search>) = (searches.iter_mut().collect(), Vec::new());
+        let mut nearest = f64::INFINITY;
+        for _ in 0..MAX_GROWTHS {
+            ask(&mut open, |s| s.sense * s.between[1], |s, is_in| s.grow(is_in));
+            let (changed, rest): (Vec<&mut Search>, Vec<&mut Search>) = open.into_iter().partition(|s| s.changes);
+            between.extend(changed);
+            nearest = between.iter().filter(|s| s.sense > 0.0).map(|s| s.between[1]).fold(nearest, f64::min);
+            open = rest.into_iter().filter(|s| s.may_be_first(nearest)).collect();
+        }
+        between.retain(|s| s.may_be_first(nearest));
+        for _ in 0..MAX_BISECTIONS {
+            ask(&mut between, |s| s.sense * s.middle(), |s, is_in| s.halve(is_in));
+            between.retain(|s| !s.is_narrow());
+        }
+        for search in searches {
+            let tolerances = [search.tolerance, 0.0];
+            *search.reading =
+                Reading { of_branch: true, ..Reading::of(search.sense * search.between[0], Some(-1.0), tolerances) };
+        }
+    }
+}
+
+/// The search for the length along a rate at which the law of a point changes its branch.
+struct Search<'a> {
+    contact: usize,
+    /// The gap and its rate.
+    ray: [[f64; 2]; 2],
+    branch: UpdateBranch,
+    tolerance: f64,
+    /// 1 ahead within the branch, −1 behind it.
+    sense: f64,
+    /// A length up to which nothing changes, and a longer one.
+    between: [f64; 2],
+    /// Set if the branch changes up to `far`.
+    changes: bool,
+    reading: &'a mut Reading,
+}
+
+impl<'a> Search<'a> {
+    /// Creates the search of a monitor. `None` if the monitor is of another kind or the point rests.
+    fn of(
+        monitor: &Monitor,
+        reading: &'a mut Reading,
+        (state, tangent): (&State, &Tangent),
+        sizes: &Sizes,
+        ahead: f64,
+    ) -> Option<Self> {
+        let Monitor { contact, what: What::Branch(branch) } = *monitor else { return None };
+        let (gap, rate) = (state.gap[contact], tangent.gap[contact]);
+        let speed = rate[0].hypot(rate[1]);
+        if speed <= sizes.gap_rate {
+            return None;
+        }
+        // In a shorter step the branch that a law names is rounding of its history and of the state.
+        let tolerance =
+            (sizes.gap.max(SETTINGS.inequality() * gap[0].hypot(gap[1])) / speed).max(SETTINGS.small * ahead);
+        let between = [0.0, ahead.max(tolerance)];
+        Some(Search { contact, ray: [gap, rate], branch, tolerance, sense: 1.0, between, changes: false, reading })
+    }
+
+    fn at(&self, length: f64) -> [f64; 2] {
+        let [gap, rate] = self.ray;
+        [0, 1].map(|k| gap[k] + length * rate[k])
+    }
+
+    fn middle(&self) -> f64 {
+        0.5 * (self.between[0] + self.between[1])
+    }
+
+    /// Returns true if the end may lie before a length, next to the state, or behind it.
+    fn may_be_first(&self, nearest: f64) -> bool {
+        self.sense < 0.0 || self.between[0] < nearest.max(SETTINGS.together * self.tolerance)
+    }
+
+    fn is_narrow(&self) -> bool {
+        let [near, far] = self.between;
+        far - near <= (1e-3 * self.tolerance).max(SETTINGS.small * near)
+    }
+
+    fn grow(&mut self, is_in: bool) {
+        self.changes = is_in != (self.sense > 0.0);
+        if !self.changes {
+            self.between = [self.between[1], GROWTH * self.between[1]];
+        }
+    }
+
+    fn halve(&mut self, is_in: bool) {
+        let inside = is_in == (self.sense > 0.0);
+        self.between[usize::from(!inside)] = self.middle();
     }
 }
 
@@ -180,7 +306,8 @@ impl Monitor {
                 Some(Control::Zero { contact, offset: slack(facet, [0.0; 2], area) / unit, by_force, by_gap: [0.0; 2] })
             }
             What::Opening => {
-                let by = self.opening(system, start, tangent).map(|by| by / u.displacement);
+                let by =
+                    self.opening(system, start, tangent, gap_rounding(system, start)).map(|by| by / u.displacement);
                 Some(Control::Zero { contact, offset: -dot(by, start.slip[contact]), by_force: [0.0; 2], by_gap: by })
             }
             What::Face { .. } | What::Flow(_) | What::Branch(_) => None,
@@ -188,65 +315,15 @@ impl Monitor {
     }
 
     /// Returns the opening of a point per unit of its gap. A point whose slip is rounding slips in the sense of the tangent.
-    fn opening(&self, system: &StepSystem, state: &State, tangent: &Tangent) -> [f64; 2] {
+    fn opening(&self, system: &StepSystem, state: &State, tangent: &Tangent, rounding: f64) -> [f64; 2] {
         let gap = system.step_gap(state, state, self.contact);
-        let has_slipped = gap[1].abs() > SETTINGS.together * gap_rounding(system, state);
+        let has_slipped = gap[1].abs() > SETTINGS.together * rounding;
         let sense = if has_slipped { gap[1] } else { tangent.gap[self.contact][1] }.signum();
         let facets = system.law(self.contact).map_or(&[][..], |law| &law.facets);
         state.mode[self.contact].opening(facets, sense)
     }
 
-    /// Returns the length along a rate up to which the law of a point stays in a branch; negative if it has left it.
-    fn read_branch(
-        &self,
-        system: &StepSystem,
-        (start, state): (&State, &State),
-        rate: [f64; 2],
-        branch: UpdateBranch,
-        sizes: &Sizes,
-    ) -> Reading {
-        let (gap, speed) = (state.gap[self.contact], rate[0].hypot(rate[1]));
-        if speed <= sizes.gap_rate {
-            return Reading::NEVER;
-        }
-        let ahead = length_ahead(system, start);
-        // In a shorter step the branch that a law names is rounding of its history and of the state.
-        let tolerance =
-            (sizes.gap.max(SETTINGS.inequality() * gap[0].hypot(gap[1])) / speed).max(SETTINGS.small * ahead);
-        let is_in = |length: f64| {
-            let there = [0, 1].map(|k| gap[k] + length * rate[k]);
-            let said = system.laws.responses.at(self.contact, there, &start.updates.memory, &system.instant(start));
-            said.is_none_or(|point| point.branch == branch)
-        };
-        // Nearer than the place of the tangents the branch may be rounding, or a point may not have entered it yet.
-        let mut far = ahead.max(tolerance);
-        let at_start = std::ptr::eq(start, state);
-        let inside = at_start || state.updates.points[self.contact].branch == branch || is_in(far);
-        let sense = if inside { 1.0 } else { -1.0 };
-        let mut near = 0.0;
-        let changed = (0..MAX_DOUBLINGS).any(|_| {
-            let changes = is_in(sense * far) != inside;
-            if !changes {
-                (near, far) = (far, 2.0 * far);
-            }
-            changes
-        });
-        for _ in 0..if changed { MAX_BISECTIONS } else { 0 } {
-            let middle = 0.5 * (near + far);
-            if is_in(sense * middle) == inside {
-                near = middle
-            } else {
-                far = middle
-            }
-            if far - near <= (1e-3 * tolerance).max(SETTINGS.small * near) {
-                break;
-            }
-        }
-        let value = sense * near;
-        Reading { of_branch: true, ..Reading::of(value, Some(-1.0), [tolerance, 0.0]) }
-    }
-
-    fn read(&self, system: &StepSystem, (start, state): (&State, &State), tangent: &Tangent, sizes: &Sizes) -> Reading {
+    fn read(&self, system: &StepSystem, state: &State, tangent: &Tangent, sizes: &Sizes) -> Reading {
         let (c, mode) = (self.contact, state.mode[self.contact]);
         let facets = system.law(c).map_or(&[][..], |law| &law.facets);
         let rate = tangent.gap[c];
@@ -260,7 +337,7 @@ impl Monitor {
             }
             What::Opening => {
                 let gap = system.step_gap(state, state, c);
-                let by = self.opening(system, state, tangent);
+                let by = self.opening(system, state, tangent, sizes.rounding);
                 Reading::of(dot(by, gap), Some(dot(by, rate)), [sizes.gap, sizes.gap_rate])
             }
             What::Face { forward } => {
@@ -270,7 +347,7 @@ impl Monitor {
                 Reading::of(value, Some(rate), [sizes.gap, sizes.gap_rate])
             }
             What::Flow(k) => Reading::of(mode.unknowns(facets, rate)[k as usize], None, [sizes.gap_rate; 2]),
-            What::Branch(branch) => self.read_branch(system, (start, state), rate, branch, sizes),
+            What::Branch(_) => Reading::NEVER,
         }
     }
 }

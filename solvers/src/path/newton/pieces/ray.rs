@@ -3,6 +3,7 @@
 use super::piece::Piece;
 use crate::path::newton::model::state::{State, Tangent};
 use crate::path::newton::model::system::StepSystem;
+use crate::path::newton::model::tractions::update;
 use crate::path::newton::quantities::measure::motion_size;
 use crate::path::newton::tracing::tracer::{LoadStepEnding, Tracer, end_path};
 use crate::settings::SETTINGS;
@@ -47,7 +48,7 @@ fn tractions_persist(system: &StepSystem, state: &State, rate: &Tangent) -> bool
         let share = distance * u.length / motion;
         let far = |(g, dg): (&[f64; 2], &[f64; 2])| [0, 1].map(|k| g[k] + share * small(dg[k]));
         let gaps: Vec<[f64; 2]> = state.gap.iter().zip(&rate.gap).map(far).collect();
-        let Ok(updates) = system.laws.responses.update(&gaps, &state.updates.memory, &system.instant(state)) else {
+        let Ok(updates) = update(&system.laws.responses, &gaps, &state.updates.memory, &system.instant(state)) else {
             return false;
         };
         system.laws.responses.points().all(|c| {

@@ -4,6 +4,7 @@ use super::inelastic::update_blocks;
 use super::measure::fastest;
 use crate::path::newton::model::state::{State, Tangent, moved};
 use crate::path::newton::model::system::StepSystem;
+use crate::path::newton::model::tractions::update;
 use crate::settings::SETTINGS;
 
 /// Returns the length along a rate of size 1 for the tangents of a state: beyond the rounding of its motions.
@@ -22,7 +23,7 @@ pub fn facing_ahead(system: &mut StepSystem, state: &State, rate: &Tangent) -> O
         (0..2).for_each(|k| own[k] += length * rate[k]);
     }
     system.count("law_evaluations", system.laws.responses.count());
-    let updates = system.laws.responses.update(&ahead.gap, &state.updates.memory, &system.instant(state)).ok()?;
+    let updates = update(&system.laws.responses, &ahead.gap, &state.updates.memory, &system.instant(state)).ok()?;
     let speed = |rate: &[f64; 2]| rate[0].hypot(rate[1]);
     let fastest = rate.gap.iter().map(speed).fold(0.0, f64::max);
     for ((own, ahead), rate) in facing.updates.points.iter_mut().zip(&updates.points).zip(&rate.gap) {

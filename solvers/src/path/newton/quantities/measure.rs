@@ -5,6 +5,7 @@ use super::monitors::monitored;
 use super::response::dissipated_by;
 use crate::path::newton::model::state::{State, Tangent};
 use crate::path::newton::model::system::StepSystem;
+use crate::path::newton::model::tractions::update;
 use voussoir_core::path::Increment;
 
 /// Returns the greatest rate of a body's displacement \[m\]: of its pole, or by its rotation over the scene's size.
@@ -75,7 +76,7 @@ pub fn increment_along(system: &StepSystem, state: &State, rate: &Tangent) -> In
     let ahead = |(g, dg): (&[f64; 2], &[f64; 2])| [0, 1].map(|k| g[k] + small * dg[k]);
     let gaps: Vec<[f64; 2]> = state.gap.iter().zip(&rate.gap).map(ahead).collect();
     let updates =
-        system.laws.responses.update(&gaps, &state.updates.memory, &system.instant(state)).unwrap_or_default();
+        update(&system.laws.responses, &gaps, &state.updates.memory, &system.instant(state)).unwrap_or_default();
     let dissipation = dissipated_by(system, &updates) / small
         + dissipated_by_facets(system, state, |c| rate.gap[c])
         + plastic_power(system, state, rate);

@@ -2,7 +2,7 @@
 
 use crate::path::newton::model::state::State;
 use crate::path::newton::model::system::StepSystem;
-use crate::path::newton::model::tractions::TractionUpdates;
+use crate::path::newton::model::tractions::{TractionUpdates, update};
 
 /// Updates the responses of the laws to a state's gaps, for a step from `start`.
 pub fn update_tractions(system: &mut StepSystem, start: &State, state: &mut State) -> Result<(), String> {
@@ -10,14 +10,14 @@ pub fn update_tractions(system: &mut StepSystem, start: &State, state: &mut Stat
     if count > 0 {
         system.count("law_evaluations", count);
         let step = system.law_step(start, state.factor);
-        state.updates = system.laws.responses.update(&state.gap, &start.updates.memory, &step)?;
+        state.updates = update(&system.laws.responses, &state.gap, &start.updates.memory, &step)?;
     }
     Ok(())
 }
 
 /// Gives the laws of a state the tangents of a load that acts at once, after a load step in time.
 pub fn at_once(system: &StepSystem, state: &mut State) {
-    if let Ok(updates) = system.laws.responses.update(&state.gap, &state.updates.memory, &system.instant(state)) {
+    if let Ok(updates) = update(&system.laws.responses, &state.gap, &state.updates.memory, &system.instant(state)) {
         state.updates = updates;
     }
 }

@@ -5,8 +5,9 @@ use crate::path::two_blocks::{
     STIFFNESS, assert_close, block, block_on, live, pushed_at, settings, stage, strategies, traced,
 };
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use voussoir_core::law::{
-    Facet, FacetResponse, InterfaceResponse, PointContext, TractionPoint, UpdateBranch, UpdateFailure,
+    BatchFailure, Facet, FacetResponse, InterfaceResponse, PointContext, TractionPoint, UpdateBranch, UpdateFailure,
 };
 use voussoir_core::limit::Status;
 use voussoir_core::path::{LoadStepEnd, Loading, PathAnswer, PathProblem, PathSolver, PointLaw, Unobserved};
@@ -139,4 +140,71 @@ fn openings_of_a_law_without_branches_are_events() {
     assert_eq!(answer.status, Status::Collapse, "{:?}", answer.notes);
     assert_close(answer.factor.expect("a factor"), 0.625, 1e-9);
     assert!(answer.counters["newton_iterations"] < 500, "{:?}", answer.counters);
+}
+
+/// A law that counts how often it is asked, and for how many points.
+#[derive(Debug, Default)]
+struct Counted {
+    questions: AtomicU64,
+    points: AtomicU64,
+}
+
+impl Counted {
+    fn count(&self, points: usize) {
+        self.questions.fetch_add(1, Ordering::Relaxed);
+        self.points.fetch_add(points as u64, Ordering::Relaxed);
+    }
+}
+
+impl InterfaceResponse for Counted {
+    fn state_size(&self) -> usize {
+        0
+    }
+
+    fn initial_state(&self, _: &mut [f64]) {}
+
+    fn state_names(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    fn respond_point(
+        &self,
+        gap: [f64; 2],
+        context: &PointContext,
+        old: &[f64],
+        new: &mut [f64],
+    ) -> Result<TractionPoint, UpdateFailure> {
+        self.count(1);
+        NoTension.respond_point(gap, context, old, new)
+    }
+
+    fn respond(
+        &self,
+        gaps: &[[f64; 2]],
+        contexts: &[PointContext],
+        old: &[f64],
+        new: &mut [f64],
+        points: &mut [TractionPoint],
+    ) -> Result<(), BatchFailure> {
+        self.count(gaps.len());
+        NoTension.respond(gaps, contexts, old, new, points)
+    }
+}
+
+/// A law is asked for several points at once and not often, by the solver and by the certificate: a law of another language pays for
+/// every question.
+#[test]
+fn a_law_is_asked_for_several_points_at_once() {
+    let counted = Arc::new(Counted::default());
+    let law: PointLaw = PointLaw::Response(counted.clone());
+    let mut problem = block_on(&[0.0, 0.25, 0.5, 0.75, 1.0], &law, live(pushed_at(0.8)));
+    problem.contacts.iter_mut().for_each(|contact| contact.compliance = [0.0; 2]);
+    let answer = stepped(&problem);
+    assert_eq!(answer.status, Status::Collapse, "{:?}", answer.notes);
+    let [questions, points] = [&counted.questions, &counted.points].map(|count| count.load(Ordering::Relaxed));
+    let iterations = answer.counters["newton_iterations"];
+    assert!(
+        points > 2 * questions && questions < 10 * iterations,
+        "{points} points in {questions} questions, {iterations} iterations"
+    );
 }
