@@ -1,7 +1,7 @@
 //! Extreme inputs: each ends within seconds with an exit code from 0 to 3 and a message.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Output};
 use std::time::{Duration, Instant};
 
 /// Longest time of a command, on a machine that is also used for other work.
@@ -133,7 +133,8 @@ fn invisible_characters_are_refused_and_escaped() {
 fn output_that_cannot_be_written_is_an_error() {
     let folder = folder("output_that_cannot_be_written_is_an_error").display().to_string();
     let study = cases().join("strathmashie_rise.toml").display().to_string();
-    let full = || Stdio::from(std::fs::File::options().write(true).open("/dev/full").expect("a full device"));
+    let full =
+        || std::process::Stdio::from(std::fs::File::options().write(true).open("/dev/full").expect("a full device"));
     for arguments in [
         &["run", &study, "--out", &folder, "--json"][..],
         &["run", &study, "--out", &folder],
