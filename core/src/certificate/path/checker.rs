@@ -141,7 +141,7 @@ impl PathChecker {
             None => (&state.memory[..], LawStep::to(problem, state)),
         };
         let least = NOTHING * self.greatest;
-        if let Some((worst, after)) =
+        if let Some((worst, (_, after))) =
             law_residual(problem, state, (before, &step), scale.deformation, self.finite, least)
         {
             self.note("path_law", worst);

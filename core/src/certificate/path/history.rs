@@ -5,7 +5,7 @@
 //! by the trapezoidal rule and compares the work with the energy that the law stores and dissipates on this line: a
 //! path that has jumped to another branch releases energy.
 
-use super::response::{law_residual, updated};
+use super::response::law_residual;
 use super::tolerance::tolerance;
 use crate::elastic::InelasticState;
 use crate::path::{LawStep, PathProblem, PathState, Yielded};
@@ -54,12 +54,10 @@ impl History {
         let mut taken = 0.0;
         let step = LawStep::between(problem, last, state);
         let before = (&self.memory[..], &step);
-        if let Some((worst, after)) = law_residual(problem, state, before, deformation, finite, 0.0) {
+        if let Some((worst, (points, after))) = law_residual(problem, state, before, deformation, finite, 0.0) {
             if worst.is_nan() || worst > tolerance("path_law").result {
                 return Err("forces do not follow from the law of tractions and the state before".into());
             }
-            let (points, _) =
-                updated(problem, &state.gap, &self.memory, &step).ok_or("a law of tractions has no update")?;
             for (contact, point) in points {
                 let area = problem.contacts[contact].area;
                 let (from, to) = (last.force[contact], state.force[contact]);

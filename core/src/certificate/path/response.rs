@@ -9,7 +9,7 @@ type Updated = (Vec<(usize, TractionPoint)>, Vec<f64>);
 
 /// Updates every contact point with a response once in a step of laws, from the state `before`. Returns contact points with results, and
 /// the states after them. `None` if `before` has the wrong length or an update fails.
-pub(super) fn updated(problem: &PathProblem, gaps: &[[f64; 2]], before: &[f64], step: &LawStep) -> Option<Updated> {
+fn updated(problem: &PathProblem, gaps: &[[f64; 2]], before: &[f64], step: &LawStep) -> Option<Updated> {
     if before.len() != problem.memory_size() || step.previous_gap.len() != gaps.len() {
         return None;
     }
@@ -18,8 +18,8 @@ pub(super) fn updated(problem: &PathProblem, gaps: &[[f64; 2]], before: &[f64], 
     Some((responses.points().map(|contact| (contact, points[contact])).collect(), after))
 }
 
-/// Returns the difference between forces and the forces of responses, relative to the greatest contact force, and the
-/// states of the responses afterwards. `None` if there is no response. The rounding of a gap times the stiffness of the
+/// Returns the difference between forces and the forces of responses, relative to the greatest contact force, with the results of the
+/// contact points and the states of the responses afterwards. `None` if there is no response. The rounding of a gap times the stiffness of the
 /// law is allowed; a gap is a difference of displacements, or of positions if displacements are `finite`. `least` is
 /// the least force \[N\] used as scale. A `before` of the wrong length is replaced by the initial state.
 pub fn law_residual(
@@ -29,7 +29,7 @@ pub fn law_residual(
     deformation: f64,
     finite: bool,
     least: f64,
-) -> Option<(f64, Vec<f64>)> {
+) -> Option<(f64, Updated)> {
     let size = problem.memory_size();
     if !(0..problem.contacts.len()).any(|c| problem.response(c).is_some()) {
         return None;
@@ -37,14 +37,14 @@ pub fn law_residual(
     let untouched = problem.untouched();
     let before = if before.len() == size { before } else { &untouched };
     let Some((points, after)) = updated(problem, &state.gap, before, step) else {
-        return Some((f64::INFINITY, untouched));
+        return Some((f64::INFINITY, (Vec::new(), untouched)));
     };
     let largest = state.force.iter().flatten().fold(0.0, |a: f64, f| a.max(f.abs()));
     let rounding = f64::EPSILON * if finite { 512.0 * problem.length } else { 64.0 * deformation };
     let mut scale = largest.max(least);
     let mut worst: f64 = 0.0;
-    for (contact, point) in points {
-        let area = problem.contacts[contact].area;
+    for (contact, point) in &points {
+        let (contact, area) = (*contact, problem.contacts[*contact].area);
         for k in 0..2 {
             let stiffness = point.tangent[k][0].abs() + point.tangent[k][1].abs();
             let off = (state.force[contact][k] - area * point.traction[k]).abs() - rounding * area * stiffness;
@@ -52,7 +52,7 @@ pub fn law_residual(
             worst = if off.is_nan() { f64::INFINITY } else { worst.max(off) };
         }
     }
-    Some((if worst <= 0.0 { 0.0 } else { worst / scale.max(1e-300) }, after))
+    Some((if worst <= 0.0 { 0.0 } else { worst / scale.max(1e-300) }, (points, after)))
 }
 
 /// Returns true if forces are constant along the mechanism of a path, so that its flow can be checked at one state.
