@@ -3,7 +3,7 @@
 use voussoir::core::limit::Status;
 use voussoir::results::CaseResult;
 use voussoir::verify::verify;
-use voussoir_tests::{answered, assert_close, changed, passes, study};
+use voussoir_tests::{Arch, answered, assert_close, changed, passes, study};
 
 /// Base B, height of the dam, weight per length W, level h, and specific weight of water.
 const BASE: f64 = 4.0;
@@ -169,4 +169,27 @@ fn the_dam_slides_at_the_friction_of_the_effective_weight() {
     passes(&result);
     let limit = 0.7 * (WEIGHT - WATER * LEVEL * BASE) - 180e3;
     assert_close(result.load_factor.expect("a factor"), limit / 1e3, 1e-6);
+}
+
+/// Without water the law is that of `coulomb` with the same springs: arches carry the same loads, also where no law of tractions keeps
+/// its first tangent and the path begins at a small load.
+#[test]
+fn without_water_the_joint_is_a_dry_one() {
+    let springs = "normal_stiffness = 1e10\nshear_stiffness = 5e9";
+    for (rise, thickness, voussoirs, elements, friction, span_fraction) in [
+        (3.363, 0.786, 9, "[1, 4]", 0.4766, 0.4),
+        (3.395, 0.755, 9, "[1, 2]", 0.4762, 0.4),
+        (3.0, 0.6, 7, "[1, 2]", 0.6, 0.25),
+    ] {
+        let load = |law: &str| {
+            let joint = format!("law = \"{law}\"\nfriction = {friction}\n{springs}");
+            let (ends, mesh) = ("jointed", format!("elements = {elements}"));
+            let solver = "newton_path";
+            let arch = Arch { rise, thickness, voussoirs, span_fraction, joint, ends, mesh, solver, ..Arch::default() };
+            let result = answered(&arch.study());
+            assert_eq!(result.status, Status::Collapse, "{law}, rise {rise}: {:?}", result.notes);
+            result.load_factor.expect("a factor")
+        };
+        assert_close(load("uplift_joint"), load("coulomb"), 1e-7);
+    }
 }
