@@ -1,6 +1,8 @@
 //! Extreme inputs: each ends within seconds with an exit code from 0 to 3 and a message.
 
 use std::path::{Path, PathBuf};
+#[cfg(target_os = "linux")]
+use std::process::Stdio;
 use std::process::{Command, Output};
 use std::time::{Duration, Instant};
 
@@ -133,8 +135,7 @@ fn invisible_characters_are_refused_and_escaped() {
 fn output_that_cannot_be_written_is_an_error() {
     let folder = folder("output_that_cannot_be_written_is_an_error").display().to_string();
     let study = cases().join("strathmashie_rise.toml").display().to_string();
-    let full =
-        || std::process::Stdio::from(std::fs::File::options().write(true).open("/dev/full").expect("a full device"));
+    let full = || Stdio::from(std::fs::File::options().write(true).open("/dev/full").expect("a full device"));
     for arguments in [
         &["run", &study, "--out", &folder, "--json"][..],
         &["run", &study, "--out", &folder],
