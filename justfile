@@ -21,9 +21,9 @@ test:
 ci:
     .ci/run
 
-# Everything that CI leaves out: long stress tests, benches, mutants, the workspace for Windows, processors under emulation.
+# Everything that CI leaves out: long stress tests, benches, mutants, processors under emulation.
 # It takes hours.
-everything: ci stress bench mutants windows package
+everything: ci stress bench mutants package
     .ci/extra features
     .ci/processors
 
@@ -38,10 +38,6 @@ bench:
 # Small faults are planted in the keys, the reports and the store; tests must find at least 80 % of them.
 mutants:
     .ci/mutants
-
-# Does it compile for Windows?
-windows:
-    .ci/extra windows
 
 # The tables of docs/notebook/performance.md.
 goals:
