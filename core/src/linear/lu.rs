@@ -19,7 +19,7 @@ enum Factors {
     Full(PartialPivLu<f64>),
 }
 
-/// If more than one entry in so many is stored, the factors are nearly full, and the matrix is factorised as a full one.
+/// A matrix is factorised as a full one if more than one of eight entries is stored: its factors are nearly full.
 const FULL: usize = 8;
 
 /// The pattern of a matrix and the order of elimination that keeps its factors sparse. Matrices with the same pattern
@@ -99,7 +99,7 @@ fn by_columns(size: usize, entries: &[(usize, usize, f64)]) -> SparseColMat<usiz
 }
 
 impl SparseLu {
-    /// Factorises a matrix. `None` if its pattern is found to be singular.
+    /// Factorises a matrix. `None` if it is sparse and its pattern is singular; [`SparseLu::solve`] finds other singular matrices.
     pub fn new(size: usize, entries: &Entries) -> Option<Self> {
         SparseLu::analysed(size, entries, &mut Analysis::default())
     }

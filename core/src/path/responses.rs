@@ -1,4 +1,5 @@
-//! Contact points with laws of tractions from gaps, asked together: a law of another language pays for every question.
+//! Contact points with laws of tractions from gaps. Points of one law are updated in one call, because a law in another
+//! language pays for each call.
 
 use super::law_step::LawStep;
 use super::problem::{Contact, PathProblem};

@@ -171,8 +171,8 @@ fn the_dam_slides_at_the_friction_of_the_effective_weight() {
     assert_close(result.load_factor.expect("a factor"), limit / 1e3, 1e-6);
 }
 
-/// Without water the law is that of `coulomb` with the same springs: arches carry the same loads, also where no law of tractions keeps
-/// its first tangent and the path begins at a small load.
+/// Without water the law is that of `coulomb` with the same springs: arches carry the same loads, even if the path begins at a small
+/// load because the law changes its tangent there.
 #[test]
 fn without_water_the_joint_is_a_dry_one() {
     let springs = "normal_stiffness = 1e10\nshear_stiffness = 5e9";

@@ -18,9 +18,9 @@ fn updated(problem: &PathProblem, gaps: &[[f64; 2]], before: &[f64], step: &LawS
     Some((responses.points().map(|contact| (contact, points[contact])).collect(), after))
 }
 
-/// Returns the difference between forces and the forces of responses, relative to the greatest contact force, with the results of the
-/// contact points and the states of the responses afterwards. `None` if there is no response. The rounding of a gap times the stiffness of the
-/// law is allowed; a gap is a difference of displacements, or of positions if displacements are `finite`. `least` is
+/// Returns the difference between forces and the forces of responses, relative to the greatest contact force, with the
+/// results of the contact points and the states of the responses afterwards. `None` if there is no response. The
+/// rounding of a gap times the stiffness of the law is allowed; a gap is a difference of displacements, or of positions if displacements are `finite`. `least` is
 /// the least force \[N\] used as scale. A `before` of the wrong length is replaced by the initial state.
 pub fn law_residual(
     problem: &PathProblem,

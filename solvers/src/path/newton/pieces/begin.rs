@@ -29,15 +29,15 @@ pub(super) fn begin(tracer: &mut Tracer, target: f64, direction: f64) -> Result<
 
 /// Returns the rate from a state without forces. First it uses the modes of a state under a small load: Newton's method
 /// keeps the symmetry of a scene, while non-associated friction may have other solutions. If that finds none, it solves
-/// the rate problem of the first piece. If joints are open at first, no such rate exists, and a law of tractions may have no tangent
-/// that it keeps: the path begins at the small load.
+/// the rate problem of the first piece. The path begins at the small load if joints are open, where no such rate exists, or if no
+/// rate is found: a law of tractions can change its tangent as soon as there is a force.
 fn rate_from_nothing(tracer: &mut Tracer, target: f64, direction: f64) -> Result<Start, String> {
     let start = tracer.state.clone();
     let length = SETTINGS.first_load * tracer.system.units().factor.min((target - start.factor).abs());
     let control = Control::Factor(start.factor + direction * length);
     let near = solve_step(&mut tracer.system, &start, start.clone(), &control).ok().map(|(state, _)| state);
     if start.gap.iter().any(|gap| gap[0] > 0.0) {
-        let found = near.and_then(|near| rate_behind(tracer, near, target, direction));
+        let found = near.and_then(|near| rate_after_beginning(tracer, near, target, direction));
         return found.ok_or_else(|| "joints are open, and no state in which they carry it was found".into());
     }
     if let Some(found) = near.as_ref().and_then(|state| rate_in(tracer, state.mode.clone(), target, direction)) {
@@ -45,12 +45,12 @@ fn rate_from_nothing(tracer: &mut Tracer, target: f64, direction: f64) -> Result
     }
     let modes = first_modes(tracer.system.problem, tracer.settings, tracer.in_force.load_step, direction)?;
     let found = rate_in(tracer, modes, target, direction);
-    let found = found.or_else(|| near.and_then(|near| rate_behind(tracer, near, target, direction)));
+    let found = found.or_else(|| near.and_then(|near| rate_after_beginning(tracer, near, target, direction)));
     found.ok_or_else(|| "the modes that were found have no rate".into())
 }
 
 /// Begins the path at a state, and returns the rate there in its modes.
-fn rate_behind(tracer: &mut Tracer, state: State, target: f64, direction: f64) -> Option<Start> {
+fn rate_after_beginning(tracer: &mut Tracer, state: State, target: f64, direction: f64) -> Option<Start> {
     let begins = commit(tracer, state);
     let modes = tracer.state.mode.clone();
     begins.then(|| rate_in(tracer, modes, target, direction)).flatten()

@@ -25,7 +25,7 @@ use voussoir_core::law::{FacetMode, UpdateBranch};
 /// Growth of a length in the search for the end of a branch, and its greatest number of repetitions.
 const GROWTH: f64 = 16.0;
 const MAX_GROWTHS: usize = 10;
-/// Number of bisections between two of them.
+/// Greatest number of bisections between two lengths.
 pub(super) const MAX_BISECTIONS: usize = 50;
 
 /// The quantity of a monitor.
@@ -199,7 +199,7 @@ impl Monitors {
             |s: &&mut Search| !std::ptr::eq(start, state) && state.updates.points[s.contact].branch != s.branch;
         let mut new: Vec<&mut Search> = searches.iter_mut().filter(is_new).collect();
         ask(&mut new, |s| s.between[1], |s, is_in| s.sense = if is_in { 1.0 } else { -1.0 });
-        // Only the nearest end is needed, and those next to the state; of others a length is known before which they do not lie.
+        // Only the nearest end is needed, and ends next to the state. The others lie beyond the length that was reached.
         let (mut open, mut between): (Vec<&mut Search>, Vec<&mut Search>) = (searches.iter_mut().collect(), Vec::new());
         let mut nearest = f64::INFINITY;
         for _ in 0..MAX_GROWTHS {
@@ -233,7 +233,7 @@ struct Search<'a> {
     sense: f64,
     /// A length up to which nothing changes, and a longer one.
     between: [f64; 2],
-    /// Set if the branch changes up to `far`.
+    /// Set if the branch changes up to the longer length.
     changes: bool,
     reading: &'a mut Reading,
 }
@@ -347,6 +347,7 @@ impl Monitor {
                 Reading::of(value, Some(rate), [sizes.gap, sizes.gap_rate])
             }
             What::Flow(k) => Reading::of(mode.unknowns(facets, rate)[k as usize], None, [sizes.gap_rate; 2]),
+            // Branches of all points are read together.
             What::Branch(_) => Reading::NEVER,
         }
     }
