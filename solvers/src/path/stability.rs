@@ -50,8 +50,10 @@ pub(super) struct SecondOrderWork {
     pub curvature: f64,
     /// Magnitude of the eigenvalue nearest to zero.
     pub nearest: f64,
-    /// ½(S + Sᵀ), over the columns of a basis if there is one.
-    half: DMatrix<f64>,
+    /// S, over the columns of a basis if there is one.
+    flexibility: DMatrix<f64>,
+    /// Real eigenvalue of S that is the softest of those that turned.
+    softest: Option<f64>,
     basis: Option<DMatrix<f64>>,
 }
 
@@ -97,28 +99,35 @@ impl SecondOrderWork {
         let nothing = softest.max(SETTINGS.admissible * eigenvalues.amax());
         let negative = eigenvalues.iter().filter(|s| **s < -nothing).count();
         // The real parts of eigenvalues are at least the least eigenvalue of the symmetric part (Bendixson 1902).
-        let turned = if symmetric || negative == 0 {
-            negative
+        let turned: Vec<f64> = if symmetric || negative == 0 {
+            eigenvalues.iter().copied().filter(|s| *s < -nothing).collect()
         } else {
             let schur = nalgebra::linalg::Schur::try_new(flexibility.clone(), 1e-14, 10_000)?;
             let values = schur.complex_eigenvalues();
-            values.iter().filter(|s| s.re < -nothing && s.im.abs() <= 1e-9 * s.re.abs()).count()
+            values.iter().filter(|s| s.re < -nothing && s.im.abs() <= 1e-9 * s.re.abs()).map(|s| s.re).collect()
         };
         // 1/s is least for the negative s nearest to zero; without a negative s, for the greatest s.
         let relevant = eigenvalues.iter().filter(|s| s.abs() > nothing);
         let curvature = relevant.map(|s| 1.0 / s).min_by(f64::total_cmp)?;
         let nearest = 1.0 / eigenvalues.amax();
-        Some(SecondOrderWork { negative, turned, symmetric, curvature, nearest, half, basis: None })
+        let softest = turned.iter().copied().min_by(f64::total_cmp);
+        let (turned, flexibility) = (turned.len(), flexibility.clone());
+        Some(SecondOrderWork { negative, turned, symmetric, curvature, nearest, flexibility, softest, basis: None })
     }
 
-    /// Returns the motion of least second-order work, of unit size in the units of the unknowns.
-    pub fn critical_mode(&self) -> Vec<f64> {
-        let eigen = self.half.clone().symmetric_eigen();
-        let off = |i: &usize| (1.0 / eigen.eigenvalues[*i] - self.curvature).abs();
-        let least = (0..eigen.eigenvalues.len()).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0);
-        let mode = eigen.eigenvectors.column(least);
-        let mode: DVector<f64> = self.basis.as_ref().map_or_else(|| mode.into(), |basis| basis * mode);
-        mode.as_slice().to_vec()
+    /// Returns the motion of unit size, in the units of the unknowns, along which K is singular as its softest real
+    /// eigenvalue changes its sign. Without such an eigenvalue, returns the motion of least second-order work.
+    pub fn critical_mode(&self) -> Option<Vec<f64>> {
+        let mode = match self.softest.filter(|_| !self.symmetric) {
+            Some(softest) => right_eigenvector(&self.flexibility, softest)?,
+            None => {
+                let eigen = ((&self.flexibility + self.flexibility.transpose()) * 0.5).symmetric_eigen();
+                let off = |i: &usize| (1.0 / eigen.eigenvalues[*i] - self.curvature).abs();
+                let least = (0..eigen.eigenvalues.len()).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0);
+                eigen.eigenvectors.column(least).into()
+            }
+        };
+        Some(self.basis.as_ref().map_or(mode.clone(), |basis| basis * mode).as_slice().to_vec())
     }
 
     /// Returns true if second-order work is positive with the load point held. `yields`: its displacement per unit of
@@ -126,6 +135,18 @@ impl SecondOrderWork {
     pub fn stable_under_control(&self, yields: f64) -> bool {
         self.negative == usize::from(yields < 0.0)
     }
+}
+
+/// Returns the right eigenvector of a real eigenvalue, by inverse iteration.
+fn right_eigenvector(matrix: &DMatrix<f64>, eigenvalue: f64) -> Option<DVector<f64>> {
+    let size = matrix.nrows();
+    let shifted = matrix - DMatrix::identity(size, size) * (eigenvalue * (1.0 + SETTINGS.rounding));
+    let (lu, mut random) = (shifted.full_piv_lu(), Random::from_state(7));
+    let mut vector = DVector::from_fn(size, |_, _| random.signed());
+    for _ in 0..3 {
+        vector = lu.solve(&vector)?.try_normalize(0.0)?;
+    }
+    Some(vector)
 }
 
 #[cfg(test)]
@@ -141,7 +162,10 @@ mod tests {
             &turn * DMatrix::from_diagonal(&DVector::from_vec(vec![-1.0, 0.5, -1e-18])) * turn.transpose();
         let found = SecondOrderWork::of(&flexibility, 1e-12).expect("eigenvalues");
         assert_eq!((found.negative, found.turned, found.symmetric), (1, 1, true));
-        assert!((found.curvature + 1.0).abs() < 1e-12 && (found.critical_mode()[0].abs() - c).abs() < 1e-12);
+        assert!(
+            (found.curvature + 1.0).abs() < 1e-12
+                && (found.critical_mode().expect("a mode")[0].abs() - c).abs() < 1e-12
+        );
         // With a held load point, the structure is stable if the load softens it at that point, and unstable if not.
         assert!(found.stable_under_control(-1.0) && !found.stable_under_control(1.0));
     }

@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod arch;
+mod bifurcations;
 mod bridge;
 mod bridge_envelope;
 mod cap;

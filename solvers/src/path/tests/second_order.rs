@@ -38,7 +38,7 @@ fn a_rotational_spring_buckles_at_its_critical_load() {
 /// The critical mode of a buckling block is its rotation.
 #[test]
 fn the_critical_mode_is_the_negative_spring() {
-    let mode = work([100.0, 50.0, -0.2]).critical_mode();
+    let mode = work([100.0, 50.0, -0.2]).critical_mode().expect("a mode");
     assert_close(mode[2].abs(), 1.0, 1e-12);
     assert_close(mode[0].hypot(mode[1]), 0.0, 1e-12);
 }

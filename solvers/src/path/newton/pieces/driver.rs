@@ -1,12 +1,13 @@
 //! Follows pieces from the start of a load step to its end.
 
-use super::advance::{Advance, StepEnd, Watched, advance, chord, state_at};
+use super::advance::{Advance, StepEnd, Watched, advance, chord};
 use super::begin::begin;
+use super::bifurcation::{OtherBranch, Unstable, first_unstable, other_branch};
 use super::corner::corner;
 use super::corrector::correct;
 use super::end::end_of_range;
 use super::loading_set::{LoadingRate, bond_rate, loading_rate};
-use super::monitors::{MAX_BISECTIONS, Monitor, What};
+use super::monitors::{Monitor, What};
 use super::other_branches::note_other_branches;
 use super::piece::Piece;
 use super::plateau::{Plateau, plateau, stands_still, stood_still};
@@ -20,7 +21,7 @@ use crate::path::newton::quantities::ahead::{facing_ahead, length_ahead};
 use crate::path::newton::quantities::events::events;
 use crate::path::newton::quantities::measure::{increment_along, motion_size};
 use crate::path::newton::solve::nearby::Accuracy;
-use crate::path::newton::solve::second_order::{instability, second_order_work};
+use crate::path::newton::solve::second_order::{is_unstable_at_rest, second_order_work};
 use crate::path::newton::solve::step::solve_step;
 use crate::path::newton::solve::tangent::tangent_at;
 use crate::path::newton::tracing::commit::{commit, end_at_lost_joint, lost_joint};
@@ -185,9 +186,13 @@ impl<'d> Run<'d> {
             return ending;
         }
         if let Some(end) = advance.end()
-            && let Some((unstable, work, again)) = self.first_unstable(tracer, end)
+            && self.rises
+            && !self.standing.unstable
+            && let Some(Unstable { first, work, far }) =
+                first_unstable(tracer, (&start, &self.piece), end, self.range.direction)
         {
-            return if again { self.shorten(tracer, 0.5 * end.length) } else { self.leave(tracer, unstable, &work) };
+            let again = far && end.length > SETTINGS.distinct() * self.length.first;
+            return if again { self.shorten(tracer, 0.5 * end.length) } else { self.leave(tracer, first, &work) };
         }
         match advance {
             Advance::Failed => self.shorten(tracer, 0.3 * length),
@@ -507,58 +512,63 @@ impl<'d> Run<'d> {
         }
     }
 
-    /// Returns the first state of a step that is unstable under its loads, on a rising branch above all limit points,
-    /// with its second-order work, and true if a shorter step may locate it better.
-    fn first_unstable(&self, tracer: &mut Tracer, end: &StepEnd) -> Option<(StepEnd, SecondOrderWork, bool)> {
-        let own = tracer.limit.proven_peaks.iter().filter(|peak| peak.load_step == tracer.in_force.load_step);
-        let greatest = own.map(|peak| peak.factor * self.range.direction).fold(f64::NEG_INFINITY, f64::max);
-        let above = |state: &State| state.factor * self.range.direction > greatest;
-        if self.standing.unstable || !self.rises || !above(&end.state) || end.length == 0.0 {
-            return None;
-        }
-        let mut work = instability(&mut tracer.system, &end.state)?;
-        let start = tracer.state.clone();
-        let (mut low, mut high) = (StepEnd::first(&start, &self.piece), end.clone());
-        // In a very short step a state is not found as near to a requested length as the bracket is narrow.
-        for _ in 0..MAX_BISECTIONS {
-            let wide = high.length - low.length > SETTINGS.admissible * end.length;
-            // At the bifurcation itself the equations are singular.
-            let middle = [0.5, 0.4, 0.6].into_iter().filter(|_| wide).find_map(|share| {
-                let length = low.length + share * (high.length - low.length);
-                state_at(&mut tracer.system, (&start, &self.piece), &[&low, &high], length)
-            });
-            let Some(middle) = middle else { break };
-            match above(&middle.state).then(|| instability(&mut tracer.system, &middle.state)).flatten() {
-                Some(here) => (work, high) = (here, middle),
-                None => low = middle,
-            }
-        }
-        // From a state far beyond a bifurcation, damped descent may reach another branch.
-        let far = high.length - low.length > SETTINGS.distinct() * end.length;
-        Some((high, work, far && end.length > SETTINGS.distinct() * self.length.first))
-    }
-
     /// Leaves an equilibrium that has become unstable under its loads.
     fn leave(&mut self, tracer: &mut Tracer, end: StepEnd, work: &SecondOrderWork) -> Option<LoadStepEnding> {
+        // At a bifurcation the rate is any combination of those of both branches.
+        let (present, length) = (self.piece.clone(), self.length.next.max(end.length));
         if let Err(ending) = self.take(tracer, end) {
             return ending;
         }
+        if let Some(other) = other_branch(tracer, &present, work, (self.range.direction, length)) {
+            return self.divide(tracer, other);
+        }
         let here = tracer.state.clone();
+        if !is_unstable_at_rest(&mut tracer.system, &here) {
+            return self.after(tracer);
+        }
         match leave_unstable(tracer, &here, work, false) {
             Departure::Stopped => Some(LoadStepEnding::Ended),
             Departure::Stable => self.anew(tracer),
             // The present modes continue under control.
             Departure::Falls => {
-                let (load_step, factor) = (tracer.in_force.load_step, here.factor);
                 self.standing.unstable = true;
-                let branching = Branching { load_step, factor, snaps: false, released: 0.0, twins: false };
-                tracer.record.branchings.push(branching);
-                tracer.record.notes.push(format!(
-                    "at factor {factor} the equilibrium becomes unstable under its loads, and no stable one is near: a bifurcation"
-                ));
+                self.note_bifurcation(tracer, "no stable one is near: a bifurcation", false);
                 self.after(tracer)
             }
         }
+    }
+
+    /// Continues on the other branch of a bifurcation at the present state.
+    fn divide(&mut self, tracer: &mut Tracer, other: OtherBranch) -> Option<LoadStepEnding> {
+        let OtherBranch { piece, modes, next, twins } = other;
+        let what = if twins {
+            "the path follows one of two branches that carry the same load"
+        } else {
+            "the path leaves its branch"
+        };
+        self.note_bifurcation(tracer, what, twins);
+        let was = self.rises;
+        self.rises = self.goes_up(tracer, &next.rate);
+        let facing = State { mode: modes, ..tracer.state.clone() };
+        self.enter(tracer, piece, &facing);
+        if let Some(ending) = self.at_turn(tracer, was) {
+            return Some(ending);
+        }
+        self.length.next = next.length;
+        match self.piece.turned(&tracer.system, &next.rate) {
+            Some(piece) => self.piece = piece,
+            None => return None,
+        }
+        (!commit(tracer, next.state)).then_some(LoadStepEnding::Ended)
+    }
+
+    fn note_bifurcation(&self, tracer: &mut Tracer, what: &str, twins: bool) {
+        let (load_step, factor) = (tracer.in_force.load_step, tracer.state.factor);
+        tracer.record.branchings.push(Branching { load_step, factor, snaps: false, released: 0.0, twins });
+        tracer
+            .record
+            .notes
+            .push(format!("at factor {factor} the equilibrium becomes unstable under its loads, and {what}"));
     }
 
     /// Handles an event: finds the next piece or the ending.

@@ -7,6 +7,7 @@
 
 mod advance;
 mod begin;
+mod bifurcation;
 mod corner;
 mod corrector;
 pub(super) mod driver;

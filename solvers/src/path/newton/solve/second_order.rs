@@ -3,13 +3,13 @@
 
 use super::linearised::factorised;
 use super::nearby::Accuracy;
-use super::tangent::tangent_at;
+use super::tangent::{tangent_at, tangent_from};
 use crate::contact::facet::slack;
 use crate::contact::mode::ContactMode;
 use crate::linear::bordered::BorderedSystem;
 use crate::path::newton::model::control::Control;
 use crate::path::newton::model::factors::ModeEquations;
-use crate::path::newton::model::state::State;
+use crate::path::newton::model::state::{State, Tangent};
 use crate::path::newton::model::system::StepSystem;
 use crate::path::newton::quantities::control_row::control_row;
 use crate::path::newton::quantities::measure::increment_along;
@@ -63,6 +63,20 @@ fn images(
     Some(DMatrix::from_fn(basis.nrows(), basis.ncols(), |i, j| columns[j][i]))
 }
 
+/// Returns the rate at held loads and settlements with the critical motion of a state, which is nearly singular.
+pub fn critical_rate(system: &mut StepSystem, state: &State, work: &SecondOrderWork) -> Option<Tangent> {
+    let held = held_factor(system, state)?;
+    let (first, mode) = (2 * system.scaled.contacts, work.critical_mode()?);
+    let mut right = vec![0.0; system.size()];
+    // K φ = s φ.
+    right[first..first + mode.len()].copy_from_slice(&mode);
+    let mut found = held.apply(&right)?;
+    let size = found[first..first + mode.len()].iter().map(|q| q * q).sum::<f64>().sqrt();
+    found.iter_mut().for_each(|x| *x /= size);
+    let equations = system.equations(state);
+    Some(tangent_from(system, &found, state, &equations))
+}
+
 /// Stability of a state: true if second-order work is positive with its loads and settlements held, and with the load
 /// point held. `None` if that is undecided.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -97,16 +111,10 @@ pub fn stability(system: &mut StepSystem, state: &State, settles: bool) -> State
     StateStability { under_load, under_control, sufficient_only }
 }
 
-/// Returns the second-order work of a state that is unstable under its loads, also with the sliding points held. `None`
-/// if it is stable, or its second-order work is not known.
-pub fn instability(system: &mut StepSystem, state: &State) -> Option<SecondOrderWork> {
-    let work = second_order_work(system, state)?;
-    if work.turned == 0 || work.nearest <= SETTINGS.active {
-        return None;
-    }
+/// Returns true if a state is unstable under its loads with the sliding points held, too.
+pub fn is_unstable_at_rest(system: &mut StepSystem, state: &State) -> bool {
     let held = with_weak_points(system, state, |_, held| held);
-    let at_rest = second_order_work(system, &held)?;
-    (at_rest.turned > 0).then_some(work)
+    second_order_work(system, &held).is_some_and(|work| work.turned > 0)
 }
 
 /// Returns the state with its weakly active points released or held: points that slide, and stuck points without slack.

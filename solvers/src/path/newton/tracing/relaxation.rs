@@ -54,7 +54,7 @@ pub fn relaxations(system: &mut StepSystem, state: &State, work: &SecondOrderWor
 
 /// Computes a descent in one sense of the critical mode.
 fn descent(system: &mut StepSystem, from: &State, work: &SecondOrderWork, sense: f64) -> Option<Relaxation> {
-    let mode = &work.critical_mode();
+    let mode = &work.critical_mode()?;
     let (u, control) = (system.units(), Control::Factor(from.factor));
     let size = mode.iter().fold(0.0, |a: f64, z| a.max(z.abs()));
     let mut anchor = from.motion.clone();

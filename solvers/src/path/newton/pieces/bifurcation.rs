@@ -1,0 +1,181 @@
+//! Bifurcations: the equations of the modes become singular while the load grows.
+//!
+//! At a bifurcation the rate t of the present branch and a motion φ at a held load satisfy the same equations, Kφ = 0. A
+//! structure with imperfections does not stay on the present branch beyond it. The other branch starts with φ. If φ
+//! moves sliding points against their sense, the other branch starts with t + αφ: α is the share at which the first of
+//! these points stops (Shanley 1947, J. Aeronaut. Sci. 14, 261-268; Hill 1958, J. Mech. Phys. Solids 6, 236-249). The
+//! path follows the sense of φ that gives the lower load at the same distance. If both loads are equal, the two senses
+//! are twins.
+
+use super::advance::{Advance, StepEnd, Watched, advance, state_at};
+use super::monitors::{MAX_BISECTIONS, Monitor, What};
+use super::piece::Piece;
+use super::switch::{NextPiece, after_event};
+use crate::contact::mode::ContactMode;
+use crate::linear::inner;
+use crate::path::newton::model::state::{State, Tangent};
+use crate::path::newton::quantities::control_row::scaled_row;
+use crate::path::newton::solve::second_order::{critical_rate, is_unstable_at_rest, second_order_work};
+use crate::path::newton::tracing::tracer::Tracer;
+use crate::path::stability::SecondOrderWork;
+use crate::path::twins::favoured;
+use crate::settings::SETTINGS;
+
+/// The first state of a step that is unstable under its loads.
+pub(super) struct Unstable {
+    pub first: StepEnd,
+    pub work: SecondOrderWork,
+    /// True if a shorter step may locate it better. From a state far beyond a bifurcation, damped descent may reach
+    /// another branch.
+    pub far: bool,
+}
+
+/// Locates the first state of a step on a rising branch that is unstable under its loads and above all limit points.
+/// A step whose modes become unstable contains a bifurcation; sliding points may still be stable at rest. Modes that
+/// were unstable before have no bifurcation in the step, but their stability at rest may end in it.
+pub(super) fn first_unstable(
+    tracer: &mut Tracer,
+    (start, piece): (&State, &Piece),
+    end: &StepEnd,
+    direction: f64,
+) -> Option<Unstable> {
+    let own = tracer.limit.proven_peaks.iter().filter(|peak| peak.load_step == tracer.in_force.load_step);
+    let greatest = own.map(|peak| peak.factor * direction).fold(f64::NEG_INFINITY, f64::max);
+    let above = |state: &State| state.factor * direction > greatest;
+    if !above(&end.state) || end.length == 0.0 {
+        return None;
+    }
+    let system = &mut tracer.system;
+    let mut work = second_order_work(system, &end.state).filter(|work| work.turned > 0)?;
+    let before = second_order_work(system, start)?;
+    let size = before.nearest.max(work.nearest);
+    let least = SETTINGS.same_rate() * size;
+    let neutral = |work: &SecondOrderWork| work.nearest <= least.max(SETTINGS.active);
+    let bifurcates = before.turned == 0 && !neutral(&before);
+    if neutral(&work) || !(bifurcates || is_unstable_at_rest(system, &end.state)) {
+        return None;
+    }
+    let (mut low, mut high) = (StepEnd::first(start, piece), end.clone());
+    // In a very short step a state is not found as near to a requested length as the bracket is narrow.
+    for _ in 0..MAX_BISECTIONS {
+        // At the bifurcation itself the equations are singular.
+        let located = bifurcates && work.nearest <= (SETTINGS.together * least).max(SETTINGS.inequality());
+        let wide = !located && high.length - low.length > SETTINGS.admissible * end.length;
+        let middle = [0.5, 0.4, 0.6].into_iter().filter(|_| wide).find_map(|share| {
+            let length = low.length + share * (high.length - low.length);
+            state_at(system, (start, piece), &[&low, &high], length)
+        });
+        let Some(middle) = middle else { break };
+        let found = second_order_work(system, &middle.state).filter(|work| work.turned > 0 && work.nearest > least);
+        match found.filter(|_| above(&middle.state) && (bifurcates || is_unstable_at_rest(system, &middle.state))) {
+            Some(here) => (work, high) = (here, middle),
+            None => low = middle,
+        }
+    }
+    let located = bifurcates && work.nearest <= SETTINGS.small * size;
+    let far = !located && high.length - low.length > SETTINGS.distinct() * end.length;
+    Some(Unstable { first: high, work, far })
+}
+
+/// The other branch at a bifurcation.
+pub(super) struct OtherBranch {
+    pub piece: Piece,
+    pub modes: Vec<ContactMode>,
+    /// A state on it, a short step away.
+    pub next: StepEnd,
+    /// True if the mirrored branch carries the same load.
+    pub twins: bool,
+}
+
+/// Returns the other branch at the present state, which is a bifurcation of a piece; `length` is that of the present
+/// step. `None` if the branch is not found.
+pub(super) fn other_branch(
+    tracer: &mut Tracer,
+    piece: &Piece,
+    work: &SecondOrderWork,
+    (direction, length): (f64, f64),
+) -> Option<OtherBranch> {
+    let here = tracer.state.clone();
+    let critical = critical_rate(&mut tracer.system, &here, work)?;
+    // Its part along the present branch is arbitrary.
+    let along = inner(&scaled_row(&tracer.system, &critical), &piece.row);
+    let critical = sum(&critical, -along, &piece.tangent);
+    let mut found = [1.0, -1.0].into_iter().filter_map(|sense| {
+        let (piece, modes) = begin(tracer, &here, piece, &critical.scaled(sense), direction)?;
+        let next = first_step(tracer, &State { mode: modes.clone(), ..here.clone() }, &piece, length)?;
+        Some(OtherBranch { piece, modes, next, twins: false })
+    });
+    let one = found.next()?;
+    let Some(other) = found.next() else { return Some(one) };
+    drop(found);
+    let gained = [&one, &other].map(|branch| (branch.next.state.factor - here.factor) * direction / branch.next.length);
+    let size = gained[0].abs().max(gained[1].abs()) + SETTINGS.distinct() * tracer.system.units().factor;
+    if (gained[0] - gained[1]).abs() > SETTINGS.wanted_error * size {
+        return Some(if gained[0] < gained[1] { one } else { other });
+    }
+    let motions = [&one, &other].map(|branch| &branch.piece.tangent.motion[..]);
+    let chosen = favoured(tracer.system.problem, tracer.in_force.load_step, &motions);
+    Some(OtherBranch { twins: true, ..if chosen == 0 { one } else { other } })
+}
+
+/// Returns a + share · b.
+fn sum(a: &Tangent, share: f64, b: &Tangent) -> Tangent {
+    let pairs =
+        |a: &[[f64; 2]], b: &[[f64; 2]]| a.iter().zip(b).map(|(a, b)| [0, 1].map(|k| a[k] + share * b[k])).collect();
+    Tangent {
+        force: pairs(&a.force, &b.force),
+        motion: a.motion.iter().zip(&b.motion).map(|(a, b)| [0, 1, 2].map(|k| a[k] + share * b[k])).collect(),
+        factor: a.factor + share * b.factor,
+        gap: pairs(&a.gap, &b.gap),
+    }
+}
+
+/// Returns the piece of the other branch in one sense of the critical motion, and its modes. `None` if no rate leads there.
+fn begin(
+    tracer: &mut Tracer,
+    here: &State,
+    present: &Piece,
+    critical: &Tangent,
+    direction: f64,
+) -> Option<(Piece, Vec<ContactMode>)> {
+    let system = &mut tracer.system;
+    let [own, by] = [&present.tangent, critical].map(|rate| present.read(system, here, here, rate));
+    // The share of φ at which a sliding point stops.
+    let rest = |i: usize| {
+        let slides = matches!(present.monitors.0[i].what, What::Flow(_)) && by[i].value < -by[i].tolerance;
+        slides.then(|| own[i].value.max(0.0) / -by[i].value)
+    };
+    let rests: Vec<(usize, f64)> = (0..own.len()).filter_map(|i| Some((i, rest(i)?))).collect();
+    let share = rests.iter().map(|(_, share)| *share).fold(f64::INFINITY, f64::min);
+    if share.is_infinite() {
+        return Some((present.turned(system, critical)?, here.mode.clone()));
+    }
+    let first = |(i, at): &(usize, f64)| (*at <= share * (1.0 + SETTINGS.distinct())).then(|| present.monitors.0[*i]);
+    let hits: Vec<Monitor> = rests.iter().filter_map(first).collect();
+    let arrival = present.turned(system, &sum(&present.tangent, share, critical))?;
+    match after_event(system, here, &arrival, &hits, (direction, true)) {
+        NextPiece::Goes { rate, modes, .. } => {
+            let piece = Piece::new(system, &State { mode: modes.clone(), ..here.clone() }, &rate)?;
+            // The present branch is no other branch.
+            let turns = inner(&piece.row, &present.row) < 1.0 - SETTINGS.distinct();
+            (turns && modes != here.mode).then_some((piece, modes))
+        }
+        NextPiece::Nothing { .. } => None,
+    }
+}
+
+/// Returns a state on the other branch near its beginning, before its first event.
+fn first_step(tracer: &mut Tracer, here: &State, piece: &Piece, length: f64) -> Option<StepEnd> {
+    let watched = Watched { sense: None, target: None };
+    // With the equations of the bifurcation a step along φ is not determined.
+    let nearby = std::mem::replace(&mut tracer.system.limits.nearby, false);
+    let shorter = std::iter::successors(Some(length), |length| Some(SETTINGS.telling * length));
+    let found = shorter.take_while(|shorter| *shorter >= SETTINGS.fine * length).find_map(|length| {
+        match advance(&mut tracer.system, (here, piece), length, watched) {
+            Advance::Whole(end) if end.length > 0.0 && end.error <= SETTINGS.most_error => Some(end),
+            _ => None,
+        }
+    });
+    tracer.system.limits.nearby = nearby;
+    found
+}

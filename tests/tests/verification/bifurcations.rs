@@ -1,0 +1,40 @@
+//! Bifurcations of symmetric arches and portals under a growing load. The symmetric state exists beyond the bifurcation,
+//! and carries up to 75 times the load in these scenes, but no structure with the slightest imperfection reaches it. The
+//! reference is the same scene with a horizontal load of 1e-8 of the vertical one: an independent path without a
+//! bifurcation.
+
+use voussoir_tests::family::{Family, Form, family_scene};
+use voussoir_tests::{answered, assert_close};
+
+/// Returns a study with an additional horizontal share of its last load.
+fn pushed(study: &str, share: f64) -> String {
+    let (before, rest) = study.rsplit_once("force = [").expect("a load");
+    let (force, after) = rest.split_once(']').expect("a vector");
+    let (x, y) = force.split_once(", ").expect("two components");
+    let [x, y]: [f64; 2] = [x, y].map(|component| component.parse().expect("a number"));
+    format!("{before}force = [{:?}, {y:?}]{after}", x + share * x.abs().max(y.abs()))
+}
+
+/// The path leaves the symmetric branch, also where sliding points are stable at rest (12434), and where the modes of
+/// the other branch end at once (12536).
+#[test]
+fn symmetric_structures_carry_the_load_of_slightly_imperfect_ones() {
+    for (seed, bifurcation, greatest, tolerance) in [
+        (12434, 31712.1178, 54014.41, 2e-3),
+        (12442, 53725.0045, 56544.0077, 1e-4),
+        (12446, 10609.2167, 10609.2167, 2e-4),
+        (12464, 71220.3612, 71220.3612, 1e-5),
+        (12536, 178247.7835, 178247.7342, 1e-4),
+    ] {
+        let study = family_scene(Family::Symmetric, seed).study(Form::Given, "");
+        let perfect = answered(&study);
+        let [place] = &perfect.path.branches[..] else { panic!("{seed}: {:?}", perfect.path.branches) };
+        assert!(place.twins && place.what == "bifurcation", "{seed}: {place:?}");
+        assert_close(place.factor, bifurcation, 1e-6);
+        let load = perfect.load_factor.expect("a load");
+        assert_close(load, greatest, 1e-6);
+        let imperfect = answered(&pushed(&study, 1e-8));
+        assert!(imperfect.path.branches.is_empty(), "{seed}: {:?}", imperfect.path.branches);
+        assert_close(imperfect.load_factor.expect("a load"), load, tolerance);
+    }
+}
