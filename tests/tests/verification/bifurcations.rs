@@ -3,6 +3,7 @@
 //! reference is the same scene with a horizontal load of 1e-8 of the vertical one: an independent path without a
 //! bifurcation.
 
+use voussoir::core::limit::Status;
 use voussoir_tests::family::{Family, Form, family_scene};
 use voussoir_tests::{answered, assert_close};
 
@@ -36,5 +37,21 @@ fn symmetric_structures_carry_the_load_of_slightly_imperfect_ones() {
         let imperfect = answered(&pushed(&study, 1e-8));
         assert!(imperfect.path.branches.is_empty(), "{seed}: {:?}", imperfect.path.branches);
         assert_close(imperfect.load_factor.expect("a load"), load, tolerance);
+    }
+}
+
+/// Mirrored points end their modes at one event, and the symmetric branch behind it is unstable. The path ends there: the
+/// load is that of the imperfect structure.
+#[test]
+fn an_unstable_branch_behind_an_event_is_not_followed() {
+    for (seed, carried) in [(5080, 2525.3266), (6070, 59640.5557), (12418, 78.17276643)] {
+        let study = family_scene(Family::Symmetric, seed).study(Form::Given, "");
+        for lines in ["", "solver = \"newton_path\"\ncontinuation = { strategy = \"displacement_control\" }"] {
+            let perfect = answered(&family_scene(Family::Symmetric, seed).study(Form::Given, lines));
+            assert_eq!(perfect.status, Status::Open, "{seed}: {:?}", perfect.notes);
+            assert_close(perfect.load_factor.expect("a lower end"), carried, 1e-6);
+        }
+        let imperfect = answered(&pushed(&study, 1e-8));
+        assert_close(imperfect.load_factor.expect("a load"), carried, 1e-5);
     }
 }

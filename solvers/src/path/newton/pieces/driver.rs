@@ -80,8 +80,6 @@ struct Lengths {
 /// Findings about the present state.
 #[derive(Default)]
 struct Standing {
-    /// True if the present modes are known to be unstable under their loads, and no stable equilibrium is near.
-    unstable: bool,
     /// True if the path continues under a constant load.
     on_plateau: bool,
     /// True if blocks flowed in the last step.
@@ -187,7 +185,6 @@ impl<'d> Run<'d> {
         }
         if let Some(end) = advance.end()
             && self.rises
-            && !self.standing.unstable
             && let Some(Unstable { first, work, far }) =
                 first_unstable(tracer, (&start, &self.piece), end, self.range.direction)
         {
@@ -529,11 +526,12 @@ impl<'d> Run<'d> {
         match leave_unstable(tracer, &here, work, false) {
             Departure::Stopped => Some(LoadStepEnding::Ended),
             Departure::Stable => self.anew(tracer),
-            // The present modes continue under control.
             Departure::Falls => {
-                self.standing.unstable = true;
-                self.note_bifurcation(tracer, "no stable one is near: a bifurcation", false);
-                self.after(tracer)
+                let why = format!(
+                    "at factor {} the equilibrium becomes unstable under its loads, and no stable one is near: a bifurcation",
+                    here.factor
+                );
+                Some(end_path(tracer, Status::Stalled, why))
             }
         }
     }
@@ -541,12 +539,11 @@ impl<'d> Run<'d> {
     /// Continues on the other branch of a bifurcation at the present state.
     fn divide(&mut self, tracer: &mut Tracer, other: OtherBranch) -> Option<LoadStepEnding> {
         let OtherBranch { piece, modes, next, twins } = other;
-        let what = if twins {
-            "the path follows one of two branches that carry the same load"
-        } else {
-            "the path leaves its branch"
-        };
-        self.note_bifurcation(tracer, what, twins);
+        let what = if twins { "follows one of two branches that carry the same load" } else { "leaves its branch" };
+        let (load_step, factor) = (tracer.in_force.load_step, tracer.state.factor);
+        tracer.record.branchings.push(Branching { load_step, factor, snaps: false, released: 0.0, twins });
+        let unstable = "the equilibrium becomes unstable under its loads, and the path";
+        tracer.record.notes.push(format!("at factor {factor} {unstable} {what}"));
         let was = self.rises;
         self.rises = self.goes_up(tracer, &next.rate);
         let facing = State { mode: modes, ..tracer.state.clone() };
@@ -560,15 +557,6 @@ impl<'d> Run<'d> {
             None => return None,
         }
         (!commit(tracer, next.state)).then_some(LoadStepEnding::Ended)
-    }
-
-    fn note_bifurcation(&self, tracer: &mut Tracer, what: &str, twins: bool) {
-        let (load_step, factor) = (tracer.in_force.load_step, tracer.state.factor);
-        tracer.record.branchings.push(Branching { load_step, factor, snaps: false, released: 0.0, twins });
-        tracer
-            .record
-            .notes
-            .push(format!("at factor {factor} the equilibrium becomes unstable under its loads, and {what}"));
     }
 
     /// Handles an event: finds the next piece or the ending.
