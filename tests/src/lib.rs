@@ -56,6 +56,15 @@ pub fn passes(result: &CaseResult) {
     assert!(result.certificate.passed, "{:?} {:?}", result.certificate, result.notes);
 }
 
+/// Returns a study with an additional horizontal `share` of its last point load.
+pub fn pushed(study: &str, share: f64) -> String {
+    let (before, rest) = study.rsplit_once("force = [").expect("a load");
+    let (force, after) = rest.split_once(']').expect("a vector");
+    let (x, y) = force.split_once(", ").expect("two components");
+    let [x, y]: [f64; 2] = [x, y].map(|component| component.parse().expect("a number"));
+    format!("{before}force = [{:?}, {y:?}]{after}", x + share * x.abs().max(y.abs()))
+}
+
 /// Returns true if a result names a bifurcation. A note about a lost branch, or about a step to another branch, does
 /// not count.
 pub fn names_bifurcation(result: &CaseResult) -> bool {

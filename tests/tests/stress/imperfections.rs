@@ -3,7 +3,8 @@
 //! settlement has left.
 
 use crate::strategies::scene;
-use voussoir_tests::{answered, names_bifurcation};
+use voussoir_tests::family::{Family, Form, family_scene};
+use voussoir_tests::{answered, names_bifurcation, pushed};
 
 const FINITE: &str = "solver = \"newton_path\"\nkinematics = \"finite\"";
 
@@ -44,4 +45,32 @@ fn small_imperfections_change_little() {
 #[ignore = "long: 50 scenes"]
 fn small_imperfections_of_50_scenes_change_little() {
     imperfect(300..350);
+}
+
+/// First limit points of symmetric scenes are at most 2 % above those with an additional horizontal load of 1e-6 of the
+/// last load. FIRST and CASES choose the scenes.
+#[test]
+#[ignore = "a minute for 80 scenes"]
+fn first_limit_points_of_symmetric_scenes_change_little() {
+    let number = |key: &str, default: u64| std::env::var(key).ok().and_then(|s| s.parse().ok()).unwrap_or(default);
+    let (first, cases) = (number("FIRST", 12_500), number("CASES", 80));
+    let mut apart = Vec::new();
+    for seed in first..first + cases {
+        let scene = family_scene(Family::Symmetric, seed);
+        if !scene.has_point_loads() {
+            continue;
+        }
+        let study = scene.study(Form::Given, "");
+        let first = |study: &str| {
+            let result = answered(study);
+            result.path.first_limit_point.or(result.load_factor)
+        };
+        let [perfect, imperfect] = [first(&study), first(&pushed(&study, 1e-6))];
+        if let (Some(perfect), Some(imperfect)) = (perfect, imperfect)
+            && perfect > 1.02 * imperfect
+        {
+            apart.push(format!("{seed}: {perfect} instead of {imperfect}"));
+        }
+    }
+    assert!(apart.is_empty(), "{apart:?}");
 }

@@ -5,16 +5,7 @@
 
 use voussoir::core::limit::Status;
 use voussoir_tests::family::{Family, Form, family_scene};
-use voussoir_tests::{answered, assert_close};
-
-/// Returns a study with an additional horizontal share of its last load.
-fn pushed(study: &str, share: f64) -> String {
-    let (before, rest) = study.rsplit_once("force = [").expect("a load");
-    let (force, after) = rest.split_once(']').expect("a vector");
-    let (x, y) = force.split_once(", ").expect("two components");
-    let [x, y]: [f64; 2] = [x, y].map(|component| component.parse().expect("a number"));
-    format!("{before}force = [{:?}, {y:?}]{after}", x + share * x.abs().max(y.abs()))
-}
+use voussoir_tests::{answered, assert_close, pushed};
 
 /// The path leaves the symmetric branch, also where sliding points are stable at rest (12434), and where the modes of
 /// the other branch end at once (12536).
@@ -40,8 +31,8 @@ fn symmetric_structures_carry_the_load_of_slightly_imperfect_ones() {
     }
 }
 
-/// Mirrored points end their modes at one event, and the symmetric branch behind it is unstable. The path ends there: the
-/// load is that of the imperfect structure.
+/// Mirrored points end their modes at one event, and the symmetric branch behind it is unstable. The path ends there, and
+/// the imperfect structure carries the same load.
 #[test]
 fn an_unstable_branch_behind_an_event_is_not_followed() {
     for (seed, carried) in [(5080, 2525.3266), (6070, 59640.5557), (12418, 78.17276643)] {

@@ -87,8 +87,8 @@ pub(super) struct OtherBranch {
     pub twins: bool,
 }
 
-/// Returns the other branch at the present state, which is a bifurcation of a piece; `length` is that of the present
-/// step. `None` if the branch is not found.
+/// Returns the other branch at the present state, which is a bifurcation of a piece; the first step on it has at most
+/// this `length`. `None` if the branch is not found.
 pub(super) fn other_branch(
     tracer: &mut Tracer,
     piece: &Piece,

@@ -68,7 +68,7 @@ pub fn critical_rate(system: &mut StepSystem, state: &State, work: &SecondOrderW
     let held = held_factor(system, state)?;
     let (first, mode) = (2 * system.scaled.contacts, work.critical_mode()?);
     let mut right = vec![0.0; system.size()];
-    // K φ = s φ.
+    // K⁻¹ φ = s φ.
     right[first..first + mode.len()].copy_from_slice(&mode);
     let mut found = held.apply(&right)?;
     let size = found[first..first + mode.len()].iter().map(|q| q * q).sum::<f64>().sqrt();
