@@ -52,8 +52,8 @@ pub(super) struct SecondOrderWork {
     pub nearest: f64,
     /// S, over the columns of a basis if there is one.
     flexibility: DMatrix<f64>,
-    /// Real eigenvalue of S that is the softest of those that turned.
-    softest: Option<f64>,
+    /// The greatest negative real eigenvalue of S by magnitude; `None` if `turned` is zero.
+    turning: Option<f64>,
     basis: Option<DMatrix<f64>>,
 }
 
@@ -110,16 +110,16 @@ impl SecondOrderWork {
         let relevant = eigenvalues.iter().filter(|s| s.abs() > nothing);
         let curvature = relevant.map(|s| 1.0 / s).min_by(f64::total_cmp)?;
         let nearest = 1.0 / eigenvalues.amax();
-        let softest = turned.iter().copied().min_by(f64::total_cmp);
+        let turning = turned.iter().copied().min_by(f64::total_cmp);
         let (turned, flexibility) = (turned.len(), flexibility.clone());
-        Some(SecondOrderWork { negative, turned, symmetric, curvature, nearest, flexibility, softest, basis: None })
+        Some(SecondOrderWork { negative, turned, symmetric, curvature, nearest, flexibility, turning, basis: None })
     }
 
-    /// Returns the motion of unit size, in the units of the unknowns, along which K is singular as its softest real
-    /// eigenvalue changes its sign. Without such an eigenvalue, returns the motion of least second-order work.
+    /// Returns a motion of unit size in the units of the unknowns. If K is not symmetric and has negative real
+    /// eigenvalues, it is the eigenvector of the one nearest to zero; otherwise it has the least second-order work.
     pub fn critical_mode(&self) -> Option<Vec<f64>> {
-        let mode = match self.softest.filter(|_| !self.symmetric) {
-            Some(softest) => right_eigenvector(&self.flexibility, softest)?,
+        let mode: DVector<f64> = match self.turning.filter(|_| !self.symmetric) {
+            Some(turning) => right_eigenvector(&self.flexibility, turning)?,
             None => {
                 let eigen = ((&self.flexibility + self.flexibility.transpose()) * 0.5).symmetric_eigen();
                 let off = |i: &usize| (1.0 / eigen.eigenvalues[*i] - self.curvature).abs();
@@ -127,7 +127,7 @@ impl SecondOrderWork {
                 eigen.eigenvectors.column(least).into()
             }
         };
-        Some(self.basis.as_ref().map_or(mode.clone(), |basis| basis * mode).as_slice().to_vec())
+        Some(self.basis.as_ref().map_or_else(|| mode.clone(), |basis| basis * &mode).as_slice().to_vec())
     }
 
     /// Returns true if second-order work is positive with the load point held. `yields`: its displacement per unit of

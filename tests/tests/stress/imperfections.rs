@@ -48,7 +48,7 @@ fn small_imperfections_of_50_scenes_change_little() {
 }
 
 /// First limit points of symmetric scenes are at most 2 % above those with an additional horizontal load of 1e-6 of the
-/// last load. FIRST and CASES choose the scenes.
+/// last load; scenes 12402 and 12674 are known exceptions. FIRST and CASES choose the scenes.
 #[test]
 #[ignore = "a minute for 80 scenes"]
 fn first_limit_points_of_symmetric_scenes_change_little() {

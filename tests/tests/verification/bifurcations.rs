@@ -1,14 +1,13 @@
-//! Bifurcations of symmetric arches and portals under a growing load. The symmetric state exists beyond the bifurcation,
-//! and carries up to 75 times the load in these scenes, but no structure with the slightest imperfection reaches it. The
-//! reference is the same scene with a horizontal load of 1e-8 of the vertical one: an independent path without a
-//! bifurcation.
+//! Bifurcations of symmetric arches and portals under a growing load. Symmetric states exist beyond the bifurcation, in
+//! these scenes with up to 75 times the load. A structure with the slightest imperfection does not reach them. The
+//! reference is the same scene with an additional horizontal load of 1e-8 of the last load: its path has no bifurcation.
 
 use voussoir::core::limit::Status;
 use voussoir_tests::family::{Family, Form, family_scene};
 use voussoir_tests::{answered, assert_close, pushed};
 
-/// The path leaves the symmetric branch, also where sliding points are stable at rest (12434), and where the modes of
-/// the other branch end at once (12536).
+/// The path leaves the symmetric branch, also if sliding points are stable at rest (12434) and if the modes of the other
+/// branch end at once (12536).
 #[test]
 fn symmetric_structures_carry_the_load_of_slightly_imperfect_ones() {
     for (seed, bifurcation, greatest, tolerance) in [
@@ -36,13 +35,13 @@ fn symmetric_structures_carry_the_load_of_slightly_imperfect_ones() {
 #[test]
 fn an_unstable_branch_behind_an_event_is_not_followed() {
     for (seed, carried) in [(5080, 2525.3266), (6070, 59640.5557), (12418, 78.17276643)] {
-        let study = family_scene(Family::Symmetric, seed).study(Form::Given, "");
+        let scene = family_scene(Family::Symmetric, seed);
         for lines in ["", "solver = \"newton_path\"\ncontinuation = { strategy = \"displacement_control\" }"] {
-            let perfect = answered(&family_scene(Family::Symmetric, seed).study(Form::Given, lines));
+            let perfect = answered(&scene.study(Form::Given, lines));
             assert_eq!(perfect.status, Status::Open, "{seed}: {:?}", perfect.notes);
             assert_close(perfect.load_factor.expect("a lower end"), carried, 1e-6);
         }
-        let imperfect = answered(&pushed(&study, 1e-8));
+        let imperfect = answered(&pushed(&scene.study(Form::Given, ""), 1e-8));
         assert_close(imperfect.load_factor.expect("a load"), carried, 1e-5);
     }
 }

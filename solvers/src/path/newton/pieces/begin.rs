@@ -29,8 +29,8 @@ pub(super) fn begin(tracer: &mut Tracer, target: f64, direction: f64) -> Result<
 
 /// Returns the rate from a state without forces. First it uses the modes of a state under a small load: Newton's method
 /// keeps the symmetry of a scene, while non-associated friction may have other solutions. If that finds none, it solves
-/// the rate problem of the first piece. The path begins at the small load if joints are open, where no such rate exists, or if no
-/// rate is found: a law of tractions can change its tangent as soon as there is a force.
+/// the rate problem of the first piece. The path begins at the small load if joints are open, because no such rate exists
+/// then, or if no rate is found, because a law of tractions can change its tangent as soon as there is a force.
 fn rate_from_nothing(tracer: &mut Tracer, target: f64, direction: f64) -> Result<Start, String> {
     let start = tracer.state.clone();
     let length = SETTINGS.first_load * tracer.system.units().factor.min((target - start.factor).abs());

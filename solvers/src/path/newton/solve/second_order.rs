@@ -63,12 +63,13 @@ fn images(
     Some(DMatrix::from_fn(basis.nrows(), basis.ncols(), |i, j| columns[j][i]))
 }
 
-/// Returns the rate at held loads and settlements with the critical motion of a state, which is nearly singular.
+/// Returns the rate with the critical motion at a state whose equations are nearly singular. Loads and settlements are
+/// held.
 pub fn critical_rate(system: &mut StepSystem, state: &State, work: &SecondOrderWork) -> Option<Tangent> {
     let held = held_factor(system, state)?;
     let (first, mode) = (2 * system.scaled.contacts, work.critical_mode()?);
     let mut right = vec![0.0; system.size()];
-    // K⁻¹ φ = s φ.
+    // The critical motion φ is an eigenvector: S φ = s φ.
     right[first..first + mode.len()].copy_from_slice(&mode);
     let mut found = held.apply(&right)?;
     let size = found[first..first + mode.len()].iter().map(|q| q * q).sum::<f64>().sqrt();
