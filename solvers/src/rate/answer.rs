@@ -9,6 +9,9 @@
 //!    with λ̇ < 0. A neighbour with λ̇ = 0 on which the load does negative work continues the path if a point of the event
 //!    enters a new mode: other loads drive it.
 //!
+//! Rates that a structure with imperfections does not follow ([`Arrival::is_followed_by`]) come last: an event can be a
+//! bifurcation.
+//!
 //! Pivoting comes first in step 2. For associated flow without softening (AᵀSA positive semidefinite) it ends with a rate or
 //! with the proof that none rises. Otherwise steps 2 and 3 are complete searches ([`tree`](super::tree)) within a budget. If
 //! there are more combinations next to the arrival than the budget allows, the rate that pivoting finds is followed.
@@ -75,6 +78,7 @@ pub fn answer(problem: &RateProblem, arrival: &Arrival, budget: &Budget, counts:
         budget,
         counts,
         rates: Vec::new(),
+        unfollowed: Vec::new(),
         why_open: None,
     };
     let found = inquiry.answer();
@@ -96,7 +100,7 @@ pub fn only_neighbour(problem: &RateProblem, arrival: &Arrival, budget: &Budget,
     let (rates, complete) = neighbours(problem, arrival, budget.combinations, trials);
     let goes_on = |rate: &Rate| {
         let moves_on = rate.factor > 0.0 || arrival.factor < 0.0 && (rate.factor < 0.0 || problem.leads_on(rate));
-        moves_on && arrival.continues(problem, rate)
+        moves_on && arrival.continues(problem, rate) && arrival.is_followed_by(problem, rate)
     };
     let mut rates = rates.into_iter().filter(goes_on);
     match (rates.next(), rates.next()) {
@@ -125,6 +129,8 @@ struct Inquiry<'a> {
     counts: &'a mut RateCounts,
     /// Rates that continue the path.
     rates: Vec<Rate>,
+    /// Rates that continue the path, but that a structure with imperfections does not follow.
+    unfollowed: Vec<Rate>,
     /// The first reason why a search was not complete.
     why_open: Option<String>,
 }
@@ -148,6 +154,9 @@ impl Inquiry<'_> {
             return self.chosen(Algorithm::Tree, none_rises);
         }
         let falling = self.searched(-1.0);
+        if self.rates.is_empty() {
+            self.rates = std::mem::take(&mut self.unfollowed);
+        }
         if !self.rates.is_empty() {
             return self.chosen(Algorithm::Tree, none_rises);
         }
@@ -172,7 +181,8 @@ impl Inquiry<'_> {
             let enters = || self.problem.load_resists(&rate) && self.arrival.enters(self.problem, &rate);
             let moves_on = rate.factor != 0.0 || self.problem.leads_on(&rate) || enters();
             if moves_on && self.arrival.continues(self.problem, &rate) {
-                add(&mut self.rates, rate);
+                let followed = self.arrival.is_followed_by(self.problem, &rate);
+                add(if followed { &mut self.rates } else { &mut self.unfollowed }, rate);
             }
         }
     }

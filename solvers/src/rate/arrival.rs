@@ -5,6 +5,10 @@
 //! - *unloading*: λ falls, and no point of the event takes a mode that the event makes possible: one that slipped and stops
 //!   could have stopped before, unless the event is the end of its slip;
 //! - *going back* on a piece that does not rise: λ rises, and no point of the event changes its mode.
+//!
+//! An event is a bifurcation if the modes of a rising piece are stable under load and the modes of a rate that rises are
+//! unstable: a structure with imperfections leaves this branch. It follows a rate that rises and is stable, or one that falls
+//! and is unstable under load, as behind a limit point. A rate that falls and is stable unloads.
 
 use super::problem::{Rate, RateProblem};
 use crate::contact::mode::ContactMode;
@@ -55,6 +59,15 @@ impl Arrival {
         }
         let existed = rate.factor < 0.0 || (rate.factor > 0.0 && self.factor <= 0.0);
         !existed || self.enters(problem, rate)
+    }
+
+    /// False if the path rises in stable modes and a rate rises in unstable modes or falls in stable ones.
+    pub fn is_followed_by(&self, problem: &RateProblem, rate: &Rate) -> bool {
+        let rises = self.factor > 0.0 && self.points.iter().any(|point| point.hit);
+        if !rises || rate.factor == 0.0 || !problem.stable_under_load(&self.modes()) {
+            return true;
+        }
+        problem.stable_under_load(&rate.modes) == (rate.factor > 0.0)
     }
 
     /// True if a point of the event takes a mode that the event makes possible.

@@ -1,6 +1,7 @@
 //! Measures of rates for the rule that chooses: size of the step, second-order energy, stability under control.
 
 use super::problem::{Rate, RateProblem};
+use crate::contact::mode::ContactMode;
 use crate::settings::SETTINGS;
 
 impl RateProblem<'_> {
@@ -29,9 +30,14 @@ impl RateProblem<'_> {
         0.5 * energy / self.step(rate).powi(2).max(1e-300)
     }
 
+    /// True if modes are stable under a constant load.
+    pub fn stable_under_load(&self, modes: &[ContactMode]) -> bool {
+        self.negative_eigenvalues(modes) == Some(0)
+    }
+
     /// True if a rate is stable while the load point or the settlement is held.
     pub fn stable_under_control(&self, rate: &Rate) -> bool {
-        match self.negative_eigenvalues(rate) {
+        match self.negative_eigenvalues(&rate.modes) {
             Some(0) => true,
             // The load point moves on while the load falls.
             Some(1) => {
@@ -54,10 +60,10 @@ impl RateProblem<'_> {
         free <= 1
     }
 
-    /// Number of negative real eigenvalues of AᵀSD over the modes of a rate.
-    fn negative_eigenvalues(&self, rate: &Rate) -> Option<usize> {
-        let matrix = self.mode_matrix(&rate.modes);
-        if matrix.is_empty() {
+    /// Number of negative real eigenvalues of AᵀSD over some modes.
+    fn negative_eigenvalues(&self, modes: &[ContactMode]) -> Option<usize> {
+        let matrix = self.mode_matrix(modes);
+        if matrix.is_empty() || (&matrix + matrix.transpose()).cholesky().is_some() {
             return Some(0);
         }
         let least = -SETTINGS.admissible * matrix.amax();

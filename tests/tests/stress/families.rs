@@ -323,18 +323,6 @@ fn families_of_some() {
     }
 }
 
-/// An event leaves no force at its points that closes them again. In a soft arch a force of 8 % of the tolerance did, and
-/// events followed each other without end. The path ends at an event from which its branch is unstable.
-#[test]
-fn points_that_open_stay_open() {
-    let scene = family_scene(Family::Symmetric, 6070);
-    for lines in ["", "solver = \"newton_path\"\ncontinuation = { strategy = \"displacement_control\" }"] {
-        let answer = Answer::of(solve_case(&first_case(&scene.study(Form::Given, lines))));
-        let ends = answer.status == Status::Open && answer.notes[0].ends_with("no stable one is near: a bifurcation");
-        assert!(ends && same(answer.load, 59_640.555_73), "{}", answer.shown());
-    }
-}
-
 /// Behind a limit point, a path leaves an unstable branch where the load exceeds this limit point. With smaller loads one path repeated
 /// a loop without end, and with half steps it carried 93.394.
 #[test]

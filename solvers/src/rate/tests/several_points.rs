@@ -35,7 +35,24 @@ fn an_unstable_symmetric_mode_gives_way_to_twins() {
     assert!(modes.contains(&&vec![SLIP, ContactMode::Stick]) && modes.contains(&&vec![ContactMode::Stick, SLIP]));
 }
 
-/// The same with a slightly greater force at one point: that point dissipates more, slips, and has no twin.
+/// Each point softens alone, and together they carry more, but this mode is unstable: the path follows one of two falling
+/// rates, and it is not claimed that no rate rises.
+#[test]
+fn an_unstable_rising_mode_gives_way_to_falling_twins() {
+    let laws = dry(0.5, 0.0);
+    let s = tangential(2, 0.0, |i, j| if i == j { -1.0 } else { 2.0 });
+    let mut case = Case::slipping(&laws, 2, &s, &[0.0, 1.0, 0.0, 1.0]);
+    for k in 0..2 {
+        case = case.arriving(k, ContactMode::Stick, true);
+    }
+    let (rate, twins) = case.goes();
+    assert_eq!((rate.factor, twins.len()), (-1.0, 1));
+    let modes = [&rate.modes, &twins[0].modes];
+    assert!(modes.contains(&&vec![SLIP, ContactMode::Stick]) && modes.contains(&&vec![ContactMode::Stick, SLIP]));
+    assert!(case.answer().none_rises.is_none());
+}
+
+/// One of two points that soften each other has a slightly greater force: that point dissipates more, slips, and has no twin.
 #[test]
 fn the_greatest_dissipation_is_chosen() {
     let laws = dry(0.5, 0.0);

@@ -206,7 +206,7 @@ fn by_rate_problem(trace: &mut Trace, load: &Load, active: &[usize]) -> Option<C
     // A mechanism of associated flow is itself the proof.
     let proved = none_rises.is_some() || arrival.factor < 0.0 || (*associated && rate.factor == 0.0);
     if rate.factor <= 0.0 && !proved {
-        let why = "it is not decided whether a rate raises the load";
+        let why = "a rate that raises the load is not excluded";
         return Some(Next::Lost(lost(state.factor, active.len(), why)).into());
     }
     let rate = favoured_twin(&local, base, (problem, at, state.factor), rate, twins, log)?;

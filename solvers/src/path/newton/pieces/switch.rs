@@ -160,7 +160,7 @@ pub(super) fn after_event(
     let sense = if rises { 1.0 } else { -1.0 };
     match rate_after_event(system, state, &event_points(hits), (direction, sense)) {
         AfterEvent::Goes { rate, modes, twins, none_rises } => {
-            let open = (!none_rises).then(|| "it is not decided whether a rate has a growing factor".to_string());
+            let open = (!none_rises).then(|| "a rate with a growing factor is not excluded".to_string());
             NextPiece::Goes { rate, modes, twins, open }
         }
         AfterEvent::Nothing => NextPiece::Nothing {
