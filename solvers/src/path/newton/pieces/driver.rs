@@ -520,15 +520,16 @@ impl<'d> Run<'d> {
             return self.divide(tracer, other);
         }
         let here = tracer.state.clone();
-        if !is_unstable_at_rest(&mut tracer.system, &here) {
-            return self.after(tracer);
-        }
-        match leave_unstable(tracer, &here, work, false) {
+        let departure = match is_unstable_at_rest(&mut tracer.system, &here) {
+            true => leave_unstable(tracer, &here, work, false),
+            false => Departure::Falls,
+        };
+        match departure {
             Departure::Stopped => Some(LoadStepEnding::Ended),
             Departure::Stable => self.anew(tracer),
             Departure::Falls => {
                 let why = format!(
-                    "at factor {} the equilibrium becomes unstable under its loads, and no stable one is near: a bifurcation",
+                    "at factor {} the equilibrium becomes unstable under its loads, and no other branch was found: a bifurcation",
                     here.factor
                 );
                 Some(end_path(tracer, Status::Stalled, why))
