@@ -61,7 +61,8 @@ impl Arrival {
         !existed || self.enters(problem, rate)
     }
 
-    /// False if the path rises in stable modes and a rate rises in unstable modes or falls in stable ones.
+    /// True if a structure with imperfections can follow a rate: false if the path rises in stable modes, and the rate
+    /// rises in unstable modes or falls in stable modes.
     pub fn is_followed_by(&self, problem: &RateProblem, rate: &Rate) -> bool {
         let rises = self.factor > 0.0 && self.points.iter().any(|point| point.hit);
         if !rises || rate.factor == 0.0 || !problem.stable_under_load(&self.modes()) {
