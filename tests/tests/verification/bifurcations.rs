@@ -56,3 +56,22 @@ fn an_unstable_branch_behind_an_event_is_not_followed() {
         assert_close(imperfect.load_factor.expect("a load"), carried, 1e-5);
     }
 }
+
+/// The first sliding point that stops along the critical motion leads back to the present branch; the other branch begins where more
+/// points stop. The load that an imperfection costs grows as its square root: 3e-4 at 1e-7, and 1e-3 at 1e-6.
+#[test]
+fn a_branch_on_which_several_points_stop_is_found() {
+    let scene = family_scene(Family::Symmetric, 12808);
+    for lines in ["", "solver = \"newton_path\"\ncontinuation = { strategy = \"displacement_control\" }"] {
+        let perfect = answered(&scene.study(Form::Given, lines));
+        assert_eq!(perfect.status, Status::Collapse, "{:?}", perfect.notes);
+        let [place] = &perfect.path.branches[..] else { panic!("{:?}", perfect.path.branches) };
+        assert!(place.twins && place.what == "bifurcation", "{place:?}");
+        assert_close(place.factor, 679_674.029, 1e-7);
+        assert_close(perfect.load_factor.expect("a load"), 690_185.476, 1e-7);
+    }
+    for (share, tolerance) in [(1e-7, 4e-4), (1e-6, 1.2e-3)] {
+        let imperfect = answered(&pushed(&scene.study(Form::Given, ""), share));
+        assert_close(imperfect.load_factor.expect("a load"), 690_185.476, tolerance);
+    }
+}

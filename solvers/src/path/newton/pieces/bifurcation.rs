@@ -131,6 +131,7 @@ fn sum(a: &Tangent, share: f64, b: &Tangent) -> Tangent {
 }
 
 /// Returns the piece of the other branch in one sense of the critical motion, and its modes. `None` if no rate leads there.
+/// If the first sliding points that stop along the critical motion lead back to the present branch, more points stop.
 fn begin(
     tracer: &mut Tracer,
     here: &State,
@@ -145,23 +146,24 @@ fn begin(
         let slides = matches!(present.monitors.0[i].what, What::Flow(_)) && by[i].value < -by[i].tolerance;
         slides.then(|| own[i].value.max(0.0) / -by[i].value)
     };
-    let rests: Vec<(usize, f64)> = (0..own.len()).filter_map(|i| Some((i, rest(i)?))).collect();
-    let share = rests.iter().map(|(_, share)| *share).fold(f64::INFINITY, f64::min);
-    if share.is_infinite() {
+    let mut rests: Vec<(usize, f64)> = (0..own.len()).filter_map(|i| Some((i, rest(i)?))).collect();
+    if rests.is_empty() {
         return Some((present.turned(system, critical)?, here.mode.clone()));
     }
-    let first = |(i, at): &(usize, f64)| (*at <= share * (1.0 + SETTINGS.distinct())).then(|| present.monitors.0[*i]);
-    let hits: Vec<Monitor> = rests.iter().filter_map(first).collect();
-    let arrival = present.turned(system, &sum(&present.tangent, share, critical))?;
-    match after_event(system, here, &arrival, &hits, (direction, true)) {
-        NextPiece::Goes { rate, modes, .. } => {
-            let piece = Piece::new(system, &State { mode: modes.clone(), ..here.clone() }, &rate)?;
-            // The present branch is no other branch.
-            let turns = inner(&piece.row, &present.row) < 1.0 - SETTINGS.distinct();
-            (turns && modes != here.mode).then_some((piece, modes))
-        }
-        NextPiece::Nothing { .. } => None,
-    }
+    rests.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let next_is_later =
+        |end: usize| rests.get(end).is_none_or(|next| next.1 > rests[end - 1].1 * (1.0 + SETTINGS.distinct()));
+    (1..=rests.len()).filter(|end| next_is_later(*end)).find_map(|end| {
+        let hits: Vec<Monitor> = rests[..end].iter().map(|(i, _)| present.monitors.0[*i]).collect();
+        let arrival = present.turned(system, &sum(&present.tangent, rests[end - 1].1, critical))?;
+        let NextPiece::Goes { rate, modes, .. } = after_event(system, here, &arrival, &hits, (direction, true)) else {
+            return None;
+        };
+        let piece = Piece::new(system, &State { mode: modes.clone(), ..here.clone() }, &rate)?;
+        // The present branch is no other branch.
+        let turns = inner(&piece.row, &present.row) < 1.0 - SETTINGS.distinct();
+        (turns && modes != here.mode).then_some((piece, modes))
+    })
 }
 
 /// Returns a state on the other branch near its beginning, before its first event.
