@@ -22,7 +22,7 @@ const MOST: usize = 1200;
 /// Linear programs for each leaf of the budget.
 const PROGRAMS: u64 = 4;
 /// Entries of the program that all pivots may change: each pivot changes all of them.
-const MOST_CHANGED: u64 = 20_000_000_000;
+const MOST_CHANGED: u64 = 2_000_000_000;
 
 /// Result of a complete search in one sense of λ.
 pub struct Searched {
