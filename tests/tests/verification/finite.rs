@@ -378,11 +378,7 @@ fn the_peak_does_not_depend_on_steps_strategy_units_or_side() {
 /// pressed on a line, both computed by another program, give √E × deficit = 81.40 × √5 kN √GPa.
 #[test]
 fn the_rigid_limit_is_approached_as_the_root_of_the_modulus() {
-    let meshes = [
-        (5.0, "elements = [8, 12]\ngrading = 10.0"),
-        (20.0, "elements = [8, 14]\ngrading = 25.0"),
-        (80.0, "elements = [10, 16]\ngrading = 70.0"),
-    ];
+    let meshes = [(5.0, "elements = [8, 12]\ngrading = 10.0"), (80.0, "elements = [10, 16]\ngrading = 70.0")];
     let mut before: Option<f64> = None;
     for (modulus, mesh) in meshes {
         let peak = Bridge { young_modulus: modulus * 1e9, mesh, ..Bridge::default() }.peak();
@@ -391,7 +387,7 @@ fn the_rigid_limit_is_approached_as_the_root_of_the_modulus() {
         // The error of the mesh, and the term in 1/E.
         assert_close(deficit, asymptote, 0.08);
         if let Some(before) = before {
-            let exponent = (deficit / before).ln() / 4f64.ln();
+            let exponent = (deficit / before).ln() / 16f64.ln();
             assert!((exponent + 0.5).abs() < 0.05, "E = {modulus} GPa: deficit {deficit}, exponent {exponent}");
         }
         before = Some(deficit);
