@@ -19,7 +19,7 @@ mod worker;
 use supervisor::hold;
 
 /// Inputs of each target in the default tests.
-const SHORT: u64 = 100;
+const SHORT: u64 = 150;
 
 #[test]
 fn mutated_studies() {
