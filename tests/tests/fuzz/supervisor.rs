@@ -9,8 +9,8 @@ use std::time::Duration;
 
 /// Time after which a phase counts as hanging.
 const LONGEST: Duration = Duration::from_secs(30);
-/// Time after which a solver that cannot be cancelled is cut short; such runs are counted separately.
-const LONGEST_RUN: Duration = Duration::from_secs(8);
+/// Time after which a run that does not end when it is cancelled is cut short. Such runs are counted separately.
+const CUT_SHORT: Duration = Duration::from_secs(8);
 /// Address space of a child \[KiB\].
 const MEMORY: u64 = 6 << 20;
 /// Number of findings that are listed.
@@ -71,7 +71,7 @@ fn one_child(name: &str, from: u64, to: u64, tally: &mut Tally) -> u64 {
     let lines = lines_of(&mut child);
     let (mut seed, mut phase) = (from, String::from("start"));
     loop {
-        match lines.recv_timeout(if phase == "run" { LONGEST_RUN } else { LONGEST }) {
+        match lines.recv_timeout(if phase == "run" { CUT_SHORT } else { LONGEST }) {
             Ok(line) => match line.split_once(' ').unwrap_or((&line, "")) {
                 ("seed", number) => (seed, phase) = (number.parse().expect("a seed"), "input".into()),
                 ("phase", what) => phase = what.into(),

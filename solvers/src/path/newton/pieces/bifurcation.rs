@@ -131,7 +131,7 @@ fn sum(a: &Tangent, share: f64, b: &Tangent) -> Tangent {
 }
 
 /// Returns the piece of the other branch in one sense of the critical motion, and its modes. `None` if no rate leads there.
-/// If the first sliding points that stop along the critical motion lead back to the present branch, more points stop.
+/// If the first sliding points that stop along the critical motion do not lead to another branch, the next ones stop as well.
 fn begin(
     tracer: &mut Tracer,
     here: &State,
