@@ -37,7 +37,7 @@ struct Known {
     /// Strains at the quadrature points.
     strains: Option<Arc<Strains>>,
     /// Places of points, and displacements of all nodes from forces there, by local points.
-    responses: Vec<(Vec<Vec2>, Response)>,
+    responses: Vec<(Vec<Vec2>, Arc<Response>)>,
 }
 
 impl Known {
@@ -180,9 +180,7 @@ impl Condenser {
         let response = match response.map(|(_, response)| response.clone()) {
             Some(response) => response,
             None => {
-                let places = shape.places(&local, points)?;
-                let all = shape.displacements(shape.loads_at(&places))?;
-                let response = (Arc::new(places), Arc::new(all));
+                let response = Arc::new(Response::new(&shape, shape.places(&local, points)?)?);
                 known.responses.push((local, response.clone()));
                 response
             }

@@ -28,7 +28,7 @@
 
 use super::element::{bilinear, stiffness_of_strains, strain_operators};
 use super::mesh::Mesh;
-use super::shape::{Place, Placement, Response, Shape, at_places};
+use super::shape::{Placement, Response, Shape, at_places};
 use super::stress::Recovered;
 use crate::law::{Elasticity, PlanarPoint, PlanarUpdate, Plane, UpdateContext, Voigt};
 use crate::linear::Analysis;
@@ -143,9 +143,8 @@ pub struct PassedStep {
 pub struct InelasticBody {
     pub(super) shape: Arc<Shape>,
     pub(super) strains: Arc<Strains>,
-    pub(super) places: Arc<Vec<Place>>,
-    /// X of the elastic body.
-    pub(super) response: Arc<DMatrix<f64>>,
+    /// Places of the points and X of the elastic body, for forces on the carriers.
+    pub(super) response: Arc<Response>,
     /// C of the elastic body, in world axes \[m/N\].
     pub(super) flexibility: Arc<DMatrix<f64>>,
     pub(super) origin: Vec2,
@@ -170,7 +169,7 @@ impl InelasticBody {
     pub(super) fn new(
         shape: Arc<Shape>,
         strains: Arc<Strains>,
-        (places, response): Response,
+        response: Arc<Response>,
         flexibility: Arc<DMatrix<f64>>,
         placement: Placement,
         elasticity: &Elasticity,
@@ -182,7 +181,6 @@ impl InelasticBody {
         InelasticBody {
             shape,
             strains,
-            places,
             response,
             flexibility,
             origin,
@@ -262,8 +260,14 @@ impl InelasticBody {
         }
     }
 
+    /// Returns the displacements of the nodes from forces (x, y per point) \[N\], by X for forces on the carriers, and adds them
+    /// to others.
+    pub(super) fn add_response(&self, all: &mut [f64], response: &DMatrix<f64>, forces: &[f64]) {
+        add_columns(all, response, &self.response.on_carriers(&self.local_forces(forces)));
+    }
+
     /// Converts forces (x, y per point) \[N\] in the axes of the body into loads of the shape.
-    pub(super) fn local_forces(&self, forces: &[f64]) -> Vec<f64> {
+    fn local_forces(&self, forces: &[f64]) -> Vec<f64> {
         let scale = 1.0 / (self.modulus * self.width * self.size);
         let to_local = self.rotation.transpose() * scale;
         forces.chunks(2).flat_map(|f| <[f64; 2]>::from(to_local * Vec2::new(f[0], f[1]))).collect()
@@ -272,13 +276,13 @@ impl InelasticBody {
     /// Returns the displacements of the nodes of the elastic body.
     pub fn elastic_displacement(&self, forces: &[f64]) -> Vec<f64> {
         let mut all = vec![0.0; 2 * self.nodes()];
-        add_columns(&mut all, &self.response, &self.local_forces(forces));
+        self.add_response(&mut all, &self.response.displacements, forces);
         all
     }
 
     /// Returns the displacements (x, y) of the points from those of the nodes \[m\], in the axes of the body.
     pub fn at_points(&self, displacement: &[f64]) -> Vec<f64> {
-        let local = at_places(&self.places, &DMatrix::from_column_slice(displacement.len(), 1, displacement));
+        let local = at_places(&self.response.places, &DMatrix::from_column_slice(displacement.len(), 1, displacement));
         let turn = self.rotation * self.size;
         local.as_slice().chunks(2).flat_map(|u| <[f64; 2]>::from(turn * Vec2::new(u[0], u[1]))).collect()
     }
@@ -286,7 +290,7 @@ impl InelasticBody {
     /// Returns the greatest unbalanced force on a node \[N\].
     pub(super) fn unbalanced(&self, internal: &[f64], forces: &[f64]) -> f64 {
         let mut rest = DMatrix::zeros(internal.len(), 1);
-        for (place, f) in self.places.iter().zip(self.local_forces(forces).chunks(2)) {
+        for (place, f) in self.response.places.iter().zip(self.local_forces(forces).chunks(2)) {
             for &(node, value) in place {
                 (0..2).for_each(|i| rest[(2 * node + i, 0)] += value * f[i]);
             }

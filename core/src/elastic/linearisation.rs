@@ -1,7 +1,7 @@
 //! A body of a yielding material, linearised at displacements of its nodes: stresses, energies, tangent, and the
 //! condensation of the tangent onto its points. The module `inelastic` has the equations.
 
-use super::inelastic::{InelasticBody, InelasticState, add_columns};
+use super::inelastic::{InelasticBody, InelasticState};
 use super::shape::{SPRINGS, at_places, placed};
 use crate::law::{Effect, PlanarPoint};
 use crate::linear::{Entries, SparseLu};
@@ -39,7 +39,7 @@ pub struct Linearisation {
     pub flexibility: Arc<DMatrix<f64>>,
     /// c (x, y per point) \[m\].
     pub offset: Vec<f64>,
-    /// X and x.
+    /// X for forces on the carriers, and x.
     response: Arc<DMatrix<f64>>,
     rest: Vec<f64>,
     /// Displacements of the nodes (x, y) at which it is linearised, in the frame of the shape, in units of its size.
@@ -58,24 +58,30 @@ pub struct Linearisation {
 }
 
 /// Returns the greatest residual of the equations of a tangent without its springs, relative to loads and stiffness ×
-/// displacement.
+/// displacement: of the last right-hand side and of the mean of the others, which are all solved by the same factors.
 fn unsolved(factors: &SparseLu, stiffest: f64, right: &[Vec<f64>], all: &DMatrix<f64>) -> f64 {
     // A number that is not one remains the greatest.
     let larger = |a: f64, b: f64| if a >= b || a.is_nan() { a } else { b };
     let greatest = |v: &[f64]| v.iter().fold(0.0, |a, x| larger(a, x.abs()));
-    let of_one = |((right, mut left), x): ((&Vec<f64>, Vec<f64>), nalgebra::DVectorView<f64>)| {
+    let of_some = |some: std::ops::Range<usize>| {
+        let (columns, share) = (all.columns_range(some.clone()), 1.0 / some.len() as f64);
+        let mean: Vec<f64> =
+            (0..all.nrows()).map(|i| right[some.clone()].iter().map(|b| b[i]).sum::<f64>() * share).collect();
+        let x = columns.column_sum() * share;
+        let mut left = factors.left(&mean, x.as_slice());
         SPRINGS.iter().for_each(|&dof| left[dof] += x[dof]);
-        greatest(&left) / (greatest(right) + stiffest * x.amax()).max(f64::MIN_POSITIVE)
+        let loads = right[some].iter().map(|b| greatest(b)).fold(0.0, larger);
+        greatest(&left) / (loads + stiffest * columns.amax()).max(f64::MIN_POSITIVE)
     };
-    let errors = right.iter().zip(factors.left(right, all)).zip(all.column_iter()).map(of_one);
-    errors.fold(0.0, larger)
+    let last = right.len() - 1;
+    larger(of_some(0..last), of_some(last..right.len()))
 }
 
 impl InelasticBody {
     /// Returns the displacements of the nodes from forces on the points, by the linearisation.
     pub fn displaced(&self, linear: &Linearisation, forces: &[f64]) -> Vec<f64> {
         let mut all = linear.rest.clone();
-        add_columns(&mut all, &linear.response, &self.local_forces(forces));
+        self.add_response(&mut all, &linear.response, forces);
         all
     }
 
@@ -188,7 +194,7 @@ impl InelasticBody {
         let changed = yielding > 0 || !points.iter().all(|point| self.is_unchanged(point));
         let internal = self.internal(&points);
         let (mut rest, mut response, mut flexibility) =
-            (vec![0.0; displacement.len()], self.response.clone(), self.flexibility.clone());
+            (vec![0.0; displacement.len()], self.response.displacements.clone(), self.flexibility.clone());
         let mut factorisations = 0;
         if changed {
             let mut solved = None;
@@ -202,7 +208,7 @@ impl InelasticBody {
             let (x, own) = solved.ok_or("the tangent stiffness of a block that yields has no inverse")?;
             rest = displacement.iter().zip(own.iter()).map(|(v, own)| v - own).collect();
             let scale = 1.0 / (self.modulus * self.width);
-            flexibility = Arc::new(placed(&at_places(&self.places, &x), self.rotation, scale, false));
+            flexibility = Arc::new(placed(&self.response.at_points(&x), self.rotation, scale, false));
             response = Arc::new(x);
         } else if start.yielded {
             let own = self.shape.displacements(DMatrix::from_column_slice(internal.len(), 1, &internal))?;
@@ -290,7 +296,7 @@ impl InelasticBody {
         let entries = self.tangent_entries(points, share);
         let stiffest = entries.iter().fold(0.0f64, |max, entry| max.max(entry.2.abs()));
         let factors = SparseLu::analysed_together(size, &entries, &self.strains.analysis)?;
-        let mut loads = self.shape.loads_at(&self.places);
+        let mut loads = self.shape.loads_at(&self.response.carriers);
         self.shape.balanced(&mut loads);
         let mut right: Vec<Vec<f64>> = loads.column_iter().map(|c| c.iter().copied().collect()).collect();
         right.push(internal.to_vec());
@@ -303,7 +309,7 @@ impl InelasticBody {
                 continue;
             }
             let largest = all.columns(0, right.len() - 1).amax();
-            let singular = largest.is_nan() || largest > LARGEST * self.response.amax();
+            let singular = largest.is_nan() || largest > LARGEST * self.response.displacements.amax();
             if singular || error.is_nan() || error > RESIDUAL {
                 return None;
             }
@@ -319,7 +325,7 @@ impl InelasticBody {
     /// If an update of the law fails.
     pub fn dissipation_by_force(&self, linear: &Linearisation, start: &InelasticState) -> Result<Vec<f64>, String> {
         if linear.yielding == 0 {
-            return Ok(vec![0.0; 2 * self.places.len()]);
+            return Ok(vec![0.0; 2 * self.response.places.len()]);
         }
         let volume = self.size.powi(2) * self.width;
         let strains = self.strains_at(&linear.displacement);
@@ -340,11 +346,9 @@ impl InelasticBody {
             }
         }
         let scale = 1.0 / (self.modulus * self.width * self.size);
-        let local: Vec<f64> = linear
-            .response
-            .column_iter()
-            .map(|column| column.iter().zip(&slope).map(|(x, s)| x * s).sum::<f64>() * scale)
-            .collect();
-        Ok(local.chunks(2).flat_map(|s| <[f64; 2]>::from(self.rotation * Vec2::new(s[0], s[1]))).collect())
+        let by_carrier = linear.response.tr_mul(&nalgebra::DVector::from_vec(slope)) * scale;
+        let local =
+            at_places(&self.response.shares, &DMatrix::from_column_slice(by_carrier.len(), 1, by_carrier.as_slice()));
+        Ok(local.as_slice().chunks(2).flat_map(|s| <[f64; 2]>::from(self.rotation * Vec2::new(s[0], s[1]))).collect())
     }
 }

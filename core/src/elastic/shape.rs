@@ -8,6 +8,7 @@ use crate::linear::{Entries, SparseLdlt};
 use crate::model::MeshDensity;
 use crate::model::geometry::{Vec2, area_and_centroid, bounding_box, turned};
 use nalgebra::{DMatrix, Matrix2};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// Greatest difference of congruent shapes and points, as a share of the size.
@@ -63,8 +64,56 @@ pub(super) fn agree(a: &[Vec2], b: &[Vec2]) -> bool {
 /// The place of a point in the mesh: nodes with their shape functions.
 pub(super) type Place = Vec<(usize, f64)>;
 
+/// Share of a shape function that is rounding.
+const NO_SHARE: f64 = 1e-14;
+
 /// Places of points, and the elastic displacements of all nodes from forces there.
-pub(super) type Response = (Arc<Vec<Place>>, Arc<DMatrix<f64>>);
+pub(super) struct Response {
+    /// The places of the points.
+    pub places: Vec<Place>,
+    /// The places at which unit forces act: the loaded nodes, or the points if they are fewer.
+    pub carriers: Vec<Place>,
+    /// Shares of the carriers (index and share) in the force on a point, which are also those in its displacement.
+    pub shares: Vec<Place>,
+    /// Displacements of all nodes from unit forces (x, y) on the carriers.
+    pub displacements: Arc<DMatrix<f64>>,
+}
+
+impl Response {
+    /// Computes the response of a shape. Errors are those of [`displacements`](Shape::displacements).
+    pub fn new(shape: &Shape, places: Vec<Place>) -> Result<Self, String> {
+        let loaded = |place: &Place| place.iter().copied().filter(|(_, share)| share.abs() > NO_SHARE).collect();
+        let shares: Vec<Place> = places.iter().map(loaded).collect();
+        let nodes: BTreeSet<usize> = shares.iter().flatten().map(|(node, _)| *node).collect();
+        let (carriers, shares) = if nodes.len() < places.len() {
+            let index = |node: usize| nodes.range(..node).count();
+            let shares = shares.iter().map(|place| place.iter().map(|(node, share)| (index(*node), *share)).collect());
+            (nodes.iter().map(|node| vec![(*node, 1.0)]).collect(), shares.collect())
+        } else {
+            (places.clone(), (0..places.len()).map(|point| vec![(point, 1.0)]).collect())
+        };
+        let displacements = Arc::new(shape.displacements(shape.loads_at(&carriers))?);
+        Ok(Response { places, carriers, shares, displacements })
+    }
+
+    /// Returns the forces (x, y) on the carriers from forces on the points.
+    pub fn on_carriers(&self, forces: &[f64]) -> Vec<f64> {
+        let mut on = vec![0.0; 2 * self.carriers.len()];
+        for (shares, force) in self.shares.iter().zip(forces.chunks(2)) {
+            for &(carrier, share) in shares {
+                (0..2).for_each(|i| on[2 * carrier + i] += share * force[i]);
+            }
+        }
+        on
+    }
+
+    /// Returns the displacements of the points from unit forces on the points, from those of all nodes from unit forces on the
+    /// carriers.
+    pub fn at_points(&self, all: &DMatrix<f64>) -> DMatrix<f64> {
+        let carried = at_places(&self.carriers, all);
+        at_places(&self.shares, &at_places(&self.shares, &carried).transpose()).transpose()
+    }
+}
 
 /// The data that determine a shape.
 #[derive(Clone, PartialEq)]

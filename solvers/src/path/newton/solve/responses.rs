@@ -7,7 +7,6 @@ use crate::path::newton::model::state::State;
 use crate::path::newton::model::system::StepSystem;
 use crate::path::newton::quantities::response::traction_row;
 use crate::settings::SETTINGS;
-use nalgebra::DMatrix;
 use voussoir_core::linear::{Entries, SparseLu};
 
 /// Responses to unit rates, and the factors that combine them.
@@ -69,7 +68,7 @@ impl Responses {
         let found = Responses { unit: factors.solve(&right, 3)?, right, factors };
         let solved = |(x, right): (&Vec<f64>, &Vec<f64>)| {
             let parts = entries.iter().map(|&(_, j, v)| (v * x[j]).abs()).fold(0.0, f64::max);
-            found.left(right, x).iter().all(|left| left.abs() <= SETTINGS.admissible * parts)
+            found.factors.left(right, x).iter().all(|left| left.abs() <= SETTINGS.admissible * parts)
         };
         found.unit.iter().zip(&found.right).all(solved).then_some(found)
     }
@@ -78,15 +77,10 @@ impl Responses {
     /// rates may cancel in a motion that hardly deforms the structure: their sum is corrected by its residual.
     pub fn combined(&self, gaps: &[[f64; 2]], factor: f64) -> Option<Vec<f64>> {
         let mut x = sum(&self.unit, gaps, factor);
-        let left = self.left(&sum(&self.right, gaps, factor), &x);
+        let left = self.factors.left(&sum(&self.right, gaps, factor), &x);
         let correction = self.factors.solve(&[left], 1)?.swap_remove(0);
         x.iter_mut().zip(correction).for_each(|(x, correction)| *x += correction);
         Some(x)
-    }
-
-    /// Returns what unknowns leave of a right-hand side.
-    fn left(&self, right: &[f64], x: &[f64]) -> Vec<f64> {
-        self.factors.left(&[right.to_vec()], &DMatrix::from_column_slice(x.len(), 1, x)).swap_remove(0)
     }
 }
 
