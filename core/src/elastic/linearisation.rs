@@ -65,8 +65,10 @@ fn unsolved(factors: &SparseLu, stiffest: f64, right: &[Vec<f64>], all: &DMatrix
     let greatest = |v: &[f64]| v.iter().fold(0.0, |a, x| larger(a, x.abs()));
     let of_some = |some: std::ops::Range<usize>| {
         let (columns, share) = (all.columns_range(some.clone()), 1.0 / some.len() as f64);
-        let mean: Vec<f64> =
-            (0..all.nrows()).map(|i| right[some.clone()].iter().map(|b| b[i]).sum::<f64>() * share).collect();
+        let mut mean = vec![0.0; all.nrows()];
+        for right in &right[some.clone()] {
+            mean.iter_mut().zip(right).for_each(|(sum, b)| *sum += share * b);
+        }
         let x = columns.column_sum() * share;
         let mut left = factors.left(&mean, x.as_slice());
         SPRINGS.iter().for_each(|&dof| left[dof] += x[dof]);
@@ -296,13 +298,11 @@ impl InelasticBody {
         let entries = self.tangent_entries(points, share);
         let stiffest = entries.iter().fold(0.0f64, |max, entry| max.max(entry.2.abs()));
         let factors = SparseLu::analysed_together(size, &entries, &self.strains.analysis)?;
-        let mut loads = self.shape.loads_at(&self.response.carriers);
-        self.shape.balanced(&mut loads);
-        let mut right: Vec<Vec<f64>> = loads.column_iter().map(|c| c.iter().copied().collect()).collect();
+        let mut right = self.response.loads.clone();
         right.push(internal.to_vec());
         for refinements in [0, 1] {
             let all = factors.solve(&right, refinements)?;
-            let mut all = DMatrix::from_fn(size, all.len(), |i, j| all[j][i]);
+            let mut all = DMatrix::from_vec(size, all.len(), all.concat());
             self.shape.without_rigid_motion(&mut all);
             let error = unsolved(&factors, stiffest, &right, &all);
             if refinements == 0 && (error.is_nan() || error > ROUNDING) {

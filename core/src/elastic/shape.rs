@@ -75,7 +75,9 @@ pub(super) struct Response {
     pub carriers: Vec<Place>,
     /// Shares of the carriers (index and share) in the force on a point, which are also those in its displacement.
     pub shares: Vec<Place>,
-    /// Displacements of all nodes from unit forces (x, y) on the carriers.
+    /// Pᵀ Nᵀ: unit forces (x, y) on the carriers, balanced by inertia.
+    pub loads: Vec<Vec<f64>>,
+    /// Displacements of all nodes from these forces.
     pub displacements: Arc<DMatrix<f64>>,
 }
 
@@ -92,8 +94,11 @@ impl Response {
         } else {
             (places.clone(), (0..places.len()).map(|point| vec![(point, 1.0)]).collect())
         };
-        let displacements = Arc::new(shape.displacements(shape.loads_at(&carriers))?);
-        Ok(Response { places, carriers, shares, displacements })
+        let mut loads = shape.loads_at(&carriers);
+        let displacements = Arc::new(shape.displacements(loads.clone())?);
+        shape.balanced(&mut loads);
+        let loads = loads.column_iter().map(|load| load.as_slice().to_vec()).collect();
+        Ok(Response { places, carriers, shares, loads, displacements })
     }
 
     /// Returns the forces (x, y) on the carriers from forces on the points.
