@@ -64,7 +64,7 @@ fn unsolved(factors: &SparseLu, stiffest: f64, right: &[Vec<f64>], all: &DMatrix
     let larger = |a: f64, b: f64| if a >= b || a.is_nan() { a } else { b };
     let greatest = |v: &[f64]| v.iter().fold(0.0, |a, x| larger(a, x.abs()));
     let of_some = |some: std::ops::Range<usize>| {
-        let (columns, share) = (all.columns_range(some.clone()), 1.0 / some.len() as f64);
+        let (columns, share) = (all.columns_range(some.clone()), 1.0 / some.len().max(1) as f64);
         let mut mean = vec![0.0; all.nrows()];
         for right in &right[some.clone()] {
             mean.iter_mut().zip(right).for_each(|(sum, b)| *sum += share * b);

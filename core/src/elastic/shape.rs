@@ -112,8 +112,8 @@ impl Response {
         on
     }
 
-    /// Returns the displacements of the points from unit forces on the points, from those of all nodes from unit forces on the
-    /// carriers.
+    /// Returns the displacements of the points from unit forces on the points. `all`: displacements of all nodes from unit forces
+    /// on the carriers.
     pub fn at_points(&self, all: &DMatrix<f64>) -> DMatrix<f64> {
         let carried = at_places(&self.carriers, all);
         at_places(&self.shares, &at_places(&self.shares, &carried).transpose()).transpose()
@@ -393,6 +393,35 @@ mod tests {
             let first = found.view((0, 0), (6, 6)).into_owned();
             let extended = shape.flexibility(&places, &first).unwrap();
             assert!((&found - extended).amax() < 1e-12 * found.amax(), "order {order}, extended");
+        }
+    }
+
+    /// Forces on many points act by the few loaded nodes, forces on few points by the points: the flexibility and the
+    /// displacements of the nodes are those of forces on the points.
+    #[test]
+    fn forces_on_points_act_by_the_loaded_nodes() {
+        let outline = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]].map(Vec2::from);
+        let placement = Placement::new(&outline).unwrap();
+        let elasticity = PlaneElasticity::new(&Elasticity::isotropic(1.0, 0.25), Plane::Stress);
+        let (vertices, size, plane) = (placement.local.clone(), placement.size, Plane::Stress);
+        let density = MeshDensity { elements: [3, 2], order: 1, grading: [1.0; 2] };
+        let shape = Shape::new(&Form { vertices, size, density, elasticity, plane, of_strains: true }).unwrap();
+        for (count, carriers) in [(9, 6), (2, 4)] {
+            let on_side = |x: f64| (0..count).map(move |i| Vec2::new(x, (i as f64 + 0.5) / count as f64));
+            let points: Vec<Vec2> = on_side(0.0).chain(on_side(2.0)).collect();
+            let local: Vec<Vec2> = points.iter().map(|p| placement.local(*p)).collect();
+            let places = shape.places(&local, &points).unwrap();
+            let response = Response::new(&shape, places.clone()).unwrap();
+            assert_eq!(response.carriers.len(), carriers);
+            let expected = shape.flexibility(&places, &DMatrix::zeros(0, 0)).unwrap();
+            let found = response.at_points(&response.displacements);
+            assert!((&found - &expected).amax() < 1e-13 * expected.amax(), "{count} points");
+            let forces: Vec<f64> = (0..4 * count).map(|i| (i as f64).sin()).collect();
+            let by_points = shape.loads_at(&places) * DMatrix::from_column_slice(4 * count, 1, &forces);
+            let on = response.on_carriers(&forces);
+            let by_carriers = &*response.displacements * DMatrix::from_column_slice(on.len(), 1, &on);
+            let exact = shape.displacements(by_points).unwrap();
+            assert!((by_carriers - &exact).amax() < 1e-13 * exact.amax(), "{count} points");
         }
     }
 }
