@@ -2,7 +2,9 @@
 //! it (docs/theory/crushing.md).
 
 use voussoir::core::certificate::PathChecker;
+use voussoir::core::limit::Status;
 use voussoir::core::path::{PathProblem, PathSettings, PathSolver, PathState};
+use voussoir::solve_case;
 use voussoir::solvers::path::newton::NewtonPath;
 use voussoir_tests::seen::Seen;
 use voussoir_tests::{assert_close, changed, first_case};
@@ -70,6 +72,21 @@ fn an_arch_that_softens_tends_to_one_peak() {
     assert_close(coarse.peak[0], fine.peak[0], 0.1);
     assert_close(coarse.lost, fine.lost, 0.2);
     assert!(fine.crushed > 0.1 && fine.peak[1] < AT, "{fine:?}");
+}
+
+/// The falling path of an arch whose stone softens ends as a collapse, whatever its rounding: ten frictions that differ by 1e-6.
+#[test]
+#[ignore = "a minute"]
+fn the_falling_path_of_an_arch_that_softens_has_an_end() {
+    let text = include_str!("../../../studies/cases/softening_arch.toml");
+    let head = &text[..text.find("[[variants]]").expect("variants")];
+    let head = changed(head, "elements = [8, 8]", "elements = [4, 4]");
+    for k in 0..10 {
+        let friction = format!("friction = {:.6}", 0.5 + 1e-6 * f64::from(k));
+        let result = solve_case(&first_case(&changed(&head, "friction = 0.6", &friction)));
+        assert_eq!(result.status, Status::Collapse, "{friction}: {:?}", result.notes);
+        assert_close(result.load_factor.expect("a peak"), 14221.8145, 1e-6);
+    }
 }
 
 /// With TABLE=1 the test prints the table of docs/theory/crushing.md in half an hour: energy per band, per volume, without

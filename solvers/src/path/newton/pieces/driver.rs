@@ -235,16 +235,8 @@ impl<'d> Run<'d> {
             let modes = found.state.mode.clone();
             return self.go_on(tracer, found, modes, None);
         }
-        if tracer.system.limits.remembers && !self.crowded() {
-            // The rate of an event may be rounding if many points are at their bounds: the arrival continues.
-            let arrival = self.cluster.arrival.as_ref().map(|(modes, piece, _)| (modes.clone(), piece.clone()));
-            let own = (tracer.state.mode.clone(), self.piece.clone());
-            for (modes, piece) in std::iter::once(own).chain(arrival) {
-                let facing = State { mode: modes, ..tracer.state.clone() };
-                if let Some(ending) = self.across(tracer, &facing, &piece) {
-                    return ending;
-                }
-            }
+        if let Some(ending) = self.over_corner(tracer) {
+            return ending;
         }
         let failure = tracer.system.report.failure.take().map_or(String::new(), |why| format!(": {why}"));
         let why = format!("no state of the piece was found beyond factor {}{failure}", tracer.state.factor);
@@ -261,6 +253,20 @@ impl<'d> Run<'d> {
         let piece = Piece::new(&tracer.system, &found.state, &found.rate)?;
         let cosine = inner(&piece.row, &self.piece.row);
         (cosine < 1.0 - SETTINGS.distinct()).then_some(found)
+    }
+
+    /// Makes a short step from a corner of laws with memory along the present piece or, if that fails, along the arrival: the rate
+    /// of an event may be rounding if many points are at their bounds. `None` if there is no such step.
+    fn over_corner(&mut self, tracer: &mut Tracer) -> Option<Ending> {
+        if !tracer.system.limits.remembers {
+            return None;
+        }
+        let arrival = self.cluster.arrival.as_ref().map(|(modes, piece, _)| (modes.clone(), piece.clone()));
+        let own = (tracer.state.mode.clone(), self.piece.clone());
+        std::iter::once(own).chain(arrival).find_map(|(modes, piece)| {
+            let facing = State { mode: modes, ..tracer.state.clone() };
+            self.across(tracer, &facing, &piece)
+        })
     }
 
     /// Makes a short step from a corner, approximately along a piece, by Newton's method on the laws themselves: modes
@@ -585,6 +591,9 @@ impl<'d> Run<'d> {
         if moved {
             self.cluster = Cluster::default();
         } else if self.crowded() {
+            if let Some(ending) = self.over_corner(tracer) {
+                return ending;
+            }
             let why = format!("at factor {} events follow each other without end", tracer.state.factor);
             return Some(end_path(tracer, Status::Stalled, why));
         }
