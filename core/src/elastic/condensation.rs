@@ -5,7 +5,7 @@
 //! the body and E the modulus of the material. The axes of the material are those of the shape.
 
 use super::inelastic::{InelasticBody, Strains};
-use super::shape::{Form, Placement, Response, Shape, agree, placed};
+use super::shape::{Form, Placement, Response, Shape, agree, placed, spread};
 use super::shared;
 use super::stress::{Recovered, recovered};
 use crate::law::{Elasticity, PlanarUpdate, Plane, PlaneElasticity};
@@ -210,13 +210,9 @@ impl Condenser {
         let shape = self.shapes[index].shape()?;
         let scale = 1.0 / (elasticity.modulus * self.width * placement.size);
         let to_local = placement.rotation.transpose();
-        let mut loads = DMatrix::zeros(2 * shape.mesh.nodes.len(), 1);
-        for (place, force) in shape.places(&local, points)?.iter().zip(forces) {
-            let force = to_local * force * scale;
-            for &(node, value) in place {
-                (0..2).for_each(|i| loads[(2 * node + i, 0)] += value * force[i]);
-            }
-        }
+        let acting: Vec<f64> = forces.iter().flat_map(|force| <[f64; 2]>::from(to_local * force * scale)).collect();
+        let count = shape.mesh.nodes.len();
+        let loads = DMatrix::from_vec(2 * count, 1, spread(&shape.places(&local, points)?, count, &acting));
         let weight = body_force * (placement.size.powi(2) * self.width);
         let all = shape.displacements(loads)?;
         let displacement: Vec<Vec2> =

@@ -28,7 +28,7 @@
 
 use super::element::{bilinear, stiffness_of_strains, strain_operators};
 use super::mesh::Mesh;
-use super::shape::{Placement, Response, Shape, at_places};
+use super::shape::{Placement, Response, Shape, at_places, spread};
 use super::stress::Recovered;
 use crate::law::{Elasticity, PlanarPoint, PlanarUpdate, Plane, UpdateContext, Voigt};
 use crate::linear::Analysis;
@@ -289,12 +289,8 @@ impl InelasticBody {
 
     /// Returns the greatest unbalanced force on a node \[N\].
     pub(super) fn unbalanced(&self, internal: &[f64], forces: &[f64]) -> f64 {
-        let mut rest = DMatrix::zeros(internal.len(), 1);
-        for (place, f) in self.response.places.iter().zip(self.local_forces(forces).chunks(2)) {
-            for &(node, value) in place {
-                (0..2).for_each(|i| rest[(2 * node + i, 0)] += value * f[i]);
-            }
-        }
+        let loads = spread(&self.response.places, self.nodes(), &self.local_forces(forces));
+        let mut rest = DMatrix::from_vec(internal.len(), 1, loads);
         self.shape.balanced(&mut rest);
         let left = rest.iter().zip(internal).map(|(f, own)| (f - own).abs());
         let worst = left.fold(0.0, |a: f64, x| if x.is_nan() { x } else { a.max(x) });

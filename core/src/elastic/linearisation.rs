@@ -58,25 +58,25 @@ pub struct Linearisation {
 }
 
 /// Returns the greatest residual of the equations of a tangent without its springs, relative to loads and stiffness ×
-/// displacement: of the last right-hand side and of the mean of the others, which are all solved by the same factors.
+/// displacement: of the last right-hand side and of the sum of the others, which are all solved by the same factors.
 fn unsolved(factors: &SparseLu, stiffest: f64, right: &[Vec<f64>], all: &DMatrix<f64>) -> f64 {
     // A number that is not one remains the greatest.
     let larger = |a: f64, b: f64| if a >= b || a.is_nan() { a } else { b };
     let greatest = |v: &[f64]| v.iter().fold(0.0, |a, x| larger(a, x.abs()));
-    let of_some = |some: std::ops::Range<usize>| {
-        let (columns, share) = (all.columns_range(some.clone()), 1.0 / some.len().max(1) as f64);
-        let mut mean = vec![0.0; all.nrows()];
+    let of_sum = |some: std::ops::Range<usize>| {
+        let columns = all.columns_range(some.clone());
+        let mut sum = vec![0.0; all.nrows()];
         for right in &right[some.clone()] {
-            mean.iter_mut().zip(right).for_each(|(sum, b)| *sum += share * b);
+            sum.iter_mut().zip(right).for_each(|(sum, b)| *sum += b);
         }
-        let x = columns.column_sum() * share;
-        let mut left = factors.left(&mean, x.as_slice());
+        let x = columns.column_sum();
+        let mut left = factors.left(&sum, x.as_slice());
         SPRINGS.iter().for_each(|&dof| left[dof] += x[dof]);
         let loads = right[some].iter().map(|b| greatest(b)).fold(0.0, larger);
         greatest(&left) / (loads + stiffest * columns.amax()).max(f64::MIN_POSITIVE)
     };
     let last = right.len() - 1;
-    larger(of_some(0..last), of_some(last..right.len()))
+    larger(of_sum(0..last), of_sum(last..right.len()))
 }
 
 impl InelasticBody {
@@ -210,7 +210,7 @@ impl InelasticBody {
             let (x, own) = solved.ok_or("the tangent stiffness of a block that yields has no inverse")?;
             rest = displacement.iter().zip(own.iter()).map(|(v, own)| v - own).collect();
             let scale = 1.0 / (self.modulus * self.width);
-            flexibility = Arc::new(placed(&self.response.at_points(&x), self.rotation, scale, false));
+            flexibility = Arc::new(placed(&self.response.condensed(&x), self.rotation, scale, false));
             response = Arc::new(x);
         } else if start.yielded {
             let own = self.shape.displacements(DMatrix::from_column_slice(internal.len(), 1, &internal))?;

@@ -103,18 +103,12 @@ impl Response {
 
     /// Returns the forces (x, y) on the carriers from forces on the points.
     pub fn on_carriers(&self, forces: &[f64]) -> Vec<f64> {
-        let mut on = vec![0.0; 2 * self.carriers.len()];
-        for (shares, force) in self.shares.iter().zip(forces.chunks(2)) {
-            for &(carrier, share) in shares {
-                (0..2).for_each(|i| on[2 * carrier + i] += share * force[i]);
-            }
-        }
-        on
+        spread(&self.shares, self.carriers.len(), forces)
     }
 
     /// Returns the displacements of the points from unit forces on the points. `all`: displacements of all nodes from unit forces
     /// on the carriers.
-    pub fn at_points(&self, all: &DMatrix<f64>) -> DMatrix<f64> {
+    pub fn condensed(&self, all: &DMatrix<f64>) -> DMatrix<f64> {
         let carried = at_places(&self.carriers, all);
         at_places(&self.shares, &at_places(&self.shares, &carried).transpose()).transpose()
     }
@@ -325,6 +319,17 @@ fn inverse(corners: &[Vec2; 4], point: Vec2) -> Option<[f64; 2]> {
     (last < 1e-9).then_some(place)
 }
 
+/// Returns Nᵀ f: forces (x, y) on `count` nodes from forces on places.
+pub(super) fn spread(places: &[Place], count: usize, forces: &[f64]) -> Vec<f64> {
+    let mut on = vec![0.0; 2 * count];
+    for (place, force) in places.iter().zip(forces.chunks(2)) {
+        for &(node, value) in place {
+            (0..2).for_each(|i| on[2 * node + i] += value * force[i]);
+        }
+    }
+    on
+}
+
 /// Returns N x: rows (x, y) per place.
 pub(super) fn at_places(places: &[Place], all: &DMatrix<f64>) -> DMatrix<f64> {
     let entry = |i: usize, j: usize| -> f64 {
@@ -414,7 +419,7 @@ mod tests {
             let response = Response::new(&shape, places.clone()).unwrap();
             assert_eq!(response.carriers.len(), carriers);
             let expected = shape.flexibility(&places, &DMatrix::zeros(0, 0)).unwrap();
-            let found = response.at_points(&response.displacements);
+            let found = response.condensed(&response.displacements);
             assert!((&found - &expected).amax() < 1e-13 * expected.amax(), "{count} points");
             let forces: Vec<f64> = (0..4 * count).map(|i| (i as f64).sin()).collect();
             let by_points = shape.loads_at(&places) * DMatrix::from_column_slice(4 * count, 1, &forces);
