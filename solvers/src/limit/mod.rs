@@ -12,8 +12,6 @@ mod equilibrium;
 mod nearest;
 pub mod nonassociated;
 mod recovery;
-#[cfg(test)]
-mod scenes;
 pub mod sensitivity;
 pub mod sequential;
 mod settings;
@@ -22,7 +20,5 @@ mod systems;
 #[cfg(test)]
 mod tests;
 mod thrust_zone;
-#[cfg(test)]
-mod zone_tests;
 
 pub use self::thrust_zone::{thrust_zone, zone_costs_little};

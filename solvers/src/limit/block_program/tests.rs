@@ -1,6 +1,6 @@
 use super::residuals::greatest;
 use super::{Loads, Program, solve};
-use crate::limit::scenes::{Dry, STUCK, block};
+use crate::limit::tests::scenes::{Dry, STUCK, block};
 use voussoir_core::limit::LimitProblem;
 
 fn loads(problem: &LimitProblem) -> Loads<'_> {

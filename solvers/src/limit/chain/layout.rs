@@ -263,7 +263,7 @@ fn resolved(problem: &LimitProblem, index: usize, ahead: Option<usize>, wrench: 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::limit::scenes::{STUCK, block, lintel};
+    use crate::limit::tests::scenes::{STUCK, block, lintel};
 
     /// A block on the ground is one link. Two half lintels between supports are one link each, closed by a joint.
     #[test]

@@ -413,7 +413,7 @@ pub fn split_bound(systems: &Systems, most: f64, limit: u64, curve: &mut Curve) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::limit::scenes::{Dry, STUCK, block};
+    use crate::limit::tests::scenes::{Dry, STUCK, block};
 
     fn matrix(rows: usize, columns: usize) -> DMatrix<f64> {
         DMatrix::from_fn(rows, columns, |i, j| ((7 * i * i + 11 * j + 5 * i * j + 1) as f64).sin())

@@ -106,7 +106,7 @@ impl DataRate {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::limit::scenes::{Dry, STUCK, block};
+    use crate::limit::tests::scenes::{Dry, STUCK, block};
 
     fn with_friction(mu: f64) -> LimitProblem {
         block(1.0, 2.0, Dry { friction: Some(mu), ..STUCK })

@@ -298,7 +298,7 @@ fn settled(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::limit::scenes::{Dry, STUCK, block};
+    use crate::limit::tests::scenes::{Dry, STUCK, block};
 
     /// Full steps come first, then shares that decrease to zero.
     #[test]

@@ -1,11 +1,11 @@
-use super::chain::{ChainEngine, LimitChain};
-use super::conic::{LimitConic, engine};
-use super::equilibrium::{excess, field_error};
-use super::nonassociated::LimitNonassociated;
 use super::scenes::{Dry, STUCK, block, lintel};
-use super::sensitivity::{DataRate, OptimalFace, same_data};
-use super::sequential::LimitSequential;
-use super::systems::Systems;
+use crate::limit::chain::{ChainEngine, LimitChain};
+use crate::limit::conic::{LimitConic, engine};
+use crate::limit::equilibrium::{excess, field_error};
+use crate::limit::nonassociated::LimitNonassociated;
+use crate::limit::sensitivity::{DataRate, OptimalFace, same_data};
+use crate::limit::sequential::LimitSequential;
+use crate::limit::systems::Systems;
 use voussoir_core::law::StressBlock;
 use voussoir_core::limit::{
     Engine, Equilibrium, ForceVariables, GreatestFactor, JointForce, LimitProblem, LimitQuestion, LimitSolver, Status,

@@ -1,9 +1,9 @@
 //! Tests of the zone of thrust.
 
-use super::chain::{ChainEngine, LimitChain};
-use super::conic;
 use super::scenes::{Dry, STUCK, block, lintel, ring};
-use super::thrust_zone::{thrust_zone, zone_by};
+use crate::limit::chain::{ChainEngine, LimitChain};
+use crate::limit::conic;
+use crate::limit::thrust_zone::{thrust_zone, zone_by};
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use voussoir_core::limit::{Engine, ForceVariables, LimitProblem, LimitQuestion, LimitSolver, combined};
