@@ -5,7 +5,7 @@ use super::source::{Source, is, workspace};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Greatest number of lines without tests: of solvers of plane scenes, and of solvers in space.
-const LINES: [usize; 2] = [26_950, 5_400];
+const LINES: [usize; 2] = [26_740, 5_400];
 /// Greatest length of a chain of imports between files; each sub-folder counts as one file.
 const CHAIN: usize = 8;
 /// Least number of fields of a large struct.

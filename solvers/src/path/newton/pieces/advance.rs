@@ -4,17 +4,19 @@
 //! Otherwise the values and rates of monitors are known at both ends of a step. A monitor that is negative at the end has
 //! a root in the step. A monitor that is positive at both ends may have two roots if its Hermite cubic is negative between
 //! them; the step then ends there. A root is bracketed, and located by the roots of cubics to the tolerance of the
-//! monitor.
+//! monitor. A step also ends where an open point with dilatancy turns along its joint.
 
 use super::corrector::correct;
 use super::monitors::Reading;
 use super::piece::Piece;
-use crate::linear::inner;
+use crate::linear::{inner, largest};
 use crate::path::newton::model::control::Control;
 use crate::path::newton::model::state::{State, Tangent, moved};
 use crate::path::newton::model::system::StepSystem;
 use crate::path::newton::quantities::ahead::length_ahead;
 use crate::path::newton::quantities::control_row::scaled_row;
+use crate::path::newton::solve::iteration::first_state;
+use crate::path::newton::solve::tangent::gap_rounding;
 use crate::settings::SETTINGS;
 
 /// Number of points between the ends of a step at which a cubic is evaluated.
@@ -196,6 +198,32 @@ pub(super) fn state_at(
     from.iter().find_map(|from| step.trial(from, length)).map(|trial| trial.end)
 }
 
+/// Returns the state at a share of the way between two states of a piece, by the Hermite cubics of its unknowns. Their errors are of
+/// fourth order in the distance. `None` if the states do not lie on one smooth curve.
+pub(super) fn between(
+    system: &mut StepSystem,
+    (start, piece): (&State, &Piece),
+    [low, high]: [&StepEnd; 2],
+    share: f64,
+) -> Option<StepEnd> {
+    let (width, rest) = (high.length - low.length, 1.0 - share);
+    let chord = chord(&low.state, &high.state);
+    let [moved_by, before, after] = [&chord, &low.rate, &high.rate].map(|rate| scaled_row(system, rate));
+    let off = moved_by.iter().zip(before.iter().zip(&after)).map(|(x, (a, b))| (x - 0.5 * width * (a + b)).powi(2));
+    if off.sum::<f64>().sqrt() > SETTINGS.wanted_error * inner(&moved_by, &moved_by).sqrt() {
+        return None;
+    }
+    let parts = [
+        (&chord, share * share * (3.0 - 2.0 * share)),
+        (&low.rate, width * share * rest * rest),
+        (&high.rate, -width * share * share * rest),
+    ];
+    let guess = parts.into_iter().fold(low.state.clone(), |state, (rate, by)| moved(&state, rate, by));
+    let length = low.length + share * width;
+    let (state, _) = first_state(system, start, guess, &piece.control(length)).ok()?;
+    Some(StepEnd { state, length, ..high.clone() })
+}
+
 /// Moves a length along a piece from one of its states.
 pub(super) fn advance(
     system: &mut StepSystem,
@@ -203,6 +231,42 @@ pub(super) fn advance(
     length: f64,
     watched: Watched,
 ) -> Advance {
+    let mut found = to_first_event(system, (start, piece), length, watched);
+    for _ in 0..MAX_TRIALS {
+        let turn = found.end().and_then(|end| turn_of_open_points(system, (start, piece), end));
+        let before = turn.and_then(|at| state_at(system, (start, piece), &[&StepEnd::first(start, piece)], at));
+        match before {
+            Some(end) => found = Advance::Whole(end),
+            None => break,
+        }
+    }
+    found
+}
+
+/// Returns the first length at which an open point with dilatancy changes the sense of its motion along the joint. The irreversible gap
+/// of such a point grows in both senses.
+fn turn_of_open_points(system: &StepSystem, (start, piece): (&State, &Piece), end: &StepEnd) -> Option<f64> {
+    // A shorter motion before the turn is below the accuracy of gaps.
+    let least = gap_rounding(system, &end.state).max(SETTINGS.admissible * largest(end.state.gap.as_flattened()));
+    let turn = |c: usize| {
+        let law = system.law(c).filter(|law| law.opens(start.mode[c]))?;
+        law.facets.iter().find(|facet| facet.flow[0] * facet.flow[1] != 0.0)?;
+        let slid = end.state.gap[c][1] - start.gap[c][1];
+        let rates = [&piece.tangent, &end.rate].map(|rate| rate.gap[c][1] * end.length);
+        let at = |k: usize| k as f64 / SAMPLES as f64;
+        let turns = |k: usize| {
+            let [a, b] = [k - 1, k].map(|k| slope(slid, rates, at(k)));
+            (a * b < 0.0).then(|| at(k - 1) + a / (a - b) * at(1))
+        };
+        let inside =
+            |share: &f64| share.min(1.0 - share) > SETTINGS.small && share * rates[0].abs().max(rates[1].abs()) > least;
+        (1..=SAMPLES).filter_map(turns).find(inside).map(|share| share * end.length)
+    };
+    (0..start.mode.len()).filter_map(turn).reduce(f64::min)
+}
+
+/// Moves a length along a piece from one of its states, at most to the first event.
+fn to_first_event(system: &mut StepSystem, (start, piece): (&State, &Piece), length: f64, watched: Watched) -> Advance {
     let mut step = Step { system, start, piece, watched };
     let readings = step.readings(start, &piece.tangent);
     let low = Trial { end: StepEnd::first(start, piece), readings };
@@ -378,6 +442,11 @@ fn cubic([a, da, b, db]: [f64; 4], x: f64) -> f64 {
     a * y * y * (1.0 + 2.0 * x) + da * x * y * y + b * x * x * (3.0 - 2.0 * x) - db * x * x * y
 }
 
+/// Evaluates the derivative of the Hermite cubic with these derivatives at 0 and 1 that gains a value between them.
+fn slope(gained: f64, [da, db]: [f64; 2], x: f64) -> f64 {
+    6.0 * gained * x * (1.0 - x) + da * (1.0 - x) * (1.0 - 3.0 * x) + db * x * (3.0 * x - 2.0)
+}
+
 /// Returns the first root of a cubic that is positive at 0.
 fn cubic_root(of: [f64; 4]) -> Option<f64> {
     let at = |k: usize| k as f64 / SAMPLES as f64;
@@ -416,11 +485,7 @@ fn hidden_turn(low: &Trial, high: &Trial) -> Option<f64> {
         return None;
     }
     let gained = high.end.state.factor - low.end.state.factor;
-    // The derivative of the cubic of the factor, in the sense at the ends.
-    let slope = |x: f64| {
-        (6.0 * gained * x * (1.0 - x) + da * (1.0 - x) * (1.0 - 3.0 * x) + db * x * (3.0 * x - 2.0)) * da.signum()
-    };
-    (1..SAMPLES).map(|k| k as f64 / SAMPLES as f64).find(|x| slope(*x) < 0.0)
+    (1..SAMPLES).map(|k| k as f64 / SAMPLES as f64).find(|x| slope(gained, [da, db], *x) * da.signum() < 0.0)
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@
 //! path follows the sense of φ that gives the lower load at the same distance. If both loads are equal, the two senses
 //! are twins.
 
-use super::advance::{Advance, StepEnd, Watched, advance, state_at};
+use super::advance::{Advance, StepEnd, Watched, advance, between, state_at};
 use super::monitors::{MAX_BISECTIONS, Monitor, What};
 use super::piece::Piece;
 use super::switch::{NextPiece, after_event};
@@ -56,25 +56,44 @@ pub(super) fn first_unstable(
         return None;
     }
     let (mut low, mut high) = (StepEnd::first(start, piece), end.clone());
+    // The eigenvalue nearest to zero at the first state of the bracket, unless that state has negative ones.
+    let mut stable = (before.turned == 0).then_some(before.nearest);
+    let mut between_both = None;
     // In a very short step a state is not found as near to a requested length as the bracket is narrow.
     for _ in 0..MAX_BISECTIONS {
-        // At the bifurcation itself the equations are singular.
-        let located = bifurcates && work.nearest <= (SETTINGS.together * least).max(SETTINGS.inequality());
-        let wide = !located && high.length - low.length > SETTINGS.admissible * end.length;
-        let middle = [0.5, 0.4, 0.6].into_iter().filter(|_| wide).find_map(|share| {
-            let length = low.length + share * (high.length - low.length);
-            state_at(system, (start, piece), &[&low, &high], length)
+        let width = high.length - low.length;
+        let narrow = bifurcates && work.nearest.max(width / end.length * size) <= SETTINGS.small * size;
+        // A solution at the bifurcation itself contains an arbitrary part of the critical motion.
+        between_both = stable.filter(|_| narrow).and_then(|stable| {
+            let share = (stable + least) / (stable + work.nearest);
+            between(system, (start, piece), [&low, &high], share)
         });
-        let Some(middle) = middle else { break };
-        let found = second_order_work(system, &middle.state).filter(|work| work.turned > 0 && work.nearest > least);
-        match found.filter(|_| above(&middle.state) && (bifurcates || is_unstable_at_rest(system, &middle.state))) {
-            Some(here) => (work, high) = (here, middle),
-            None => low = middle,
+        if between_both.is_some() || width <= SETTINGS.admissible * end.length {
+            break;
+        }
+        let middle = [0.5, 0.4, 0.6].into_iter().find_map(|share| {
+            let middle = state_at(system, (start, piece), &[&low, &high], low.length + share * width)?;
+            let work = second_order_work(system, &middle.state);
+            let regular = !bifurcates || work.as_ref().is_some_and(|work| work.nearest > SETTINGS.fine * size);
+            regular.then_some((middle, work))
+        });
+        let Some((middle, found)) = middle else { break };
+        let mut is_unstable = |work: &SecondOrderWork| {
+            let turned = work.turned > 0 && work.nearest > least;
+            turned && above(&middle.state) && (bifurcates || is_unstable_at_rest(system, &middle.state))
+        };
+        match found {
+            Some(here) if is_unstable(&here) => (work, high) = (here, middle),
+            found => {
+                stable = found.filter(|work| work.turned == 0).map(|work| work.nearest);
+                low = middle;
+            }
         }
     }
     let located = bifurcates && work.nearest <= SETTINGS.small * size;
     let far = !located && high.length - low.length > SETTINGS.distinct() * end.length;
-    Some(Unstable { first: high, work, far })
+    let first = between_both.unwrap_or(high);
+    Some(Unstable { first, work, far })
 }
 
 /// The other branch at a bifurcation.

@@ -308,10 +308,12 @@ impl<'d> Run<'d> {
 
     /// Accepts a state of the piece. `None` if the step must be repeated or the path ends.
     fn take(&mut self, tracer: &mut Tracer, end: StepEnd) -> Result<(), Option<LoadStepEnding>> {
-        if end.error > SETTINGS.most_error && end.length > 1e-6 * self.length.first {
+        // The tangent of a shorter step is rounding.
+        let tells = end.length > length_ahead(&tracer.system, &tracer.state);
+        if end.error > SETTINGS.most_error && tells {
             return Err(self.shorten(tracer, end.length * (SETTINGS.wanted_error / end.error).clamp(0.1, 0.5)));
         }
-        if end.unexplained > SETTINGS.most_error && end.length > 1e-6 * self.length.first {
+        if end.unexplained > SETTINGS.most_error && tells {
             return Err(self.shorten(tracer, 0.5 * end.length));
         }
         let energy = step_energy(tracer, &end.state);

@@ -1,6 +1,6 @@
 //! Steps along a piece: a block of 1 N on two points that is pushed at height h, and one on two bonded springs.
 
-use super::super::advance::{Advance, StepEnd, Watched, advance, first_crossing, state_at};
+use super::super::advance::{Advance, StepEnd, Watched, advance, between, first_crossing, state_at};
 use super::{Piece, State, StepSystem, piece_at, second_step};
 use crate::path::newton::pieces::monitors::{Reading, What};
 use crate::path::two_blocks::{STIFFNESS, assert_close, block, force, on_springs, pushed_at, stage, v};
@@ -114,6 +114,26 @@ fn a_long_step_of_springs_ends_on_the_arc() {
         let end = state_on(&mut system, &state, &piece, factor / piece.tangent.factor).expect("a state").state;
         assert_close((-end.motion[1][2]).tan(), end.factor * 0.8 / (10.0 - 0.8), 1e-9);
     }
+}
+
+/// A state between two states of a piece is accurate to fourth order in their distance. If one of the two has left the curve, there is
+/// no such state.
+#[test]
+fn a_state_between_two_others_is_of_fourth_order() {
+    let problem = soft();
+    let (mut system, state) = second_step(&problem);
+    let piece = piece_at(&mut system, &state);
+    let mut off = |by: f64| {
+        let ends = [1.0, 1.0 + by].map(|factor| state_on(&mut system, &state, &piece, factor / piece.tangent.factor));
+        let [low, high] = ends.map(|end| end.expect("a state"));
+        let found = between(&mut system, (&state, &piece), [&low, &high], 0.5).expect("a state").state;
+        let mut moved = high;
+        moved.state.motion[1][2] *= 1.1;
+        assert!(between(&mut system, (&state, &piece), [&low, &moved], 0.5).is_none());
+        ((-found.motion[1][2]).tan() - found.factor * 0.8 / (10.0 - 0.8)).abs()
+    };
+    let [wide, narrow] = [0.4, 0.2].map(&mut off);
+    assert!(narrow > 0.0 && narrow < 0.08 * wide && wide < 1e-4, "{wide:e} {narrow:e}");
 }
 
 /// The first crossing is the least value/−rate of the monitors that fall and are not yet zero.
