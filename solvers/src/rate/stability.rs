@@ -48,8 +48,8 @@ impl RateProblem<'_> {
         }
     }
 
-    /// True if the modes of a rate determine it up to its size: their equations are regular, or the rate is the only mechanism
-    /// that they admit. Otherwise other rates lie as near to it as one likes, and no piece starts with it.
+    /// True if the modes of a rate determine it up to its size: their equations are regular, or the load does not rise and they
+    /// leave only one motion free. Otherwise other rates lie as near to it as one likes, and no piece starts with it.
     pub fn is_isolated(&self, rate: &Rate) -> bool {
         let matrix = self.mode_matrix(&rate.modes);
         if matrix.is_empty() {
@@ -57,7 +57,7 @@ impl RateProblem<'_> {
         }
         let values = matrix.singular_values();
         let free = values.iter().filter(|v| **v <= SETTINGS.admissible * values.max()).count();
-        free <= 1
+        free <= usize::from(rate.factor <= 0.0)
     }
 
     /// Number of negative real eigenvalues of AᵀSD over some modes.
