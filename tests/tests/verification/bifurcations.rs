@@ -115,7 +115,7 @@ fn steps_do_not_contain_the_turn_of_an_open_point() {
     }
 }
 
-/// Where all points of a joint slide, the modes leave the motion along it free, and a rate with rising load is not determined. Another
+/// If all points of a joint slide, the modes leave the motion along it free, and a rate with rising load is not determined. Another
 /// rate with rising load is followed, on which points of one side stop. An imperfection leads there, too.
 #[test]
 fn a_rate_that_its_modes_do_not_determine_is_not_followed() {
