@@ -58,22 +58,23 @@ pub(super) fn first_unstable(
     let (mut low, mut high) = (StepEnd::first(start, piece), end.clone());
     // The eigenvalue nearest to zero at the first state of the bracket, unless that state has negative ones.
     let mut stable = (before.turned == 0).then_some(before.nearest);
-    let mut between_both = None;
+    let mut at_bifurcation = None;
     // In a very short step a state is not found as near to a requested length as the bracket is narrow.
     for _ in 0..MAX_BISECTIONS {
         let width = high.length - low.length;
         let narrow = bifurcates && work.nearest.max(width / end.length * size) <= SETTINGS.small * size;
         // A solution at the bifurcation itself contains an arbitrary part of the critical motion.
-        between_both = stable.filter(|_| narrow).and_then(|stable| {
+        at_bifurcation = stable.filter(|_| narrow).and_then(|stable| {
             let share = (stable + least) / (stable + work.nearest);
             between(system, (start, piece), [&low, &high], share)
         });
-        if between_both.is_some() || width <= SETTINGS.admissible * end.length {
+        if at_bifurcation.is_some() || width <= SETTINGS.admissible * end.length {
             break;
         }
         let middle = [0.5, 0.4, 0.6].into_iter().find_map(|share| {
             let middle = state_at(system, (start, piece), &[&low, &high], low.length + share * width)?;
             let work = second_order_work(system, &middle.state);
+            // An almost singular state has no exact rate.
             let regular = !bifurcates || work.as_ref().is_some_and(|work| work.nearest > SETTINGS.fine * size);
             regular.then_some((middle, work))
         });
@@ -92,7 +93,7 @@ pub(super) fn first_unstable(
     }
     let located = bifurcates && work.nearest <= SETTINGS.small * size;
     let far = !located && high.length - low.length > SETTINGS.distinct() * end.length;
-    let first = between_both.unwrap_or(high);
+    let first = at_bifurcation.unwrap_or(high);
     Some(Unstable { first, work, far })
 }
 
